@@ -25,9 +25,9 @@ from frbcli.analysis.orders.resonance import (
     vibrations_beside,
 )
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
-from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, find_whirls, window_step_s
+from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, window_step_s
 from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
-from frbcli.analysis.spectra.peaks import intervals_above
+from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.windows import hann
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "clearance-step"]
@@ -37,7 +37,7 @@ WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1
 WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
 FREQUENCY_REVOLUTIONS = 16  # window for that frequency: lines 1/16 apart, and short against a ramp of some 10 s
 FREQUENCY_PADDING = 16  # interpolation between these lines
-SHARE_OF_LINE = 0.05  # of the windows of floating rings: how fine a parabola finds a peak beside weaker ones
+SHARE_OF_LINE = 0.01  # how fine a parabola finds a peak of a spectrum beside weaker ones
 FREQUENCY_SAMPLES = 32  # per revolution, there
 WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
 WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
@@ -134,17 +134,14 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
 
 
 def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
-    """How fine the speed and the frequency of an event, as in the file of a run, are resolved by the search, in Hz."""
+    """How fine the search for an event, as in the file of a run, is, in Hz: by how much the speed changes in one of its
+    steps, and how fine it finds a frequency."""
     t, speed = float(event["t_s"]), abs(float(event["speed_Hz"]))
     in_rings = str(event["film"] or "").endswith(SIDES)
     step_s = window_step_s(run) if in_rings else 1.0 / (STEPS * max(speed, 1.0))
     around = [signals.speed_at(run, t + sign * step_s) for sign in (-1.0, 1.0)]
-    speed_Hz = 0.5 * abs(around[1] - around[0])
-    if event["kind"] == "critical-speed":
-        return speed_Hz, speed_Hz
-    if not in_rings:
-        return speed_Hz, speed / (FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS)
-    return speed_Hz, abs(float(event["frequency_ratio"] or 0.0)) * speed_Hz + SHARE_OF_LINE / (HOPS * step_s)
+    line_Hz = 1.0 / (HOPS * step_s) if in_rings else speed / FREQUENCY_REVOLUTIONS
+    return 0.5 * abs(around[1] - around[0]), 0.0 if event["kind"] == "critical-speed" else SHARE_OF_LINE * line_Hz
 
 
 def _near_the_speed(
@@ -195,21 +192,18 @@ def _whirls_of_any_frequency(
     seal, that has no film that would tell how fast; its room is the length of the machine."""
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
-        moments: list[tuple[Kind, int]] = [("onset", 0)]
-        if in_films and whirl.lock_in is not None:
-            moments.append(("lock-in", whirl.lock_in))
-        if not whirl.lasts:
-            moments.append(("offset", len(whirl.time_s) - 1))
+        moments: dict[Kind, WhirlMoment | None] = {
+            "onset": whirl.onset,
+            "lock-in": whirl.lock_in,
+            "offset": whirl.offset,
+        }
         film, point = joined(name, whirl.side) if in_films else None, joined("journal", name)
-        for kind, at in moments:
-            t, frequency = float(whirl.time_s[at]), float(whirl.frequency_Hz[at])
-            speed = signals.speed_at(run, t)
-            yield Event(kind, film, t, speed, frequency, frequency / speed, point, _reached(kind, whirl.amplitude))
-
-
-def _reached(kind: Kind, amplitude: Values) -> float | None:
-    """The largest amplitude of a whirl (k,), which stands at its onset alone."""
-    return float(np.max(amplitude, initial=0.0)) if kind == "onset" else None
+        for kind, moment in moments.items():
+            if moment is None or (kind == "lock-in" and not in_films):
+                continue
+            speed, frequency = signals.speed_at(run, moment.time_s), moment.frequency_Hz
+            reached = whirl.amplitude if kind == "onset" else None
+            yield Event(kind, film, moment.time_s, speed, frequency, frequency / speed, point, reached)
 
 
 def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
@@ -223,27 +217,27 @@ def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Itera
         if last - max(first, settled) < sustained and not (lasts and run.status == "contact"):
             continue
         # An interval that the start of the run leads into began with the run.
-        begun = _whirl_event("onset", run, name, turns, first + middle)
-        yield replace(begun, amplitude=_reached("onset", amplitude[max(first, settled) : last]))
+        begun = _whirl_event("onset", run, name, turns, middle + crossing(amplitude, first, WHIRL_BEGINS, -1))
+        yield replace(begun, amplitude=float(np.max(amplitude[max(first, settled) : last], initial=0.0)))
         if not lasts:
-            yield _whirl_event("offset", run, name, turns, last + middle)
+            yield _whirl_event("offset", run, name, turns, middle + crossing(amplitude, last - 1, WHIRL_BEGINS, 1))
 
 
-def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: int) -> Event:
-    """The event at a step; its frequency is that of the window just after an onset, just before an offset."""
+def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: float) -> Event:
+    """The event at a step, or between two; its frequency is that of the window just after an onset, just before an
+    offset."""
     last, width = len(turns.time_s) - 1, FREQUENCY_REVOLUTIONS * STEPS
-    step = min(step, last)
-    begin = max(0, min(step if kind == "onset" else step - width, last - width))
-    end = min(begin + width, last)
-    seen = _at_even_angles(run, name, turns.time_s[begin : end + 1])
+    begin = max(0.0, min(step if kind == "onset" else step - width, last - width))
+    within = begin + np.arange(min(width, last) + 1)
+    event_s, *times_s = np.interp([step, *within], np.arange(last + 1), turns.time_s)
+    seen = _at_even_angles(run, name, np.asarray(times_s))
     padded = FREQUENCY_PADDING * FREQUENCY_REVOLUTIONS * FREQUENCY_SAMPLES
     lines = np.abs(np.fft.fft((seen - seen.mean()) * hann(len(seen)), padded))
-    orders = np.fft.fftfreq(padded, 1.0 / FREQUENCY_SAMPLES)
-    band = (orders >= WHIRL_BAND[0]) & (orders <= WHIRL_BAND[1])
-    ratio = float(orders[band][np.argmax(lines[band])])
-    speed = float(turns.speed_Hz[step])
-    point = joined("journal", name)
-    return Event(kind, name or None, float(turns.time_s[step]), speed, ratio * speed, ratio, point)
+    lowest, highest = (round(order * padded / FREQUENCY_SAMPLES) for order in WHIRL_BAND)
+    line = lowest + int(np.argmax(lines[lowest:highest]))
+    ratio = (line + summit(*lines[line - 1 : line + 2])) * FREQUENCY_SAMPLES / padded
+    speed = float(np.interp(event_s, turns.time_s, turns.speed_Hz))
+    return Event(kind, name or None, float(event_s), speed, ratio * speed, ratio, joined("journal", name))
 
 
 def _at_even_angles(run: RunLike, name: str, times_s: Values) -> Motion:

@@ -1,10 +1,10 @@
 """How uncertain the events and the slow signals of a run are, from a second, coarser run of the same machine.
 
 Events of both runs belong together if they have the same kind, film and point, are near in time and in the same order.
-The second run is about twice as far from the truth, so that the difference of such a pair, times SAFETY, is the
-uncertainty. Two runs may agree in one number by chance. So the uncertainty of an onset, a lock-in and an offset is at
-least the usual one of all of them, relative to the speed and to the frequency, and that of any event at least the
-resolution of the search.
+The difference of such a pair, times SAFETY, is the uncertainty. Two runs may agree in one number by chance. So the
+uncertainty of an onset, a lock-in and an offset is at least the usual one of all of them, relative to the speed and to
+the frequency, and that of any event at least what the search does not resolve. What happens at another speed happens
+with another frequency: that of a frequency is at least the uncertainty of the speed, times their ratio.
 """
 
 from __future__ import annotations
@@ -20,9 +20,11 @@ from frbcli.analysis.events import WHIRL_BEGINS, resolution
 from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
 from frbcli.analysis.signals import RunLike, Values, piece
 
+BETWEEN = 0.03  # of a step of the search: how far a moment that is read between two steps may be off
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
-SAFETY = 1.5  # times the difference of both runs, of many pairs; of one alone twice as much
+SAFETY = 3.0  # times the difference of both runs in an event, which may be small by chance ...
+SAFETY_OF_MEANS = 1.5  # ... and of the largest one in a slow signal
 FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
 GIVEN = "clearance-step"  # its time stands in the case
@@ -60,7 +62,7 @@ def with_uncertainties(
     others = partners(events, second)
     both = [(event, other) for event, other in zip(events, others, strict=True) if other is not None]
     usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS], amplitude)
-    alone = _Usual(amplitude=amplitude, safety=2.0 * SAFETY)
+    alone = _Usual(amplitude=amplitude)
     return [
         {**event, **_unmatched(event, events, second)}
         if other is None
@@ -71,29 +73,26 @@ def with_uncertainties(
 
 @dataclass(frozen=True)
 class _Usual:
-    """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude; safety:
-    times the difference of an event, more where few pairs say little of what is usual."""
+    """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude."""
 
     speed: float = 0.0
     frequency: float = 0.0
     amplitude: float = 0.0
-    safety: float = SAFETY
 
     @classmethod
     def of(cls, both: Sequence[tuple[Record, Record]], amplitude: float) -> _Usual:
         """Those of some pairs. amplitude: least one."""
-        safety = SAFETY * (1.0 + 1.0 / max(1, len(both)))
         speed, frequency = (
             _usual([_apart(*pair, key) / _size(pair[0], key) for pair in both]) for key in (SPEED, FREQUENCY)
         )
         usual = _usual([_apart(*pair, AMPLITUDE) for pair in both])
-        return cls(safety * speed, safety * frequency, max(amplitude, safety * usual), safety)
+        return cls(SAFETY * speed, SAFETY * frequency, max(amplitude, SAFETY * usual))
 
 
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
     """Uncertainties of ring speeds, temperatures, losses and oil fractions over a whole run, as keys of its error: the
-    largest difference of the means in WINDOWS parts of the run, times SAFETY, in the unit of the name. Of several
-    signals of a kind that of the least certain one; without such signals nothing."""
+    largest difference of the means in WINDOWS parts of the run, times SAFETY_OF_MEANS, in the unit of the name. Of
+    several signals of a kind that of the least certain one; without such signals nothing."""
     count = min(len(run), len(second))
     edges = np.unique(np.linspace(0, count, WINDOWS + 1).astype(np.int64))
     found = {}
@@ -101,7 +100,7 @@ def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
         names = [name for name in run.signals if name.startswith(quantity)]
         apart = [_means(run, name, edges) - _means(second, name, edges) for name in names]
         if apart and count:
-            found[key] = SAFETY * float(np.abs(apart).max())
+            found[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
     return found
 
 
@@ -140,22 +139,17 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
     """What is added to an event that the second run has, too."""
     if event["kind"] == GIVEN:
         return {"speed_uncertainty_Hz": 0.0, "certain": True}
-    speed_Hz, frequency_Hz = resolution(run, event)
-    usual_of = {
-        SPEED: usual.speed * _size(event, SPEED),
-        FREQUENCY: usual.frequency * _size(event, FREQUENCY),
-        AMPLITUDE: usual.amplitude,
-    }
-    resolved = {SPEED: speed_Hz, FREQUENCY: frequency_Hz, AMPLITUDE: 0.0}
-    told = {
-        key: None if event.get(key) is None else max(usual.safety * _apart(event, other, key), least, resolved[key])
-        for key, least in usual_of.items()
-    }
+    step_Hz, line_Hz = resolution(run, event)
+    off = {key: SAFETY * _apart(event, other, key) for key in (SPEED, FREQUENCY, AMPLITUDE)}
+    read = step_Hz if off[SPEED] == 0.0 else BETWEEN * step_Hz  # equal moments: both are no finer than a step
+    speed = max(off[SPEED], usual.speed * _size(event, SPEED), read)
+    at_another_speed = abs(_number(event, "frequency_ratio")) * speed
+    frequency = max(off[FREQUENCY], usual.frequency * _size(event, FREQUENCY), line_Hz, at_another_speed)
     reason = _faint(event) or _grazing(run, event)
     return {
-        "speed_uncertainty_Hz": told[SPEED],
-        "frequency_uncertainty_Hz": told[FREQUENCY],
-        "amplitude_uncertainty": told[AMPLITUDE],
+        "speed_uncertainty_Hz": speed,
+        "frequency_uncertainty_Hz": None if event.get(FREQUENCY) is None else frequency,
+        "amplitude_uncertainty": None if event.get(AMPLITUDE) is None else max(off[AMPLITUDE], usual.amplitude),
         "certain": not reason,
         "reason": reason or None,
     }
@@ -214,7 +208,7 @@ def _number(event: Record, key: str) -> float:
 
 
 def _usual(differences: Sequence[float]) -> float:
-    """Their root mean square without the largest quarter, which are outliers."""
+    """Their root mean square without at least the largest quarter, which are outliers."""
     known = np.sort([value for value in differences if not np.isnan(value)])
-    kept = known[: max(1, int(np.ceil(0.75 * len(known))))]
+    kept = known[: max(1, int(0.75 * len(known)))]
     return float(np.sqrt(np.mean(kept**2))) if len(known) else 0.0

@@ -16,6 +16,7 @@ from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
 from frbcli.analysis.orders import subsynchronous
 from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.analysis.orders.subsynchronous import whirl_names
+from frbcli.analysis.uncertainty import BETWEEN
 from frbcli.case.reading.load import load_case
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.store import Run
@@ -421,6 +422,27 @@ def test_inner_whirl_locks_into_a_mode_and_the_outer_one_follows(noise: float) -
     assert outer.frequency_Hz == pytest.approx(0.125 * outer.speed_Hz, rel=0.03)
     assert outer.frequency_ratio == pytest.approx(0.125, rel=0.03)
     assert whirl_names([asdict(event) for event in events]) == ["Sub_i"] * 3 + ["Sub_o"]
+
+
+@pytest.mark.parametrize("rings", [True, False])
+def test_an_event_moves_with_the_motion_also_between_two_steps_of_the_search(rings: bool) -> None:
+    """The same motion a part of a step later: windows of rings are 10 ms apart. What is read moves as much, to 3 % of a
+    step, and the frequency of the onset with the speed, to a fiftieth of a line of the windows."""
+
+    def moved(by_s: float) -> dict[str, Event]:
+        if rings:
+            run = ring_run(RingWhirl("inner", 0.5 + by_s, 2.0 + by_s, 1e3))
+        else:
+            run = make_run(Rotor(critical_Hz=None, whirl_s=6.5 + by_s))
+        return {event.kind: event for event in find_events(run)}
+
+    first, ramp, step_s = moved(0.0), *((300.0, 0.01) if rings else (30.0, 1.0 / (8 * 194.0)))
+    for later_s in (0.1 * step_s, 0.3 * step_s, 0.5 * step_s, 0.9 * step_s):
+        for kind, event in moved(later_s).items():
+            assert event.t_s - first[kind].t_s == pytest.approx(later_s, abs=BETWEEN * step_s)
+        onset = first["onset"]
+        frequency = onset.frequency_ratio * ramp * later_s
+        assert moved(later_s)["onset"].frequency_Hz - onset.frequency_Hz == pytest.approx(frequency, abs=0.2)
 
 
 def test_three_whirls_of_a_turbocharger_have_their_names() -> None:

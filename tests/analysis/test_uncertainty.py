@@ -11,7 +11,16 @@ from hypothesis import strategies as st
 from synthetic_run import Rotor, as_run, make_run
 
 from frbcli.analysis.events import WHIRL_BEGINS
-from frbcli.analysis.uncertainty import FAINT, NEAR, SAFETY, partners, slow_uncertainties, with_uncertainties
+from frbcli.analysis.uncertainty import (
+    BETWEEN,
+    FAINT,
+    NEAR,
+    SAFETY,
+    SAFETY_OF_MEANS,
+    partners,
+    slow_uncertainties,
+    with_uncertainties,
+)
 from frbcli.results.store import Run
 
 RAMP = 30.0  # Hz/s of the synthetic run
@@ -30,27 +39,33 @@ def event(t_s: float, kind: str = "onset", frequency_Hz: float = 90.0, **more: A
 
 def test_an_event_is_as_uncertain_as_both_runs_differ(run: Run) -> None:
     found = with_uncertainties(run, [event(6.0)], [event(6.1, frequency_Hz=92.0, amplitude=0.78)])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 3.0)  # one pair alone: twice
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 2.0)
-    assert found["amplitude_uncertainty"] == pytest.approx(2.0 * SAFETY * 0.02)
+    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 3.0)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(SAFETY * 2.0)
+    assert found["amplitude_uncertainty"] == pytest.approx(SAFETY * 0.02)
     assert (found["certain"], found["reason"]) == (True, None)
 
 
+def test_a_whirl_that_begins_at_another_speed_begins_with_another_frequency(run: Run) -> None:
+    """Equal frequencies of two whirls that begin 3 Hz apart: the frequency is half the speed."""
+    found = with_uncertainties(run, [event(6.0)], [event(6.1)])[0]
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(0.5 * SAFETY * 3.0)
+
+
 def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> None:
-    """Four whirls that are 1, 1, 1 % and nothing off; the factor of four pairs is 1.25 times that of many."""
+    """Four whirls that are 1, 1, 1 % and nothing off."""
     own = [event(t) for t in (4.0, 5.0, 6.0, 7.0)]
     second = [event(t) for t in (4.04, 5.05, 6.06, 7.0)]
     found = with_uncertainties(run, own, second)
-    least = 1.25 * SAFETY * 0.01 * (2.0 / 3.0) ** 0.5  # the root mean square of 0, 1 and 1 %, three of the four
+    least = SAFETY * 0.01 * (2.0 / 3.0) ** 0.5  # the root mean square of 0, 1 and 1 %, three of the four
     assert found[3]["speed_uncertainty_Hz"] == pytest.approx(least * 210.0)
-    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(1.25 * SAFETY * 0.01 * 120.0)
+    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.01 * 120.0)
 
 
 def test_equal_runs_leave_the_resolution(run: Run) -> None:
-    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a line of 16 revolutions, 16 times finer."""
+    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a hundredth of a line of 16 revolutions."""
     found = with_uncertainties(run, [event(6.0)], [event(6.0)])[0]
     assert found["speed_uncertainty_Hz"] == pytest.approx(RAMP / (8 * 180.0), rel=1e-6)
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(180.0 / 256.0)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(180.0 / (100 * 16))
     critical = with_uncertainties(run, [event(6.0, "critical-speed", 180.0)], [event(6.0, "critical-speed", 180.0)])[0]
     assert critical["frequency_uncertainty_Hz"] == critical["speed_uncertainty_Hz"]
 
@@ -61,11 +76,14 @@ def test_an_amplitude_is_no_more_certain_than_the_eccentricities(run: Run) -> No
 
 
 def test_an_event_of_a_ring_is_resolved_by_its_windows(run: Run) -> None:
-    """A ramp of 30 Hz/s takes the longest windows, of 0.1 s, every 0.01 s."""
+    """A ramp of 30 Hz/s takes the longest windows, of 0.1 s, every 0.01 s. Moments that are equal may stand in the same
+    window; those that are not lie between two."""
     ring = event(6.0, film="inner")
     found = with_uncertainties(run, [ring], [ring])[0]
     assert found["speed_uncertainty_Hz"] == pytest.approx(0.3)
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(0.5 * 0.3 + 0.05 / 0.1)
+    assert found["frequency_uncertainty_Hz"] == pytest.approx(0.5 * 0.3)
+    apart = with_uncertainties(run, [ring], [event(6.0001, film="inner")])[0]
+    assert apart["speed_uncertainty_Hz"] == pytest.approx(BETWEEN * 0.3)
     touch = ring | {"kind": "contact", "frequency_Hz": None, "frequency_ratio": None, "amplitude": None}
     assert with_uncertainties(run, [touch], [touch])[0]["frequency_uncertainty_Hz"] is None
 
@@ -78,7 +96,7 @@ def test_a_step_of_the_clearance_is_given(run: Run) -> None:
 def test_a_contact_has_no_frequency(run: Run) -> None:
     touch = event(6.0, "contact") | {"frequency_Hz": None, "amplitude": None}
     found = with_uncertainties(run, [touch], [touch | {"t_s": 6.01, "speed_Hz": 180.3}])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(2.0 * SAFETY * 0.3)
+    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.3)
     assert (found["frequency_uncertainty_Hz"], found["amplitude_uncertainty"]) == (None, None)
     assert found["certain"] is False  # it does not end the run
     ended = make_run(Rotor(), "contact")
@@ -146,7 +164,7 @@ def test_a_slow_signal_is_as_uncertain_as_its_means_differ() -> None:
     half of a hundredth less in the mean of the last part."""
     found = slow_uncertainties(rings(40.0, 5.0, 2.0), rings(40.5, 1.0, 2.1))
     assert found == {
-        "ring_speed_uncertainty_Hz": pytest.approx(SAFETY * 0.5, rel=1e-3),
-        "temperature_uncertainty_K": pytest.approx(SAFETY * 0.995, rel=1e-3),
+        "ring_speed_uncertainty_Hz": pytest.approx(SAFETY_OF_MEANS * 0.5, rel=1e-3),
+        "temperature_uncertainty_K": pytest.approx(SAFETY_OF_MEANS * 0.995, rel=1e-3),
     }
     assert slow_uncertainties(make_run(Rotor()), make_run(Rotor())) == {}

@@ -9,15 +9,17 @@ of the frequency ends a ridge and begins another one.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.analysis import signals
 from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values, steepest_ramp
-from frbcli.analysis.spectra.peaks import local_maxima
+from frbcli.analysis.spectra.peaks import crossing, local_maxima, summit
 from frbcli.analysis.spectra.windows import fast_length, hann
 
 Side = Literal["inner", "outer"]
@@ -27,6 +29,7 @@ LONGEST_s = 0.1  # of a window: separates frequencies 20 Hz apart, and is short 
 SWEEP = 3.0  # r T^2 of the window T in a ramp of r Hz/s, in which a whirl moves by its width at most
 HOPS = 10  # steps from window to window in the length of one
 PADDING = 4
+NEARER = 4  # times that the frequency of a motion without a peak is sought half a line nearer
 SLOWEST = 2.0  # periods per window: what is slower is the journal that moves to its place
 SYNCHRONOUS = 0.8  # share of the rotor speed above which motion is synchronous
 
@@ -45,17 +48,23 @@ LEAVES_LINE = 0.95  # share of the frequency of a free whirl below which it is l
 
 
 @dataclass(frozen=True)
+class WhirlMoment:
+    """A moment of a whirl, as a rule between two windows, and its frequency there."""
+
+    time_s: float
+    frequency_Hz: float
+
+
+@dataclass(frozen=True)
 class Whirl:
-    """A sub-synchronous motion; the film that drives it. time_s, frequency_Hz, amplitude (k,): in steps of a tenth of
-    the windows, the amplitude over the room of the journal. lasts: up to the end of the run; lock_in: where it locks,
-    None if it does not."""
+    """A sub-synchronous motion; the film that drives it. lock_in, offset: None if it does not lock, or lasts up to the
+    end of the run; amplitude: the largest one, over the room of the journal."""
 
     side: Side
-    time_s: Values
-    frequency_Hz: Values
-    amplitude: Values
-    lasts: bool
-    lock_in: int | None
+    onset: WhirlMoment
+    lock_in: WhirlMoment | None
+    offset: WhirlMoment | None
+    amplitude: float
 
 
 @dataclass
@@ -68,6 +77,69 @@ class _Ridge:
         self.columns.append(column)
         self.frequencies.append(frequency)
         self.amplitudes.append(amplitude)
+
+
+@dataclass(frozen=True)
+class _Windows:
+    """Windows of the motion of a journal over its room in m: their width and the hop from one to the next in samples,
+    which are step_s apart."""
+
+    run: RunLike
+    name: str
+    room: float
+    width: int
+    hop: int
+    step_s: float
+
+    def peaks(self, highest_Hz: Values) -> Iterator[list[tuple[float, float]]]:
+        """Frequency in Hz and amplitude of the peaks of each forward spectrum, up to a frequency (m,), the strongest
+        first."""
+        shape = self._shape()
+        padded = fast_length(PADDING * self.width)
+        line = 1.0 / (padded * self.step_s)
+        kept = min(padded // 2, int(float(np.max(highest_Hz)) / line) + 2)
+        for seen, highest in zip(self._motions(), highest_Hz, strict=True):
+            level = np.abs(np.fft.fft((seen - seen @ shape) * shape, padded)[:kept])
+            peaks = []
+            for i in local_maxima(level, max(ENDS, SIDE_LOBES * float(level.max()))):
+                place = (i + summit(*level[i - 1 : i + 2])) * line
+                if SLOWEST / (self.width * self.step_s) <= place <= highest:
+                    peaks.append((float(place), float(level[i])))
+            yield sorted(peaks, key=lambda peak: -peak[1])
+
+    def continued(self, frequency_Hz: Values, amplitude: Values, first: int, last: int) -> tuple[Values, Values]:
+        """Frequency and amplitude of a whirl (windows,), also in the window before the first and after the last one
+        that it is seen in: it is too small for a peak of its own there."""
+        frequency_Hz, amplitude = frequency_Hz.copy(), amplitude.copy()
+        for unseen, seen in ((first - 1, first), (last + 1, last)):
+            if 0 <= unseen < len(amplitude) and amplitude[unseen] == 0.0:
+                frequency_Hz[unseen], amplitude[unseen] = self._near(unseen, frequency_Hz[seen])
+        return frequency_Hz, amplitude
+
+    def _near(self, number: int, frequency_Hz: float) -> tuple[float, float]:
+        """The frequency near another one at which a window has the highest level, and this level."""
+        start, shape = number * self.hop, self._shape()
+        seen = signals.motion_of(self.run, "journal", self.name, start, start + self.width) / self.room
+        angle, line = 2.0 * np.pi * self.step_s * np.arange(self.width), 1.0 / (PADDING * self.width * self.step_s)
+        weighted = (seen - seen @ shape) * shape
+        level = 0.0
+        for _ in range(NEARER):
+            around = frequency_Hz + line * np.array([-1.0, 0.0, 1.0])
+            levels = np.abs(np.exp(-1j * np.outer(around, angle)) @ weighted)
+            frequency_Hz, level = frequency_Hz + line * summit(*levels), float(levels.max())
+        return frequency_Hz, level
+
+    def _shape(self) -> Values:
+        window = hann(self.width)
+        return np.asarray(window / window.sum())
+
+    def _motions(self) -> Iterator[Motion]:
+        """The motion (width,) in each window, read many windows at a time."""
+        starts = range(0, len(self.run) - self.width + 1, self.hop)
+        at_a_time = max(1, PIECE // self.hop)
+        for group in (starts[first : first + at_a_time] for first in range(0, len(starts), at_a_time)):
+            motion = signals.motion_of(self.run, "journal", self.name, group[0], group[-1] + self.width) / self.room
+            yield from (motion[start - group[0] : start - group[0] + self.width] for start in group)
 
 
 def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) -> tuple[Whirl, ...]:
@@ -87,8 +159,8 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
     middle = np.arange(0, count - width + 1, hop) + width // 2
     columns = (SignalOf(run, "time_s"), SignalOf(run, "speed_Hz"), RingSpeed(run, name))
     time, speed, ring = (signals.samples(column, middle) for column in columns)
-    seen = _windows(run, name, room, width, hop)
-    followed = _follow(_peaks(seen, width, step, SYNCHRONOUS * speed), window_s)
+    windows = _Windows(run, name, room, width, hop, step)
+    followed = _follow(windows.peaks(SYNCHRONOUS * speed), window_s)
     ridges = [ridge for ridge in followed if max(ridge.amplitudes) >= BEGINS]
     frequencies, amplitudes = _table(ridges, len(middle))
     sides = [_side(row, ring) for row in frequencies]
@@ -96,7 +168,8 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
     for index, side in enumerate(sides):
         if _combination(index, frequencies, amplitudes, window_s):
             continue
-        strongest = amplitudes[[other == side for other in sides]].max(axis=0)
+        rivals = [row for other, row in enumerate(amplitudes) if sides[other] == side and other != index]
+        strongest = np.max([np.zeros(len(middle)), *rivals], axis=0)
         leads = np.flatnonzero((amplitudes[index] > 0.0) & (amplitudes[index] >= strongest))
         if len(leads) == 0 or np.all(amplitudes[index, leads] < FAINT * amplitudes[:, leads].max(axis=0)):
             continue
@@ -107,9 +180,15 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
         if time[last] - max(time[first], settled_s) < shortest and not (lasts and cut_short and len(at)):
             continue
         free = 0.5 * (ring[at] if side == "outer" else speed[at] + ring[at])
-        frequency = frequencies[index, at]
-        whirls.append(Whirl(side, time[at], frequency, amplitudes[index, at], lasts, _lock_in(frequency, free)))
-    return tuple(sorted(whirls, key=lambda whirl: float(whirl.time_s[0])))
+        locks = _lock_in(at, frequencies[index, at] - LEAVES_LINE * free)
+        overtaken = not lasts and amplitudes[index, last + 1] > 0.0
+        frequency, amplitude = windows.continued(frequencies[index], amplitudes[index], first, last)
+        passed = _overtaken(amplitude - strongest, last) if overtaken else crossing(amplitude, last, ENDS, 1)
+        moment = partial(_moment, time_s=time, frequency_Hz=frequency)
+        lock_in, offset = None if locks is None else moment(locks), None if lasts else moment(passed)
+        onset = moment(crossing(amplitude, first, BEGINS, -1))
+        whirls.append(Whirl(side, onset, lock_in, offset, float(amplitude[at].max())))
+    return tuple(sorted(whirls, key=lambda whirl: whirl.onset.time_s))
 
 
 def window_step_s(run: RunLike) -> float:
@@ -176,35 +255,6 @@ def with_whirl_names(events: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]
     return [{**event, "whirl": name} for event, name in zip(events, whirl_names(events), strict=True)]
 
 
-def _windows(run: RunLike, name: str, room: float, width: int, hop: int) -> Iterator[Motion]:
-    """The motion (width,) of a journal over its room in each window, read many windows at a time."""
-    starts = range(0, len(run) - width + 1, hop)
-    at_a_time = max(1, PIECE // hop)
-    for group in (starts[first : first + at_a_time] for first in range(0, len(starts), at_a_time)):
-        motion = signals.motion_of(run, "journal", name, group[0], group[-1] + width) / room
-        yield from (motion[start - group[0] : start - group[0] + width] for start in group)
-
-
-def _peaks(
-    motions: Iterable[Motion], width: int, step: float, highest_Hz: Values
-) -> Iterator[list[tuple[float, float]]]:
-    """Frequency in Hz and amplitude of the peaks of each forward spectrum, up to a frequency, the strongest first."""
-    window = hann(width)
-    window /= window.sum()
-    padded = fast_length(PADDING * width)
-    line = 1.0 / (padded * step)
-    kept = min(padded // 2, int(float(np.max(highest_Hz)) / line) + 2)
-    for seen, highest in zip(motions, highest_Hz, strict=True):
-        level = np.abs(np.fft.fft((seen - seen @ window) * window, padded)[:kept])
-        peaks = []
-        for i in local_maxima(level, max(ENDS, SIDE_LOBES * float(level.max()))):
-            left, here, right = level[i - 1 : i + 2]
-            place = (i + 0.5 * (left - right) / (left - 2.0 * here + right)) * line
-            if SLOWEST / (width * step) <= place <= highest:
-                peaks.append((float(place), float(here)))
-        yield sorted(peaks, key=lambda peak: -peak[1])
-
-
 def _follow(spectra: Iterator[list[tuple[float, float]]], window_s: float) -> list[_Ridge]:
     """Peaks of neighbouring spectra that are one motion; a stronger peak takes its ridge first."""
     ridges: list[_Ridge] = []
@@ -229,9 +279,26 @@ def _nearest(active: Sequence[_Ridge], column: int, frequency: float, window_s: 
     return nearest
 
 
-def _lock_in(frequency: Values, free: Values) -> int | None:
-    """Where a whirl that began with the frequency `free` leaves it for good."""
-    follows = np.flatnonzero(frequency >= LEAVES_LINE * free)
-    if len(follows) == 0 or follows[-1] + 1 >= len(frequency):
+def _moment(place: float, time_s: Values, frequency_Hz: Values) -> WhirlMoment:
+    """The moment at a place between windows at even steps of time (m,), in which a whirl has a frequency (m,), 0 where
+    it is not seen."""
+    at = np.flatnonzero(frequency_Hz)
+    when = np.interp(place, np.arange(len(time_s)), time_s)
+    return WhirlMoment(float(when), float(np.interp(place, at, frequency_Hz[at])))
+
+
+def _overtaken(ahead: Values, last: int) -> float:
+    """Where a whirl is overtaken that is ahead of all others in the window `last` for the last time; ahead (windows,):
+    by how much."""
+    here, beyond = float(ahead[last]), float(ahead[last + 1])
+    return last + here / (here - beyond)
+
+
+def _lock_in(at: NDArray[np.intp], over: Values) -> float | None:
+    """Where a whirl that is seen in the windows `at` (k,) leaves the frequency of a free one for good; over (k,): by
+    how much its frequency is above the one at which it does."""
+    follows = np.flatnonzero(over >= 0.0)
+    if len(follows) == 0 or follows[-1] + 1 >= len(over):
         return None
-    return int(follows[-1]) + 1
+    begin, end = follows[-1], follows[-1] + 1
+    return float(at[begin] + (at[end] - at[begin]) * over[begin] / (over[begin] - over[end]))

@@ -1,4 +1,5 @@
-"""Peaks of a curve, how far each stands out of it, and intervals in which it is high."""
+"""Peaks of a curve, how far each stands out of it, intervals in which it is high, and where between two samples it
+crosses a level."""
 
 from __future__ import annotations
 
@@ -29,6 +30,23 @@ def local_maxima(values: Values, least: float = -np.inf) -> NDArray[np.intp]:
     """Samples of `values` (n,) of at least this height that are higher than both neighbours."""
     inner = values[1:-1]
     return np.flatnonzero((inner > values[:-2]) & (inner >= values[2:]) & (inner >= least)) + 1
+
+
+def summit(left: float, here: float, right: float) -> float:
+    """Where the parabola through three neighbouring samples, the middle one at 0, has its top: at most half-way to the
+    next sample."""
+    bend = left - 2.0 * here + right
+    return float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if bend < 0.0 else 0.0
+
+
+def crossing(values: Values, place: int, level: float, step: int) -> float:
+    """Where `values` (n,), which are positive, cross a level between the sample `place`, which reaches it, and the next
+    one in the direction of `step`, -1 or 1. What grows or dies is straight over the logarithm. The place itself if the
+    next sample is as high, or the curve ends there."""
+    if not 0 <= place + step < len(values) or values[place + step] >= level:
+        return float(place)
+    here, beyond = np.log(values[place]), np.log(max(values[place + step], 1e-300))
+    return place + step * float((here - np.log(level)) / (here - beyond))
 
 
 def prominent_peaks(values: Values, least: float) -> list[Peak]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.analysis.signals import Values, joined, located
+from frbcli.analysis.spectra.peaks import summit
 from frbcli.analysis.spectra.spectrum import Spectrogram, waterfall, window_length
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
@@ -105,9 +106,7 @@ def _lines(found: Spectrogram) -> tuple[Values, Values]:
             continue
         place = int(band[np.argmax(found.amplitude[band, column])])
         left, middle, right = np.log(np.maximum(found.amplitude[place - 1 : place + 2, column], 1e-300))
-        bend = left - 2.0 * middle + right
-        off = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
-        off = float(np.clip(off, -0.5, 0.5))
+        off = summit(left, middle, right)
         frequency[column] = found.frequency_Hz[place] + off * step
         amplitude[column] = np.exp(middle - 0.25 * (left - right) * off)
     return frequency, amplitude
