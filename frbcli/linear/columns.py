@@ -73,7 +73,9 @@ SHEET = (
            shown=(Shown("rise", ".3g", table=FILMS),), more="with `oil.density` and `oil.heat_capacity`; if the case "
            "gives none, 2000 J/(kg K), or with heat that of the oil at 80 degC"),
     Column("force_error_relative", "", "relative error of the force, from other meshes", attrgetter("force_error"),
-           shown=(Shown("err.", ".0e", table=FILMS),), key="error.force_relative"),
+           key="error.force_relative"),
+    Column("largest_error", "", "largest relative error of force, h, p, loss and flow",
+           shown=(Shown("err.", ".0e", table=FILMS),), key="", flat=False),
     Column("temperature", "K", "temperature of the film, with heat",
            shown=(Shown("temperature, degC", ".2f", "degC", WARM),)),
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("viscosity, mPa s", ".4g", "mPa s", WARM),)),
@@ -82,6 +84,12 @@ SHEET = (
     DAMPING,
     ERROR,
     PLACE_ERROR,
+    Column("film_thickness_min_error", "m", "expected error of the smallest film thickness",
+           attrgetter("film_thickness_error"), more="that of the displacement", key="error.film_thickness_min_m"),
+    Column("p_max_error", "Pa", "expected error of the largest pressure", more="by the mesh, and by the displacement",
+           key="error.p_max_Pa"),
+    Column("power_error", "W", "expected error of the power", more="likewise", key="error.power_W"),
+    Column("side_flow_error", "m^3/s", "expected error of the flow", more="likewise", key="error.side_flow_m3_s"),
 )  # fmt: skip
 
 GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",
