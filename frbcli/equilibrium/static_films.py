@@ -122,15 +122,16 @@ def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     if not plan.form.solved:
         return ()
     if plan.form.by_cells:
-        return tuple((replace(plan, cells=cells), _share(cells)) for cells in COARSER)
+        own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
+        return tuple((replace(plan, cells=cells), _share(cells, own)) for cells in coarser)
     meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
 
 
-def _share(cells: tuple[int, int]) -> float:
-    """Share of a difference between results on CELLS and on fewer cells that is the error of the former."""
-    return float(1.0 / ((CELLS[0] / cells[0]) ** FRONTS - 1.0))
+def _share(cells: tuple[int, int], own: tuple[int, int] = CELLS) -> float:
+    """Share of a difference between results on their own cells and on fewer that is the error of the former."""
+    return float(1.0 / ((own[0] / cells[0]) ** FRONTS - 1.0))
 
 
 def _finer(mesh: Mesh) -> Mesh:
@@ -139,9 +140,12 @@ def _finer(mesh: Mesh) -> Mesh:
 
 def _plan(case: Case) -> Plan:
     """The plan of a run, or of the films alone where there is no rotor, with the cells of static results."""
+    form = form_of(case)
+    if form.static_cells:
+        return replace(_films_alone(case, "finite", form, DEFAULT_MESH, ()), cells=form.static_cells[0])
     if case.given_rotor is not None and case.given_speed is not None:
         plan = make_plan(case)
-    elif form_of(case).fine_when_static:
+    elif form.fine_when_static:
         plan = _films_alone(case, "finite", ON_CELLS, DEFAULT_MESH, ())
     else:
         films = choose_films(case, case.accuracy.target)

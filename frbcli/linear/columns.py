@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
@@ -45,6 +45,20 @@ PLACE_ERROR = Column("displacement_error", "", "expected error of the displaceme
 
 # Of a RestingFilm
 FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR, PLACE_ERROR)
+
+# Of a RestingFilm whose journal tilts
+TILTING = (
+    Column("tilt", "rad", "tilt of the journal against its shell", attrgetter("tilting.tilt"), shape=(2,),
+           more="about x and y"),
+    Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dt`", attrgetter("tilting.tilt_stiffness"), shape=(2, 2)),
+    Column("tilt_damping", "N m s", "damping in tilt `-dM/dt'`", attrgetter("tilting.tilt_damping"), shape=(2, 2)),
+)  # fmt: skip
+
+
+def film_columns(films: Iterable[Any]) -> tuple[Column, ...]:
+    """Of these RestingFilms."""
+    return (*FILM, *TILTING) if any(film.tilting is not None for film in films) else FILM
+
 
 # Of a FilmState
 SHEET = (
@@ -202,9 +216,10 @@ RESPONSE_COEFFICIENTS = (
 )
 
 
-def point_columns(films: Sequence[str]) -> tuple[Column, ...]:
-    """Of the points of a rotor with films of these names."""
-    own = [column for i, name in enumerate(films) for column in named(FILM, name if len(films) > 1 else "", _film(i))]
+def point_columns(films: Sequence[str], columns: tuple[Column, ...] = FILM) -> tuple[Column, ...]:
+    """Of the points of a rotor with films of these names; columns: of each film."""
+    names = [name if len(films) > 1 else "" for name in films]
+    own = [column for i, name in enumerate(names) for column in named(columns, name, _film(i))]
     return (*POINT[:2], *own, *POINT[2:])
 
 
