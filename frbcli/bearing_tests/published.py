@@ -51,7 +51,7 @@ class _NodeMoment(MovedFilm):
     solution: PublishedSolution
 
 
-def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None = None) -> FilmMoment:
+def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None) -> FilmMoment:
     """The film for a motion that lasts, its error estimated from half as many elements each way.
 
     start: of nearly the same motion. Raises NotConverged.
