@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from series_rotors import HEAVY
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case_text
@@ -144,28 +145,6 @@ def test_one_quantity_is_that_of_both_directions() -> None:
     assert load_case_text(one.source_text, name="rigid") == one
 
 
-HEAVY = {
-    "rotor": {"kind": "turbocharger", "modes": 200},
-    "shaft": [
-        {"length": f"{length} mm", "diameter": f"{diameter} mm"}
-        for length, diameter in ((25, 20), (33, 20), (22, 25), (105, 28), (39, 25))
-    ],
-    "disk": [
-        {"name": "nut", "position": "0 mm", "mass": "0.1 kg"},
-        {"name": "compressor", "position": "25 mm", "mass": "1 kg", "polar_inertia": "1.4e-3 kg*m^2",
-         "diametral_inertia": "1.0e-3 kg*m^2", "unbalance": "1 g*mm"},
-        {"name": "turbine", "position": "224 mm", "mass": "4 kg", "polar_inertia": "4.5e-3 kg*m^2",
-         "diametral_inertia": "4.0e-3 kg*m^2", "unbalance": "2 g*mm"},
-    ],
-    "bearing": [
-        {"kind": "coefficients", "name": "front", "position": "80 mm",
-         "stiffness": [["1.2e7 N/m", "2e6 N/m"], ["-3e6 N/m", "1.5e7 N/m"]],
-         "damping": [["3e3 N*s/m", "2e2 N*s/m"], ["2e2 N*s/m", "4e3 N*s/m"]]},
-        {"kind": "coefficients", "name": "rear", "position": "185 mm",
-         "stiffness": [["2e7 N/m", "1e6 N/m"], ["-1e6 N/m", "1.8e7 N/m"]], "damping": "5e3 N*s/m"},
-    ],
-    "speed": {"from": "100 Hz", "to": "1200 Hz", "duration": "0.5 s"},
-}  # fmt: skip
 # ross-rotordynamics 2.3.0: the shaft and the wheels of turbocharger-heavy, 16 elements for each section with
 # shear_method_calc="cowper", eigenvalues of Rotor.A(speed) as (frequency in Hz, growth in 1/s).
 ROSS = {

@@ -7,12 +7,14 @@ Z_1 + Z_2; a symmetric rotor has two of each bearing and support.
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from series_rotors import assert_eigenvalues, in_series
+from paths import DATA
+from series_rotors import HEAVY, assert_eigenvalues, in_series
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
@@ -23,8 +25,10 @@ from frbcli.linear.critical_map import critical_map
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
+from frbcli.linear.stability_point import eigenvalues
 from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.run import runup
+from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.plan import make_plan
 
 G, M, U = 9.81, 6.0, 3e-6  # m/s^2, kg, kg m
@@ -244,3 +248,32 @@ def test_analyses_of_a_rotor_on_the_ground_refuse_supports() -> None:
     assert natural_modes(heavy).stiffness_N_m == ()  # the free shaft has no supports
     with pytest.raises(InputError, match="has no effect"):
         load_case("bearing", ['bearing.support={mass="1 kg", stiffness="1e7 N/m"}'])
+
+
+ROSS = tomllib.loads((DATA / "ross-supports.toml").read_text())
+
+
+def heavy_on_supports() -> frbcli.Case:
+    bearings = [bearing | {"support": each} for bearing, each in zip(HEAVY["bearing"], ROSS["support"], strict=True)]
+    return case_from_dict(HEAVY | {"bearing": bearings}, "heavy")
+
+
+@pytest.mark.parametrize("speed_Hz", [0, 400, 1200])
+def test_a_shaft_on_supports_has_the_damped_modes_of_ross(speed_Hz: int) -> None:
+    none = np.zeros((0, 2, 2))
+    values = eigenvalues(make_rotor(heavy_on_supports()), 2.0 * math.pi * speed_Hz, none, none)
+    expected = np.array(ROSS["modes"][str(speed_Hz)])
+    found = values[values.imag > 1.0]
+    found = found[np.argsort(found.imag)][: len(expected)]
+    np.testing.assert_allclose(found.imag / (2.0 * math.pi), expected[:, 0], rtol=1e-6)
+    np.testing.assert_allclose(found.real, expected[:, 1], rtol=1e-5)
+
+
+def test_a_shaft_on_supports_answers_its_unbalance_as_in_ross() -> None:
+    """Amplitude and phase of wheels, journals and supports; here the unbalance points to y at angle 0."""
+    found = response(heavy_on_supports(), [150.0, 350.0, 700.0])
+    for axis, name in enumerate("xy"):
+        for point, each in ROSS["response"][name].items():
+            expected = 1e-9j * (np.array(each) @ [1.0, 1.0j])
+            motion = found.motion[:, found.points.index(point), axis]
+            np.testing.assert_allclose(motion, expected, atol=1e-5 * np.abs(expected).max())
