@@ -22,7 +22,7 @@ from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
-from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 UNKNOWN = math.nan
@@ -88,7 +88,7 @@ def _force(section: Section, film: ShortFilm | SuppliedShortFilm, motion: Motion
 
 
 def _strength(film: ShortFilm | SuppliedShortFilm, section: Section, motion: Motion, phi: Array) -> Array:
-    """A of P = A z (1 - z) + sigma z, with w = v - (omega/2) J d along n = (sin phi, -cos phi)."""
+    """A of P = A z (1 - z) + sigma z, see sealed_shape, with w = v - (omega/2) J d along n = (sin phi, -cos phi)."""
     (x, y), (v_x, v_y), half = motion.d, motion.v, 0.5 * motion.omega
     along = (v_x + half * y) * np.sin(phi) - (v_y - half * x) * np.cos(phi)
     return np.asarray(-0.5 * film.slenderness * along / gap_height(section, motion.d, phi) ** 3)
@@ -106,7 +106,8 @@ def _pressures(
 ) -> Array:
     """(m, k) Pa absolute at angles phi (m,) and places z (k,) over the width of the rectangle."""
     sigma, level = _edges(section, film)
-    scaled = _strength(film, section, motion, phi)[:, None] * z * (1.0 - z) + sigma * z
+    a, b = sealed_shape(section.seals)
+    scaled = _strength(film, section, motion, phi)[:, None] * (z * (1.0 - z) + a + (b - 1.0) * z) + sigma * (a + b * z)
     return np.asarray(section.ambient_pressure + section.pressure_scale * np.maximum(scaled, level))
 
 
@@ -126,7 +127,8 @@ def _loads(
     d, (sigma, _) = np.array(motion.d), _edges(section, film)
     angles = 2.0 * math.pi * np.arange(ANGLES) / ANGLES
     strength = float(_strength(film, section, motion, angles).max())
-    summit = min(0.5 * (strength + sigma) / strength, 1.0) if strength > 0.0 else 1.0  # along z, where A is largest
+    rise = sealed_shape(section.seals)[1] * (strength + sigma)  # at z = 0
+    summit = min(0.5 * rise / strength, 1.0) if strength > 0.0 else 1.0  # along z, where A is largest
     pressures = _pressures(section, film, motion, angles, np.append(np.linspace(0.0, 1.0, 33), summit))
     resistance = section.viscosity * section.radius**3 * section.bearing_width / section.clearance
     couette = -resistance * 2.0 * math.pi / math.sqrt(1.0 - float(d @ d)) * motion.omega

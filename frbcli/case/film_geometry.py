@@ -77,6 +77,25 @@ class Lobes(Model):
     )
 
 
+class SealedEnds(Model):
+    """Ends with a seal, such as a piston ring, beyond which lies the air."""
+
+    sealed: Fraction = Field(
+        description="share of the flow of an open end that a film of constant gap, fed in a groove or the middle of "
+        "its width, lets out: 1 is open, 0 lets out none"
+    )
+
+
+def _ends_form(given: object) -> str:
+    return "(sealed)" if isinstance(given, dict | SealedEnds) else "(open)"
+
+
+AnyEnds = Annotated[
+    Annotated[Literal["free-to-air", "oil-bath"], Tag("(open)")] | Annotated[SealedEnds, Tag("(sealed)")],
+    Discriminator(_ends_form),
+]
+
+
 class FilmGeometry(Model):
     """The geometry of one film, its supply and its ends."""
 
@@ -84,9 +103,10 @@ class FilmGeometry(Model):
     diameter: Length = Field(description="of the journal")
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
-    ends: Literal["free-to-air", "oil-bath"] = Field(
-        default="free-to-air", description="no oil comes in at the ends (4.36), or they lie in oil at ambient pressure"
-    )
+    given_ends: AnyEnds = Field(
+        default="free-to-air", alias="ends", description="no oil comes in at the ends (4.36), or they lie in oil at "
+        "ambient pressure, or a table with `sealed`: they let out a share of the flow into the air",
+    )  # fmt: skip
     supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
@@ -95,6 +115,24 @@ class FilmGeometry(Model):
         default=None,
         description="beta of the flow of a concentric film, for thermal.side_flow; 1 for a groove around, else 0.6",
     )
+
+    @property
+    def ends(self) -> Literal["free-to-air", "oil-bath"]:
+        """What lies at the ends, beyond seals."""
+        return "free-to-air" if isinstance(self.given_ends, SealedEnds) else self.given_ends
+
+    @property
+    def sealed(self) -> float:
+        """Share of the flow of an open end that the ends let out, 1 without seals."""
+        return self.given_ends.sealed if isinstance(self.given_ends, SealedEnds) else 1.0
+
+    @property
+    def sealing(self) -> tuple[str, str] | None:
+        """The line of the plan on sealed ends: their share, and what it stands for; None without seals."""
+        if self.sealed == 1.0:
+            return None
+        reason = "let out that share of the flow of open ends where a constant gap is fed in the middle or by a groove"
+        return f"sealed, {self.sealed:g}", f"{reason}; air beyond"
 
     @property
     def clearance(self) -> float:

@@ -46,6 +46,7 @@ from frbcli.case.surroundings.base import Bases
 from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
+from frbcli.case.surroundings.magnetic_pull import MagneticPull
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.case.thermal import Thermal
@@ -91,11 +92,6 @@ class FilmModel(Model):
     )
     solution: Literal["auto", "table", "cells"] = Field(
         default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
-    )
-    tilt: Literal["none", "follows"] = Field(
-        default="none",
-        description="the gap is even along the axis, or follows the tilt of the shaft in it; in stability, damped "
-        "modes and response",
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare
@@ -261,6 +257,9 @@ class Case(Model):
     disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
     forces: tuple[AppliedForce, ...] = Field(
         default=(), alias="force", description="forces on places of the machine beside unbalance and weight"
+    )
+    magnetic_pulls: tuple[MagneticPull, ...] = Field(
+        default=(), alias="magnetic_pull", description="of electrical machines on places of the rotor"
     )
     bases: Bases = Field(default=(), alias="base", description="motion of the ground that the machine stands on")
     given_bearings: Bearings = Field(

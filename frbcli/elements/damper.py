@@ -66,4 +66,5 @@ class DamperElement(MachineElement):
         spring = "no centring spring: it sinks under a static load"
         if any(self.given.spring):
             spring = f"centring spring {directions(self.given.spring, 'N/m')}, which carries the static load"
+            spring += ", the shell in the centre" if self.given.centred else ""
         return "damper", value, f"{spring}; {FILM}"

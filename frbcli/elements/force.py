@@ -34,14 +34,10 @@ class ForceElement(MachineElement):
         for number, force in enumerate(case.forces):
             yield cls(f"force.{number}", f"force {number + 1}", node_at(case, force.at), force)
 
-    def count(self, site: Site) -> float:
-        """Equal forces in the machine."""
-        return 1.0 if self.node.startswith(("disk", "housing")) else site.count
-
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
         given = self.given
-        x, y = np.multiply(self.count(site), given.amplitude).tolist()
+        x, y = np.multiply(equal_places(self.node, site), given.amplitude).tolist()
         if given.constant:
             return Parts(forces=(NodeForce(self.node, (x, y)),))
         if given.over_time is not None:
@@ -57,7 +53,12 @@ class ForceElement(MachineElement):
         """See MachineElement."""
         x, y = (display(each, "N") for each in self.given.amplitude)
         turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
-        where = "at each of both equal bearings" if self.count(site) > 1.0 else "at one place"
+        where = "at each of both equal bearings" if equal_places(self.node, site) > 1.0 else "at one place"
         value = f"{self.node.replace('_', ' ')}: {x} in x, {y} in y"
         reason = f"{'constant, ' if self.given.constant else turning}{where}; beside unbalance and weight"
         return "force", value, reason
+
+
+def equal_places(node: str, site: Site) -> float:
+    """Places of the machine that a node stands for."""
+    return 1.0 if node.startswith(("disk", "housing")) else site.count

@@ -11,12 +11,13 @@ from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
 from frbcli.elements.force import ForceElement
 from frbcli.elements.housing import HousingElement
+from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
     GivenCoefficients, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
-    BaseElement,
+    MagneticPullElement, BaseElement,
 )  # fmt: skip
 
 

@@ -12,6 +12,8 @@ from frbcli.film.grid import Array
 
 Displacement = tuple[float, float] | tuple[Array, Array]  # x, y over the clearance; along the axis if it tilts
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
+OPEN_ENDS = ("oil-bath", "free-to-air")
+CLOSED = 1e-7  # share of the flow of an open end that stands for none: the limit of tight seals
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
 LARGEST_ECCENTRICITY = 0.9999  # end of the tables
@@ -75,7 +77,8 @@ class Section:
     """One rectangular section of a film, SI units; pressures are gauge, over the ambient pressure.
 
     width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
-    far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2).
+    far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
+    open end that the ends let out, 1 without seals.
     """
 
     radius: float
@@ -92,6 +95,18 @@ class Section:
     grooves: tuple[AxialGroove, ...] = ()
     holes: tuple[Hole, ...] = field(default=())
     lobes: LobedShell | None = None
+    sealed: float = 1.0
+
+    @property
+    def seals(self) -> tuple[float, float]:
+        """Resistance of the ends z = 0 and z = 1, as the length of a land over the width, 0 without a seal.
+
+        With the land L between an end and a groove, or the middle, a film of constant gap that is fed there lets out
+        the share s through a seal that is worth L (1 / s - 1).
+        """
+        land = self.width if self.far == "groove" else 0.5 * self.bearing_width
+        each = land / self.width * (1.0 / max(self.sealed, CLOSED) - 1.0)
+        return each, each if self.far in OPEN_ENDS else 0.0
 
     @property
     def pressure_scale(self) -> float:
@@ -158,9 +173,11 @@ def smallest_gap(section: Section, d: tuple[float, float]) -> float:
 SUPPLY_LENGTH = 0.1  # z_1 of (6.2): share of the bearing's width over which a groove's pressure rises from its end
 
 
-def groove_pressure(groove: AxialGroove, distance: Array, bearing_width: float) -> Array:
-    """Gauge pressure in an axial groove at the distance (n,) in m from the nearer end of the bearing, (6.2)."""
-    return groove.pressure * (1.0 - np.exp(-distance / (SUPPLY_LENGTH * bearing_width)))
+def groove_pressure(section: Section, groove: AxialGroove, distance: Array) -> Array:
+    """Gauge pressure in an axial groove at the distance (n,) in m from the nearer end of the bearing, (6.2); it falls
+    less towards an end that lets out a share of the flow alone."""
+    falls = np.exp(-distance / (SUPPLY_LENGTH * section.bearing_width))
+    return groove.pressure * (1.0 - section.sealed * falls)
 
 
 def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Array) -> Array:

@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 # Axial modes of films between axial grooves, of those that a load independent of z excites: the next has a hundredth of
 # a per cent of the force.
 CHAIN_MODES = 5
+NO_SEALS = (0.0, 0.0)
 
 
 @dataclass(frozen=True)
@@ -31,7 +32,8 @@ class Mesh:
 class AxialModes:
     """The axial half of the separated problem on quadratic elements.
 
-    eigenvalues: (k,) of K_z phi = lambda M_z phi, pressure zero at both ends; loads: (k,) integral of each mode over
+    eigenvalues: (k,) of K_z phi = lambda M_z phi, pressure zero at open ends, dphi/dz = phi / seal at sealed ones;
+    seals: see Section; loads: (k,) integral of each mode over
     z (its share of a load that does not depend on z); shapes: (k, n) values at the n axial nodes; nodes: (n,) in [0,
     1].
     Modes without a share in such a load (the odd ones) are left out: they stay zero.
@@ -42,6 +44,7 @@ class AxialModes:
     shapes: Array
     nodes: Array
     mass: Array
+    seals: tuple[float, float] = NO_SEALS
 
     def project(self, values: Array) -> Array:
         """(k,) coefficients of a pressure given at the nodes (n,): the modes are orthonormal in M_z."""
@@ -87,7 +90,7 @@ def axial_vertices(elements: int) -> Array:
     return 0.5 * (1.0 - np.cos(np.pi * np.arange(elements + 1) / elements))
 
 
-def axial_modes(vertices: Array) -> AxialModes:
+def axial_modes(vertices: Array, seals: tuple[float, float] = NO_SEALS) -> AxialModes:
     """Generalised eigenvectors of the axial stiffness and mass on quadratic elements of [0, 1] between the vertices."""
     from scipy.linalg import eigh
 
@@ -97,10 +100,13 @@ def axial_modes(vertices: Array) -> AxialModes:
         its = slice(2 * element, 2 * element + 3)
         k_z[its, its] += ELEMENT_STIFFNESS / length
         m_z[its, its] += ELEMENT_MASS * length
-    inner = slice(1, -1)
+    for node, seal in zip((0, -1), seals, strict=True):
+        if seal > 0.0:
+            k_z[node, node] += 1.0 / seal
+    inner = slice(0 if seals[0] > 0.0 else 1, len(nodes) if seals[1] > 0.0 else -1)
     eigenvalues, vectors = eigh(k_z[inner, inner], m_z[inner, inner])
     shapes = np.zeros((len(eigenvalues), len(nodes)))
     shapes[:, inner] = vectors.T
     loads = shapes @ m_z.sum(axis=1)
-    excited = np.abs(loads) > 1e-10 * np.abs(loads).max()
-    return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes, m_z)
+    excited = np.abs(loads) > 1e-6 * np.abs(loads).max()
+    return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes, m_z, seals)

@@ -215,12 +215,15 @@ def _symmetric(case: Case) -> str:
 
 
 def _forces(case: Case, scale: _SketchScale, places: Callable[[str], tuple[float, ...]]) -> Iterator[str]:
-    """An arrow with its number for each force of a case at the places of its node, in m; it shows no direction."""
-    for number, force in enumerate(case.forces, start=1):
-        for at in places(node_at(case, force.at)):
+    """An arrow with its number for each force F and each magnetic pull M of a case at the places of its node, in m; it
+    shows no direction."""
+    acting = [(f"F{number}", force.at) for number, force in enumerate(case.forces, start=1)]
+    acting += [(f"M{number}", pull.at) for number, pull in enumerate(case.magnetic_pulls, start=1)]
+    for name, place in acting:
+        for at in places(node_at(case, place)):
             x = scale.left + scale.per_m * at
             yield from _arrow([(x, scale.middle - FORCE), (x, scale.middle)])
-            yield text(x + 6.0, scale.middle - 0.6 * FORCE, f"F{number}", anchor="start")
+            yield text(x + 6.0, scale.middle - 0.6 * FORCE, name, anchor="start")
 
 
 def _place(case: Case, number: int) -> float:

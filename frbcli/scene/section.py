@@ -39,6 +39,7 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         grooves=opened.grooves,
         holes=holes,
         lobes=_lobes(bearing),
+        sealed=bearing.sealed,
     )
 
 

@@ -17,6 +17,7 @@ from scipy.optimize import brentq
 import frbcli
 from frbcli.analysis.signals import bearing_clearance, point_of
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
+from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.film.rectangles.short import short_pressure
 from frbcli.linear.damped_modes import damped_modes
@@ -83,6 +84,14 @@ def test_a_centred_orbit_in_a_short_film_has_the_stiffness_and_damping_of_the_cl
         force = films.force(0, e * CLEARANCE * along, OMEGA * e * CLEARANCE * across, 0.0).force
         stiffness, damping = -force @ along / (e * CLEARANCE), -force @ across / (e * CLEARANCE * OMEGA)
         np.testing.assert_allclose((stiffness, damping), centred_orbit(e), rtol=1e-9)
+
+
+@pytest.mark.parametrize("share", [1.0, 0.2])
+def test_sealed_ends_multiply_the_closed_form_of_a_short_film(share: float) -> None:
+    e, films = 0.5, system(damped(ends={"sealed": share})).films
+    found = films.force(0, np.array([e * CLEARANCE, 0.0]), np.array([0.0, OMEGA * e * CLEARANCE]), 0.0)
+    expected = (3.0 / share - 2.0) * np.array(centred_orbit(e))
+    np.testing.assert_allclose(found.force / (-e * CLEARANCE * np.array([1.0, OMEGA])), expected, rtol=1e-9)
 
 
 def test_the_largest_pressure_of_a_centred_orbit() -> None:
@@ -181,6 +190,27 @@ def test_the_jumps_of_a_damper_that_stiffens_are_the_folds_of_the_closed_form(tm
     jump_up = speed[down][np.argmax((found > 0.75)[down])]
     assert upper - 0.5 < jump_down < 1.03 * upper  # not before the circle ends, and after it has had time to leave it
     assert 0.97 * lower < jump_up < lower + 0.5
+
+
+def fold(three: float, one: float) -> float:
+    """The speed in Hz at which the number of circles changes from three to one."""
+    while abs(one - three) > 1e-4:
+        middle = 0.5 * (one + three)
+        three, one = (middle, one) if len(circles(middle)) == 3 else (three, middle)
+    return three
+
+
+def test_the_branch_of_limit_cycles_with_unbalance_turns_back_in_the_folds_of_the_closed_form() -> None:
+    """Of a film half of which cavitates: stable before the one fold and behind the other, unstable in between."""
+    found = limit_cycles(load_case_text(BISTABLE)).synchronous
+    places = [number for number, point in enumerate(found) if point.kind == "fold"]
+    speeds = [found[number].speed_Hz for number in places]
+    np.testing.assert_allclose(speeds, [fold(110.0, 95.0), fold(140.0, 150.0)], rtol=1e-4)
+    small, between, large = found[: places[0]], found[places[0] + 1 : places[1]], found[places[1] + 1 :]
+    assert all(point.stable for point in (*small, *large))
+    assert not any(point.stable for point in between)
+    for point in (small[-3], between[10], large[-1]):
+        assert np.abs(np.array(circles(point.speed_Hz)) - point.eccentricity_max[0]).min() < 1e-4
 
 
 FULL = ("oil.ambient_pressure=3 bar", "oil.cavitation_pressure=1 bar")  # no part of the film cavitates at rest
@@ -288,6 +318,33 @@ def test_the_spring_carries_the_weight() -> None:
     assert findings(heavy).films[0].load == pytest.approx(9.81 * (0.5 * M + SHELL), rel=1e-9)
 
 
+@pytest.mark.parametrize("inner", ["coefficients", "film"])
+def test_a_spring_that_is_set_for_the_weight_holds_the_shell_in_the_centre(inner: str) -> None:
+    """The rotor sinks in its bearings alone, and half a film has the damping of its centre."""
+    case = damped(settings=("rotor.gravity=9.81 m/s^2", "bearing.damper.centred=true"))
+    if inner == "film":
+        case = load_case_text(SEMI_FLOATING + IN_DAMPER + 'spring = "1e6 N/m"\ncentred = true\n')
+    (point,) = stability(case, [80.0]).points
+    np.testing.assert_allclose(point.films[-1].displacement, 0.0, atol=1e-9)
+    if inner == "coefficients":
+        np.testing.assert_allclose(point.films[0].damping, 0.5 * math.pi * CUBE * np.eye(2), atol=1e-5 * CUBE)
+        system_ = system(case)
+        held = np.linalg.solve(system_.rotor.stiffness, system_.rotor.static_load)
+        place = dict(system_.rotor.points)
+        assert (place["journal"] @ held)[1] == pytest.approx(-9.81 * 0.5 * M / K, rel=1e-9)
+        assert abs((place["shell"] @ held)[1]) < 1e-18
+    assert "in the centre" in next(each.reason for each in make_plan(case).decisions if each.choice == "damper")
+
+
+def test_the_preset_of_a_loaded_damper_on_a_support_leaves_the_support_its_weight() -> None:
+    support = {"mass": "4 kg", "stiffness": "3e7 N/m"}
+    case = damped(settings=("rotor.gravity=9.81 m/s^2", "bearing.damper.centred=true"))
+    rotor = make_rotor(case.with_settings({"bearing.support": support}))
+    place, rest = dict(rotor.points), np.linalg.solve(rotor.stiffness, rotor.static_load)
+    sunk = -9.81 * (0.5 * M + SHELL + 4.0) / 3e7
+    np.testing.assert_allclose([(place[name] @ rest)[1] for name in ("shell", "support")], sunk, rtol=1e-9)
+
+
 WEIGHT = "rotor.gravity=9.81 m/s^2"
 REFUSED = {
     "a film that cavitates off its centre": ((WEIGHT,), {}, STABILITY, "cavitation", "opposite velocities"),
@@ -336,6 +393,7 @@ FAULTS = {
     "slack spring": ({"spring": ["1e7 N/m", "0 N/m"]}, "bearing.damper.spring.1", "than 0"),
     "no clearance": ({"clearance": None}, "bearing.damper.clearance", "is missing"),
     "too thick": ({"clearance": "20 mm"}, "bearing.damper.clearance", "too large"),
+    "centred without a spring": ({"centred": True, "spring": None}, "bearing.damper.centred", "no effect"),
     "law": ({"cavitation": "none"}, "bearing.damper.cavitation", "not"),
     "unknown": ({"springs": "1e7 N/m"}, "bearing.damper.springs", "not known"),
     "supply": ({"supply": {"kind": "circumferential-groove"}}, "bearing.damper.supply.pressure", "is missing"),

@@ -42,12 +42,15 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _body(path: Path, given: object, data: Mapping[str, Any]) -> Iterator[Breach]:
-    """What is wrong with the mass of a damper or a support."""
+    """What is wrong with the body of a damper or a support."""
     if not isinstance(given, dict):
         return
     if "rotor" not in data:
         problem = "has no effect: a kinematic test moves the journal against its shell."
         yield Breach(path, problem, "Remove it, or add [rotor] and [speed].")
+    if given.get("centred") is True and "spring" not in given:
+        problem = "has no effect: no spring carries the static load."
+        yield Breach((*path, "centred"), problem, 'Remove it, or write e.g. spring = "1e7 N/m".')
     if number(given, "mass", "kg") == 0.0:
         remedy = 'Write a small one, e.g. "1 g": it changes the stiffness by mass times the square of the frequency.'
         yield Breach((*path, "mass"), "is 0, and the shell is a body with an equation of motion.", remedy)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
@@ -150,7 +150,8 @@ def _choices(field: FieldInfo | None) -> list[str]:
     if field is None:
         return []
     annotation = field.annotation
-    literals = [annotation] if get_origin(annotation) is Literal else list(get_args(annotation))
+    forms = [annotation] if get_origin(annotation) is Literal else list(get_args(annotation))
+    literals = [get_args(form)[0] if get_origin(form) is Annotated else form for form in forms]
     return [str(name) for literal in literals if get_origin(literal) is Literal for name in get_args(literal)]
 
 

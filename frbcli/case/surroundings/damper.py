@@ -20,3 +20,7 @@ class Damper(RingFilm):
         default=NO_SPRING,
         description="stiffness of the centring spring: of both directions, or [x, y]; without a spring if not given",
     )
+    centred: bool = Field(
+        default=False, description="whether the spring is set so that the shell rests in the centre under the static "
+        "load; else it sinks by load over stiffness",
+    )  # fmt: skip

@@ -54,9 +54,7 @@ def force_breaches(case: Case) -> Iterator[Breach]:
             yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
             continue
         if not node_at(case, force.at):
-            both = f"journal_{force.at}" in places(case)
-            problem = "is both a bearing and a disk." if both else "is no place of the machine."
-            yield Breach((*path, "at"), problem, did_you_mean(force.at, places(case)))
+            yield Breach((*path, "at"), *_no_place(case, force.at))
         if force.order is not None and force.frequency is not None:
             yield Breach((*path, "frequency"), "is given beside order.", "Keep one of the two.")
         for key in ("order", "frequency"):
@@ -68,6 +66,26 @@ def force_breaches(case: Case) -> Iterator[Breach]:
             yield Breach((*path, "force"), "is missing.", 'Write e.g. ["10 N", "0 N"].')
         elif force.phase and force.constant:
             yield Breach((*path, "phase"), "has no effect: the force is constant.", "Remove it, or give an order.")
+
+
+def pull_breaches(case: Case) -> Iterator[Breach]:
+    """Every broken rule of the magnetic pulls of a case."""
+    for number, given in enumerate(case.magnetic_pulls):
+        path: Path = ("magnetic_pull", number)
+        if case.given_rotor is None:
+            yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
+            continue
+        for key, place in (("at", given.at), ("stator", given.stator)):
+            if (place or key == "at") and not node_at(case, place):
+                yield Breach((*path, key), *_no_place(case, place))
+        if given.stator and node_at(case, given.stator) == node_at(case, given.at):
+            yield Breach((*path, "stator"), "is the place of the rotor.", "Name what carries the stator, or remove it.")
+
+
+def _no_place(case: Case, at: str) -> tuple[str, str]:
+    """Problem and remedy of a place that the machine does not have."""
+    both = f"journal_{at}" in places(case)
+    return "is both a bearing and a disk." if both else "is no place of the machine.", did_you_mean(at, places(case))
 
 
 def base_breaches(case: Case) -> Iterator[Breach]:

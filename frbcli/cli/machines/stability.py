@@ -69,7 +69,7 @@ def command(
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
-    if natural and _on_supports(found):
+    if natural and _beside_bearings(found):
         terminal.result("On supports, the modes are those of the whole machine: frb stability --shapes SPEED.")
     elif len(natural) == 1 and found.points[-1].rests:
         at = f"{found.points[-1].speed_Hz:.4g} Hz"
@@ -120,7 +120,7 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     if found.case.rotor.symmetric:
         return []
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
-    if _on_supports(found):
+    if _beside_bearings(found):
         return wanted
     for point in found.points[-1:]:
         springs = film_springs(found.case, point.films) if point.films else ()
@@ -129,10 +129,10 @@ def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     return wanted
 
 
-def _on_supports(found: Stability) -> bool:
-    from frbcli.scene.machine.elements import moving_carriers
+def _beside_bearings(found: Stability) -> bool:
+    from frbcli.scene.machine.elements import beside_bearings
 
-    return bool(moving_carriers(found.case))
+    return bool(beside_bearings(found.case))
 
 
 def _sentence(found: Stability) -> str:
@@ -169,9 +169,9 @@ def _character(kind: ThresholdKind) -> str:
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
     from frbcli.columns import document, documents, keys
-    from frbcli.linear.columns import FILM, MODES, POINT, film_columns
+    from frbcli.linear.columns import FILM, MODES, POINT
 
-    told, films = document(POINT, point), documents(film_columns(point.films), point.films)
+    told, films = document(POINT, point), documents(FILM, point.films)
     errors = told.pop("error") | (films[0]["error"] if films else {})
     told |= (films[0] if films else dict.fromkeys(keys(FILM))) | {"error": errors}
     if len(films) > 1:

@@ -138,7 +138,8 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     section, scales, law = film.section, film.scales, film.law
     own.aspect, own.force_scale = section.aspect, section.force_scale
     own.scales.reference, own.scales.cavitation, own.scales.ambient = scales
-    for end, edge, slope in zip((own.near, own.far), (section.near, section.far), end_slopes(film.grid.z), strict=True):
+    slopes = end_slopes(film.grid.z, section.seals)
+    for end, edge, slope in zip((own.near, own.far), (section.near, section.far), slopes, strict=True):
         end.kind, end.rise, end.bend = ENDS[edge], *slope
     own.far.pressure = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
     own.follow_at, own.cells_at = addresses(law)

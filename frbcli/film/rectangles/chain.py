@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import CHAIN_MODES, Array, Mesh, axial_modes, axial_vertices
+from frbcli.film.grid import CHAIN_MODES, NO_SEALS, Array, Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.clip import cut_element
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, SLOPE
 from frbcli.film.rectangles.table import half_width_lines
@@ -63,13 +63,16 @@ def chain_grid(edges: Array, elements: int) -> Array:
     return np.ascontiguousarray(np.hstack(columns))
 
 
-def chain_table(mesh: Mesh, radius_to_width: float, profile: Callable[[Array], Array], constant: Array) -> Array:
+def chain_table(
+    mesh: Mesh, radius_to_width: float, profile: Callable[[Array], Array], constant: Array,
+    seals: tuple[float, float] = NO_SEALS,
+) -> Array:  # fmt: skip
     """(1, 1, SHAPES + CHAIN_MODES, c) axial table.
 
     profile: scaled gauge pressure in the grooves at the axial positions (n,) in [0, 1]; constant: (2,) integral of n
     times pressure over all that is not solved: the grooves.
     """
-    modes = axial_modes(axial_vertices(mesh.axial))
+    modes = axial_modes(axial_vertices(mesh.axial), seals)
     kept = min(CHAIN_MODES, len(modes.loads))
     lines = mesh.lines * LINES
     positions, weights = half_width_lines(lines)

@@ -35,7 +35,7 @@ from frbcli.film.rectangles.chain import LENGTH as ELEMENT_LENGTH
 from frbcli.film.rectangles.fields import CONTRACTION
 from frbcli.film.rectangles.film_force import NEAR_CENTRE, FilmData
 from frbcli.film.rectangles.modal import GAUSS_WEIGHTS, SHAPE, unit_fields
-from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
 from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis
 
 MESH = Mesh(axial=16, circumferential=96)  # of the fields: 0.1 % of the flow
@@ -44,8 +44,8 @@ PARABOLA = 0.5  # slope at the ends of the solution of -P'' = 1
 
 
 class TableEndFlow(NamedTuple):
-    """unit: ends R^3/b in m^2; sigma: scaled gauge pressure of the supply, 1/s; table (n, 2, p) of H^3 dP/dz by a unit
-    w_r and w_t over half a turn; ring (2, p): cosines, weights of the integral."""
+    """unit: ends R^3/b in m^2; sigma: slope of the scaled pressure by the supply, 1/s; table (n, 2, p) of H^3 dP/dz by
+    a unit w_r and w_t over half a turn; ring (2, p): cosines, weights of the integral."""
 
     unit: float
     sigma: float
@@ -69,7 +69,9 @@ EndFlow = TableEndFlow | ChainEndFlow
 
 
 def end_slopes(modes: AxialModes) -> Array:
-    """(k,) slopes of the modes at z = 0, by the first quadratic element."""
+    """(k,) slopes of the modes at z = 0: by the seal, or by the first quadratic element."""
+    if modes.seals[0] > 0.0:
+        return np.asarray(modes.shapes[:, 0] / modes.seals[0])
     slopes: Array = (4.0 * modes.shapes[:, 1] - modes.shapes[:, 2]) / modes.nodes[2]
     return slopes
 
@@ -78,7 +80,7 @@ def make_end_flow(section: Section, film: FilmData) -> EndFlow:
     """The flow through the ends of a bearing with this film, half-Sommerfeld or Sommerfeld."""
     radius, width = section.radius, section.width
     if isinstance(film, ChainFilm):
-        modes = axial_modes(axial_vertices(MESH.axial))
+        modes = axial_modes(axial_vertices(MESH.axial), section.seals)
         kept = film.table.shape[2] - SHAPES
         slopes, loads = end_slopes(modes), modes.loads
         rest = PARABOLA - float(np.sum((slopes * loads / modes.eigenvalues)[:kept]))
@@ -89,8 +91,9 @@ def make_end_flow(section: Section, film: FilmData) -> EndFlow:
         )
     ends = section.copies if section.far == "groove" else 2  # a groove at one end leaves one
     short = isinstance(film, ShortFilm | SuppliedShortFilm)
-    table, ring = _slope_table(radius / width, short)
-    return TableEndFlow(ends * radius**3 / width, section.far_pressure / section.pressure_scale, table, ring)
+    table, ring = _slope_table(radius / width, short, section.seals)
+    sigma = sealed_shape(section.seals)[1] * section.far_pressure / section.pressure_scale
+    return TableEndFlow(ends * radius**3 / width, sigma, table, ring)
 
 
 def _corner(section: Section, modes: AxialModes, slopes: Array, kept: int) -> float:
@@ -98,12 +101,12 @@ def _corner(section: Section, modes: AxialModes, slopes: Array, kept: int) -> fl
     have in the groove decays with sqrt(lambda) R/b, before the gap changes."""
     groove = section.grooves[0]
     width = section.bearing_width
-    pressure = groove_pressure(groove, np.minimum(modes.nodes, 1.0 - modes.nodes) * width, width)
+    pressure = groove_pressure(section, groove, np.minimum(modes.nodes, 1.0 - modes.nodes) * width)
     decay = np.sqrt(modes.eigenvalues) * section.radius / width
     return float(np.sum((slopes * modes.project(pressure) / decay)[kept:])) / section.pressure_scale
 
 
-def _slope_table(radius_to_width: float, short: bool) -> tuple[Array, Array]:
+def _slope_table(radius_to_width: float, short: bool, seals: tuple[float, float]) -> tuple[Array, Array]:
     vertices = ring_vertices(MESH.circumferential, CONTRACTION)
     ends = np.append(vertices, 2.0 * np.pi)
     theta = np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])]))[: MESH.circumferential + 1]
@@ -111,10 +114,10 @@ def _slope_table(radius_to_width: float, short: bool) -> tuple[Array, Array]:
     weights = 0.5 * (np.append(steps, 0.0) + np.append(0.0, steps))
     ring = np.array([np.cos(theta), weights])
     eccentricities = eccentricity_axis()
-    rest, parabola = PARABOLA, -(radius_to_width**-2) * np.array([np.cos(theta), np.sin(theta)])
+    rest, parabola = PARABOLA * sealed_shape(seals)[1], -(radius_to_width**-2) * np.array([ring[0], np.sin(theta)])
     table = np.zeros((len(eccentricities), 2, len(theta)))
     if not short:
-        modes = axial_modes(axial_vertices(MESH.axial))
+        modes = axial_modes(axial_vertices(MESH.axial), seals)
         slopes = end_slopes(modes)
         rest -= float(np.sum(slopes * modes.loads / modes.eigenvalues))
         for i, eccentricity in enumerate(eccentricities):

@@ -13,16 +13,18 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import NO_SEALS, Array, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.hermite import hermite
 from frbcli.film.rectangles.clip import cut_element, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
-from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis, half_width_lines
+from frbcli.film.rectangles.short import sealed_shape
+from frbcli.film.rectangles.table import DEPTH_STEP, axial_lines, eccentricity_axis
 
 CONTRACTION = 0.35  # one grid for all eccentricities, see ring_vertices
 LINES = 8  # Gauss points over half the width: the edge of the cavity crosses them at any slope
 
-# Rows of the grid: element boundaries and lengths; positions and shares of the axial lines (the first columns);
+# Rows of the grid: element boundaries and lengths; positions, where sealed the share of the supply pressure there, and
+# shares of the axial lines (the first columns);
 # the six rows of force_weights.
 VERTICES, LENGTHS, POSITIONS, SHARES, WEIGHTS = range(5)
 
@@ -43,13 +45,13 @@ def field_vertices(mesh: Mesh) -> Array:
     return ring_vertices(mesh.circumferential, CONTRACTION)
 
 
-def field_table(mesh: Mesh, radius_to_width: float) -> Array:
+def field_table(mesh: Mesh, radius_to_width: float, seals: tuple[float, float] = NO_SEALS) -> Array:
     """(n, 4, lines, m + 1) fields of one section at the axial lines over the half turn 0 <= Theta <= pi.
 
     Axis 1: field of a unit w_r (even in Theta), of a unit w_t (odd), and their derivatives by x = -ln(1 - eps).
     """
-    modes = axial_modes(axial_vertices(mesh.axial))
-    positions, _ = half_width_lines(mesh.lines * LINES)
+    modes = axial_modes(axial_vertices(mesh.axial), seals)
+    positions, _ = axial_lines(seals, mesh.lines * LINES)
     shapes = modes.at(positions)
     eccentricities, vertices = eccentricity_axis(), field_vertices(mesh)
     table = np.empty((len(eccentricities), 4, len(positions), mesh.circumferential + 1))
@@ -154,7 +156,7 @@ def fields_force(
     sums, cut, part, total = np.empty((5, 2)), np.empty((4, 3)), np.zeros((4, 2)), np.zeros((4, 2))
     for z in range(table.shape[2]):
         _line_fields(table, eccentricity, z, unit)
-        for side in range(2):
+        for side in range(2 if grid[POSITIONS, table.shape[2] - 1] <= 0.5 else 1):  # lines over half or all the width
             excess = sigma * (grid[POSITIONS, z] if side == 0 else 1.0 - grid[POSITIONS, z]) - level
             if _ring(unit, w_r, w_t, excess, pressure) <= 0.0:
                 continue
@@ -170,12 +172,15 @@ def fields_force(
     return (total[0, 0], total[0, 1], total[1, 0], total[2, 0], total[1, 1], total[2, 1], total[3, 0], total[3, 1])
 
 
-def field_grid(mesh: Mesh) -> Array:
+def field_grid(mesh: Mesh, seals: tuple[float, float] = NO_SEALS) -> Array:
     """(10, m) the grid that belongs to field_table, row by row: see VERTICES, LENGTHS, POSITIONS, SHARES, WEIGHTS."""
     vertices = field_vertices(mesh)
     grid = np.zeros((WEIGHTS + 6, mesh.circumferential))
     grid[VERTICES], grid[LENGTHS] = vertices, element_lengths(vertices)
-    lines = mesh.lines * LINES
-    grid[POSITIONS, :lines], grid[SHARES, :lines] = half_width_lines(lines)
+    positions, shares = axial_lines(seals, mesh.lines * LINES)
+    lines, (a, b) = len(positions), sealed_shape(seals)
+    if seals[0] != seals[1]:  # what the supply adds there; and one side of each line alone counts
+        positions, shares = a + b * positions, 2.0 * shares
+    grid[POSITIONS, :lines], grid[SHARES, :lines] = positions, shares
     grid[WEIGHTS:] = force_weights(vertices).reshape(6, -1)
     return grid

@@ -14,7 +14,7 @@ from frbcli.film.kept import kept_beside
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
 from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
-from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm
+from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_share
 from frbcli.film.rectangles.table import TableFilm, force_table, table_force
 
 EQUAL_PRESSURES = 1e-9  # relative to the ambient pressure
@@ -34,15 +34,15 @@ def make_film(section: Section, theory: str, cavitation: str, mesh: Mesh) -> Fil
     limit = EQUAL_PRESSURES * section.ambient_pressure / section.pressure_scale
     # Without cavitation the hydrostatic pressure carries nothing: it is the same all around.
     equal = not clipped or (abs(sigma) <= limit and abs(level) <= limit)
-    scale, radius_to_width = section.force_scale, section.radius / section.width
+    scale, radius_to_width, seals = section.force_scale, section.radius / section.width, section.seals
     if theory == "short":
         slenderness = radius_to_width**-2
         if equal:
-            return ShortFilm(scale, slenderness, int(clipped))
+            return ShortFilm(scale * sealed_share(seals), slenderness, int(clipped))
         return SuppliedShortFilm(scale, slenderness, sigma, level)
     if equal:
-        return TableFilm(scale, _force_table(mesh, radius_to_width, clipped))
-    return FieldsFilm(scale, sigma, level, _field_table(mesh, radius_to_width), field_grid(mesh))
+        return TableFilm(scale, _force_table(mesh, radius_to_width, clipped, seals))
+    return FieldsFilm(scale, sigma, level, _field_table(mesh, radius_to_width, seals), field_grid(mesh, seals))
 
 
 def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> ChainFilm:
@@ -51,7 +51,7 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 
     def profile(z: Array) -> Array:
         distance = np.minimum(z, 1.0 - z) * section.bearing_width
-        return groove_pressure(pressure, distance, section.bearing_width) / scale
+        return groove_pressure(section, pressure, distance) / scale
 
     grooves = sorted(section.grooves, key=lambda groove: groove.position)
     ends = np.array([groove.position + 0.5 * groove.opening for groove in grooves])
@@ -64,7 +64,7 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
     across = np.array([np.sum(np.cos(starts) - np.cos(ends)), np.sum(np.sin(starts) - np.sin(ends))])
     constant = (mean - (level if clipped else 0.0)) * across
     radius_to_width = section.radius / section.bearing_width
-    table = chain_table(mesh, radius_to_width, profile, constant)
+    table = chain_table(mesh, radius_to_width, profile, constant, section.seals)
     clip_level = level if clipped else 0.0
     return ChainFilm(section.force_scale, int(clipped), clip_level, table, grid)
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import NO_SEALS, Array, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.hermite import Slopes, Values, hermite
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -44,6 +44,15 @@ def half_width_lines(lines: int = LINES) -> tuple[Array, Array]:
     """Axial positions in [0, 1/2] and the weights that integrate an axially symmetric function over [0, 1]."""
     points, weights = np.polynomial.legendre.leggauss(lines)
     return 0.25 * (points + 1.0), 0.5 * weights
+
+
+def axial_lines(seals: tuple[float, float], lines: int = LINES) -> tuple[Array, Array]:
+    """Axial positions and weights that integrate the pressure over [0, 1]: on half the width, where both ends are
+    alike, else on twice as many lines."""
+    if seals[0] == seals[1]:
+        return half_width_lines(lines)
+    points, weights = np.polynomial.legendre.leggauss(2 * lines)
+    return 0.5 * (points + 1.0), 0.5 * weights
 
 
 def ring_contraction(eccentricity: float) -> float:
@@ -105,14 +114,16 @@ def _add_forces(
                     result[j, a, c] += weights_z[z] * part[a, c]
 
 
-def force_table(mesh: Mesh, radius_to_width: float, clipped: bool) -> Array:
+def force_table(
+    mesh: Mesh, radius_to_width: float, clipped: bool, seals: tuple[float, float] = NO_SEALS
+) -> Array:
     """(n, DIRECTIONS, 2, 4) force of one section: value, derivative by x, by the direction psi, and by both.
 
     Radial component even in psi, tangential odd. Entries are integrals of P (cos Theta, sin Theta) dz dTheta for |w| =
     1/s, with w measured as (w_r, w_t (1 - eps)^STRETCH).
     """
-    modes = axial_modes(axial_vertices(mesh.axial))
-    lines, weights = half_width_lines(mesh.lines * LINES)
+    modes = axial_modes(axial_vertices(mesh.axial), seals)
+    lines, weights = axial_lines(seals, mesh.lines * LINES)
     shapes = modes.at(lines)
     eccentricities = eccentricity_axis()
     directions = np.linspace(0.0, np.pi, DIRECTIONS)

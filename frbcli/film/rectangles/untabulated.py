@@ -14,6 +14,7 @@ from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertice
 from frbcli.film.parabola import summit
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
+from frbcli.film.rectangles.short import sealed_shape
 from frbcli.film.rectangles.table import ring_contraction
 
 LINES = 24  # Gauss points over the width
@@ -78,13 +79,13 @@ def section_pressure(
     section: Section, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
 ) -> SectionPressure:
     """Solve one section in the frame of the line of centres for the velocity (w_r, w_t) in 1/s."""
-    modes = _modes(mesh.axial)
+    modes = _modes(mesh.axial, section.seals)
     vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
     decays = (section.radius / section.width) ** 2 * modes.eigenvalues
     points, weights = np.polynomial.legendre.leggauss(LINES)
     z = 0.5 * (points + 1.0)
-    sigma = section.far_pressure / section.pressure_scale
-    values, shapes = np.zeros((2 * len(vertices), LINES)) + sigma * z, modes.at(z)
+    sigma, (a, b) = section.far_pressure / section.pressure_scale, sealed_shape(section.seals)
+    values, shapes = np.zeros((2 * len(vertices), LINES)) + sigma * (a + b * z), modes.at(z)
     for first in range(0, len(decays), MODES_AT_ONCE):
         some = slice(first, first + MODES_AT_ONCE)
         fields = unit_fields(vertices, eccentricity, decays[some], modes.loads[some])
@@ -93,10 +94,10 @@ def section_pressure(
 
 
 @functools.lru_cache(maxsize=2)
-def _modes(elements: int) -> AxialModes:
+def _modes(elements: int, seals: tuple[float, float]) -> AxialModes:
     """Modes of a section with so many elements along; on fine meshes they take longer than all else, at every
     position."""
-    return axial_modes(axial_vertices(elements))
+    return axial_modes(axial_vertices(elements), seals)
 
 
 def largest_pressure(

@@ -40,13 +40,14 @@ def linear_faults(case: Case) -> Iterator[Fault]:
     if not _loaded(case):
         return
     for each in DamperElement.of(case):
-        if all(each.given.spring) and cavitates_at_once(case, each.given):
+        if all(each.given.spring) and not each.given.centred and cavitates_at_once(case, each.given):
             problem = (
                 "cavitates as soon as its shell moves: off the centre, to which a static load brings it, the forces of "
                 "opposite velocities are not opposite, and no damping describes both."
             )
             remedy = (
-                "Take a run; or raise oil.ambient_pressure, and a supply, above oil.cavitation_pressure, take "
+                "Take a run; or write centred = true; or raise oil.ambient_pressure, and a supply, above "
+                "oil.cavitation_pressure, take "
                 "sommerfeld, or leave the weight out, for the damper in its centre."
             )
             yield Fault(f"{each.key}.cavitation", case.cavitation(each.given), None, problem, remedy)

@@ -14,8 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.forms.tilted import ASKED, FOLLOWED
-from frbcli.scene.gate import cycles, dampers, films, kinematic, runs, static
+from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
     BEARING,
@@ -55,7 +54,10 @@ RULES = (
     Rule(element_faults, ALL),
     Rule(dampers.heat_faults, ALL),
     Rule(channel_faults, ALL),
+    Rule(pulls.pull_faults, ALL),
     Rule(films.supply_faults, ALL),
+    Rule(films.sealed_faults, ALL),
+    Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.no_film_faults, KINEMATIC),
     Rule(_without_film("the sheet is of films"), SHEETS),
@@ -65,8 +67,7 @@ RULES = (
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *FOLLOWED))),
-    Rule(lambda case: () if case.film.tilt == ASKED else kinematic.misalignment_faults(case), FOLLOWED),
+    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each != ROTATION)),
     Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),
     Rule(_of_films(runs.form_faults), (RUN,)),

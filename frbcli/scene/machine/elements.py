@@ -12,6 +12,7 @@ from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.housing import HousingElement
+from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
@@ -147,14 +148,14 @@ def without_film(case: Case, what: str) -> list[Fault]:
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
-    """The faults of what lets shells move, where `what` is of bearings on the ground."""
-    problem = f"moves with the shells of bearings, and {what}."
-    return [Fault(each.key, "", None, problem, remedy) for each in moving_carriers(case)]
+    """The faults of what is more than bearings on the ground, where `what` is of these alone."""
+    return [Fault(each.key, "", None, f"is beside the bearings, and {what}.", remedy) for each in beside_bearings(case)]
 
 
-def moving_carriers(case: Case) -> tuple[MachineElement, ...]:
-    """What lets the shells of bearings move."""
-    return (*DamperElement.of(case), *SupportElement.of(case), *HousingElement.of(case))
+def beside_bearings(case: Case) -> tuple[MachineElement, ...]:
+    """What lets the shells of bearings move, or pulls at the shaft beside them."""
+    kinds = DamperElement, SupportElement, HousingElement, MagneticPullElement
+    return tuple(element for kind in kinds for element in kind.of(case))
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:

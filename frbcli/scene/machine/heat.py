@@ -217,4 +217,4 @@ def _concentric(case: Case, film: FilmGeometry) -> float:
     share = film.side_flow_factor
     if share is None:
         share = supply.side_flow_factor
-    return 2.0 * share * supply.land_share * math.pi * film.diameter * gauge / (6.0 * film.width)
+    return 2.0 * film.sealed * share * supply.land_share * math.pi * film.diameter * gauge / (6.0 * film.width)

@@ -9,6 +9,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import PLANE, point_mass, spin
+from frbcli.rotor.held import preset
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of
@@ -31,6 +32,9 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
             films += [Link(journal, ring, count, sees), Link(ring, shell, count, sees)]
         else:
             films.append(Link(journal, shell, count, sees))
-    films += [replace(damper.link(site), sees=sees) for damper in DamperElement.of(case)]
+    dampers = list(DamperElement.of(case))
+    centred = [len(films) + number for number, damper in enumerate(dampers) if damper.given.centred]
+    films += [replace(damper.link(site), sees=sees) for damper in dampers]
     elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
-    return assembled([*bodies, *elements.bodies, *spins], films, elements.links, elements.forces, elements.loads)
+    bodies += [*elements.bodies, *spins]
+    return preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)

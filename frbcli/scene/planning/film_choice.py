@@ -21,7 +21,6 @@ from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
-from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.planning.cell_choice import FEWEST, WorstFilm, fewest_cells, given_cells, worst_film
 from frbcli.scene.planning.eccentricity import expected_eccentricity
 from frbcli.scene.planning.short_bearing import short_error, slenderness_of
@@ -65,8 +64,6 @@ def form_of(case: Case) -> FilmForm:
     """The form of the films of a case; TABLE for all gaps made of rectangles, whose forms follow from the target."""
     if not case.films:
         return NO_FILM
-    if case.film.tilt == "follows":
-        return TILTED
     if case.film.bearing_model:
         return GIVEN
     if TwoPhase.name in case.cavitations and case.film.two_phase.form == "published":
@@ -124,11 +121,13 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
     short = short_error(slenderness, SOLVED_HOLDS_TO)
     theory, theory_why = case.film.theory, "set in the case"
     if theory == "auto":
-        fits = short <= FILM_SHARE * target and not any(film.supply.divides for film in films)
+        fits = short <= FILM_SHARE * target and not any(film.supply.divides or film.sealed < 1.0 for film in films)
         theory = "short" if fits else "finite"
         theory_why = f"error of the short bearing with b/D = {slenderness:.2g}: {short:.1g} at {SOLVED_HOLDS_TO:g}"
         if any(film.supply.divides for film in films):
             theory_why = "axial grooves, which the short bearing does not have"
+        elif any(film.sealed < 1.0 for film in films):
+            theory_why = "sealed ends, behind which oil flows around as in a longer bearing"
     forms = [film_form(case, film, theory) for film in films]
     form = min(forms, key=MOST_EXPENSIVE_FIRST.index)
     meshes = [_mesh(form, slenderness_of(film), FILM_SHARE * target) for form, film in zip(forms, films, strict=True)]

@@ -174,7 +174,9 @@ def _decisions(
     yield from _tilt_decision(case, section)
     yield from _lobe_decision(section)
     yield Decision("film", *form.told_in_tests(law))
-    if law.closed and bearing.ends == "free-to-air":
+    if bearing.sealing:
+        yield Decision("ends", *bearing.sealing)
+    elif law.closed and bearing.ends == "free-to-air":
         reason = f"{law.name} clips a pressure that is ambient at the ends; it knows no oil that is missing there"
         yield Decision("ends", "ambient pressure", reason)
     for film in unfed_films(case):

@@ -208,6 +208,9 @@ def _decide_scene(case: Case, decide: Decide) -> None:
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
     if len(places) == 1 and form_of(case).solved:
         decide("gap", *_gap(places[0].geometry))
+    for place in places:
+        if (sealing := place.geometry.sealing) and form_of(case).solved:
+            decide(f"{place.name} ends".strip().replace("_", " "), *sealing)
     for decided in clearance_decisions(case):
         decide(*decided)
     if case.heat is not None:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.film.gap import Edge
-from frbcli.film.grid import Array
+from frbcli.film.grid import NO_SEALS, Array
 
 BEND = 0.5  # share of the pressure of an end cell by which a parabola may change it; more than that is a front
 PREFACTOR, STEEPNESS = 0.01, 100.0  # a in 1/s and b of (4.37)
@@ -20,18 +20,24 @@ class EndSlope(NamedTuple):
     bend: float
 
 
-def end_slope(first: float, second: float) -> EndSlope:
-    """The slope at an end from the distances of the middles of the last two cells, over the width."""
-    return EndSlope((first + second) / (first * second), first**2 / (second**2 - first**2))
+def end_slope(distances: Array, seal: float) -> EndSlope:
+    """The slope at an end from the distances (k,) of the middles of the cells, over the width.
+
+    Behind a seal of this length, over the width, lies the pressure p_end: at the end of the film it is higher by the
+    slope times that length.
+    """
+    first = float(distances[0])
+    rise, bend = 1.0 / first, 0.0
+    if len(distances) > 1:
+        second = float(distances[1])
+        rise, bend = (first + second) / (first * second), first**2 / (second**2 - first**2)
+    return EndSlope(rise / (1.0 + rise * seal), bend)
 
 
-def end_slopes(z: Array) -> tuple[EndSlope, EndSlope]:
-    """The slopes at z = 0 and z = 1 for the boundaries z (k + 1,) of the cells."""
+def end_slopes(z: Array, seals: tuple[float, float] = NO_SEALS) -> tuple[EndSlope, EndSlope]:
+    """The slopes at z = 0 and z = 1 for the boundaries z (k + 1,) of the cells; seals: see Section."""
     middle = 0.5 * (z[1:] + z[:-1])
-    if len(middle) == 1:
-        return EndSlope(float(1.0 / middle[0]), 0.0), EndSlope(float(1.0 / middle[0]), 0.0)
-    near = end_slope(float(middle[0]), float(middle[1]))
-    return near, end_slope(float(1.0 - middle[-1]), float(1.0 - middle[-2]))
+    return end_slope(middle, seals[0]), end_slope(1.0 - middle[::-1], seals[1])
 
 
 def end_outflow(

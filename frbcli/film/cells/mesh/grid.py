@@ -146,7 +146,7 @@ def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array
     distance = height * section.width
     if section.far != "symmetry":
         distance = np.minimum(distance, section.bearing_width - distance)
-    return groove_pressure(groove, distance, section.bearing_width)
+    return groove_pressure(section, groove, distance)
 
 
 def _distances(phi: Array, z: Array) -> tuple[Array, Array]:

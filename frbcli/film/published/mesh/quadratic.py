@@ -118,7 +118,7 @@ def _openings(
         distance = z * section.width
         if section.far != "symmetry":
             distance = np.minimum(distance, section.bearing_width - distance)
-        pressure = np.where(inside, groove_pressure(groove, distance, section.bearing_width), pressure)
+        pressure = np.where(inside, groove_pressure(section, groove, distance), pressure)
         within |= inside
     for hole, box in zip(holes, boxes, strict=True):
         inside = (np.abs(wrapped(phi - box.middle)) < box.half_angle + SAME) & (z > box.low - SAME)

@@ -1,1 +1,0 @@
-"""Films whose gap changes along the axis, since their journal tilts: balances, lands, forces with derivatives."""
