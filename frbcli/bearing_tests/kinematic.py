@@ -234,7 +234,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         lasting, start = _lasting(case, plan)
         displacement = lasting.d
         with advised(with_model(case, plan.cavitation)):
-            moment = tested_film(case, plan).moment(lasting, start)
+            moment = tested_film(plan).moment(case, plan, lasting, start)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     if tell is not None:
@@ -264,7 +264,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
     start: NodeState | None = None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     if motion.load is not None:
-        found, start = tested_film(case, plan).rest(motion.load, omega)
+        found, start = tested_film(plan).rest(case, plan, motion.load, omega)
         return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega), start
     e, angle, section = motion.eccentricity or 0.0, motion.angle, plan.section
     along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
@@ -291,7 +291,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
             if case.heat is not None:
                 warm = warm_moved_film(case, plan, omega, path, times)
                 case, plan = warm.case, warm.plan
-            course = tested_film(case, plan).course(path, times, tell)
+            course = tested_film(plan).course(case, plan, path, times, tell)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))

@@ -51,7 +51,7 @@ class _NodeMoment(MovedFilm):
     solution: PublishedSolution
 
 
-def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None = None) -> FilmMoment:
+def published_moment(case: Case, plan: KinematicPlan, motion: Motion, start: NodeState | None) -> FilmMoment:
     """The film for a motion that lasts, its error estimated from half as many elements each way.
 
     start: of nearly the same motion. Raises NotConverged.
@@ -146,7 +146,7 @@ def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple
         return ForceBalance(solution.response.force - [0.0, load], slope, solution)
 
     search = Search(step=0.0, force=SETTLED * load, share=1.0, patience=PATIENCE)
-    found = search_rest(balance, c * start[None], np.array([[c]]), search)
+    found = search_rest(balance, c * start[None], lambda at: at / c, search)
     place: Array = found.position[0] / c
     if found.balance.left < TOLERATED * load:
         return place, found.balance.films.state

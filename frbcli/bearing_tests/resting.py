@@ -105,7 +105,7 @@ def _carried(force: Near, section: Section, load: Array, omega: float, start: Ar
         return ForceBalance(found.force - load, found.by_displacement, found)
 
     size, c = float(np.linalg.norm(load)), section.clearance
-    found = search_rest(balance, c * start[None], np.array([[c]]), Search(0.0, SETTLED * size, SMALLEST_SHARE))
+    found = search_rest(balance, c * start[None], lambda at: at / c, Search(0.0, SETTLED * size, SMALLEST_SHARE))
     place: Array = found.position[0] / c
     if not found.settled:
         raise NotConverged(f"{found.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")

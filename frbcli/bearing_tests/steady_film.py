@@ -13,13 +13,13 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.balance.tilted import tilted_outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.lands import Land, lands, summed
 from frbcli.film.cells.loads import CavitationFactor, FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import settled_force
+from frbcli.film.cells.tilted.balances import tilted_outflow
+from frbcli.film.cells.tilted.lands import Land, lands, summed
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import FilmForce

@@ -50,7 +50,8 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
     misalignment: tuple[Tilt, Tilt] | None = Field(
-        default=None, description="tilt of the shell about x, y through the middle of the bearing; of a rotation"
+        default=None,
+        description="tilt of the shell about x, y through the middle of the bearing; in a rotation and with film.tilt",
     )
 
     @property

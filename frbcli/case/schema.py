@@ -93,6 +93,11 @@ class FilmModel(Model):
     solution: Literal["auto", "table", "cells"] = Field(
         default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
     )
+    tilt: Literal["none", "follows"] = Field(
+        default="none",
+        description="the gap is even along the axis, or follows the tilt of the shaft in it; in stability, damped "
+        "modes and response",
+    )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare
 

@@ -22,6 +22,26 @@ DIFFERENCE = 1e-4  # of the gap, and of the velocity that moves the journal by i
 
 
 @dataclass(frozen=True)
+class TiltingFilm:
+    """A film whose journal tilts, at rest. tilt: (2,) of the journal against its shell about x and y, rad; stiffness,
+    damping: (4, 4) of forces and moments by displacements and tilts, SI units."""
+
+    tilt: Array
+    stiffness: Array
+    damping: Array
+
+    @property
+    def tilt_stiffness(self) -> Array:
+        """(2, 2) -dM/dtilt in N m."""
+        return self.stiffness[2:, 2:]
+
+    @property
+    def tilt_damping(self) -> Array:
+        """(2, 2) -dM/dtilt' in N m s."""
+        return self.damping[2:, 2:]
+
+
+@dataclass(frozen=True)
 class RestingFilm:
     """A film at its resting position.
 
@@ -30,7 +50,7 @@ class RestingFilm:
     -dF/dD': of one bearing, of films that keep oil when this has settled; name: as in the signals of a run, "" of a
     single film without a name; error: expected one of stiffness and damping, over the largest entry of each, from other
     meshes, NaN where it is not known; load: (2,) N on the journal; place_error: expected one of the displacement, over
-    the clearance, likewise.
+    the clearance, likewise; tilting: of a film whose journal tilts.
     """
 
     displacement: Array
@@ -41,6 +61,7 @@ class RestingFilm:
     error: float = math.nan
     load: tuple[float, float] = (math.nan, math.nan)
     place_error: float = math.nan
+    tilting: TiltingFilm | None = None
 
     @property
     def eccentricity(self) -> float:
@@ -49,15 +70,20 @@ class RestingFilm:
 
 
 def coefficients_of(films: Sequence[RestingFilm]) -> tuple[Array, Array]:
-    """(films, 2, 2) stiffness in N/m and damping in N s/m of films at rest, or of none."""
-    stiffness, damping = (np.array([getattr(film, name) for film in films]) for name in ("stiffness", "damping"))
-    return stiffness.reshape(-1, 2, 2), damping.reshape(-1, 2, 2)
+    """(films, c, c) stiffness and damping of films at rest, or of none, by the c coordinates that they see."""
+    whole = [film if film.tilting is None else film.tilting for film in films]
+    return stacked([film.stiffness for film in whole]), stacked([film.damping for film in whole])
+
+
+def stacked(matrices: Sequence[Array]) -> Array:
+    """(films, c, c) the matrices of films, or of none."""
+    return np.array(matrices) if matrices else np.zeros((0, 2, 2))
 
 
 def settled_force(system: System, i: int, place: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-    """Force and derivatives of film i with its journal at rest at `place` (2,) in m, of a film that keeps oil when this
+    """Force and derivatives of film i with its journal at rest at `place` (c,) in m, of a film that keeps oil when this
     has settled in each of two neighbouring motions. total: omega_J + omega_S. Raises NotConverged."""
-    found = system.films.force(i, place, np.zeros(2), total, near)
+    found = system.films.force(i, place, np.zeros_like(place), total, near)
     if not system.remembering[i]:
         return found
     step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*place)))
@@ -101,12 +127,14 @@ def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]],
     the share of the difference that is the error; NaN without others. omega: rad/s of the rotor, at which the film of a
     damper, which does not turn, has no stiffness beside its damping."""
     errors = []
-    least = NO_STIFFNESS * abs(omega) * float(np.abs(own.by_velocity).max())
-    for other, share in others:
-        for name, nothing in (("by_displacement", least), ("by_velocity", 0.0)):
-            mine, off = getattr(own, name), getattr(own, name) - getattr(other, name)
-            size = float(np.abs(mine).max())
-            errors.append(max(share * float(np.abs(off).max()) / size, LEAST) if size > nothing else LEAST)
+    for first in range(0, len(own.force), 2):  # forces by displacements, moments by tilts
+        block = slice(first, first + 2), slice(first, first + 2)
+        least = NO_STIFFNESS * abs(omega) * float(np.abs(own.by_velocity[block]).max())
+        for other, share in others:
+            for name, nothing in (("by_displacement", least), ("by_velocity", 0.0)):
+                mine, theirs = getattr(own, name)[block], getattr(other, name)[block]
+                size, off = float(np.abs(mine).max()), float(np.abs(mine - theirs).max())
+                errors.append(max(share * off / size, LEAST) if size > nothing else LEAST)
     return max(errors, default=math.nan)
 
 
@@ -128,12 +156,14 @@ def force_error(static: StaticFilms, i: int, place: Array, total: float) -> floa
 
 
 def resting_film(
-    name: str, force: FilmForce, displacement: Array, error: float, off: float = math.nan
+    name: str, force: FilmForce, displacement: Array, error: float, off: float = math.nan, tilt: Array | None = None
 ) -> RestingFilm:
-    """The film of a force; displacement (2,) over the clearance, and off, its error."""
-    load, attitude = -force.force, math.nan
+    """The film of a force; displacement (2,) over the clearance, and off, its error; tilt: (2,) rad, of a film that
+    sees it."""
+    load, attitude, k, d = -force.force[:2], math.nan, -force.by_displacement, -force.by_velocity
     if np.hypot(*load) > STILL and displacement.any():
         across = load[0] * displacement[1] - load[1] * displacement[0]
         attitude = math.degrees(math.atan2(across, load @ displacement))
     x, y = load.tolist()
-    return RestingFilm(displacement, attitude, -force.by_displacement, -force.by_velocity, name, error, (x, y), off)
+    tilting = None if tilt is None else TiltingFilm(tilt, k, d)
+    return RestingFilm(displacement, attitude, k[:2, :2], d[:2, :2], name, error, (x, y), off, tilting)

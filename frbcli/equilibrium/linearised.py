@@ -12,7 +12,7 @@ Array = NDArray[np.float64]
 
 def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Array, Array, Array]:
     """(n, n) mass, damping and stiffness at omega rad/s, the damping with the gyroscopic term, on films of stiffness
-    and damping (films, 2, 2) in N/m and N s/m."""
+    and damping (films, c, c), SI units, by the c coordinates that the films see."""
     here = rotor.at(omega)
     bearings = here.multiplicity[:, None, None] * np.swapaxes(here.journals, 1, 2)
     k = here.stiffness + (bearings @ stiffness @ here.journals).sum(axis=0)

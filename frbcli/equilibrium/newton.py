@@ -24,8 +24,8 @@ SHORTER = 0.5  # of the share of a step that is tried, while the force that is l
 
 @dataclass(frozen=True)
 class ForceBalance(Generic[Films]):
-    """Journals at given places. residual: (2 films,) N left over on them; slope: (2 films, 2 films) its derivative by
-    the places, N/m; films: their state there, from which places near by are solved."""
+    """Journals at given places. residual: (c films,) N left over on them, or N m; slope: (c films, c films) its
+    derivative by the places; films: their state there, from which places near by are solved."""
 
     residual: Array
     slope: Array
@@ -51,7 +51,7 @@ class Search:
 
 @dataclass(frozen=True)
 class SearchEnd(Generic[Films]):
-    """Where a search ended. position: (films, 2) in m; settled: whether the journals rest there."""
+    """Where a search ended. position: (films, c) in m and rad; settled: whether the journals rest there."""
 
     position: Array
     balance: ForceBalance[Films]
@@ -61,26 +61,28 @@ class SearchEnd(Generic[Films]):
 def search_rest(
     balance: Callable[[Array, ForceBalance[Films] | None], ForceBalance[Films]],
     start: Array,
-    clearances: Array,
+    ends: Callable[[Array], Array],
     search: Search,
 ) -> SearchEnd[Films]:
-    """Where journals rest, sought from `start` (films, 2) in m; clearances: (films, 1) in m.
+    """Where journals rest, sought from `start` (films, c) in m, with tilts in rad where they have any.
 
-    balance: of the journals at a position (films, 2) in m, and the balance at the position before, if there is one.
-    Raises what it raises.
+    balance: of the journals at a position (films, c), and the balance at the position before, if there is one; ends:
+    (k, 2) what has to stay within the gap at a position, over the clearance and linear in it. Raises what balance
+    raises.
     """
     best = here = SearchEnd(start, balance(start, None), False)
-    since = 0
+    still, since = ends(np.zeros_like(start)), 0
     for _ in range(ITERATIONS):
         found = here.balance
         if found.left < search.force:
             return replace(here, settled=True)
         if not (np.isfinite(found.slope).all() and np.linalg.matrix_rank(found.slope) == len(found.slope)):
             break
-        step = -np.linalg.solve(found.slope, found.residual).reshape(-1, 2)
-        pairs = zip(here.position / clearances, step / clearances, strict=True)
-        share = min([1.0, *(largest_share(*pair) for pair in pairs)])
-        arrives = bool(np.abs(step / clearances).max() < search.step)
+        solved = np.asarray(np.linalg.solve(found.slope, -found.residual), dtype=np.float64)
+        step = solved.reshape(*here.position.shape)
+        moved = ends(step) - still
+        share = min([1.0, *(largest_share(*pair) for pair in zip(ends(here.position), moved, strict=True))])
+        arrives = bool(np.abs(moved).max() < search.step)
         while True:
             following = here.position + share * step
             new = balance(following, found)

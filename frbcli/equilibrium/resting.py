@@ -8,7 +8,7 @@ journals: they are no unknowns of their own.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -18,7 +18,7 @@ from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.rotor.held import HeldRotor, held_rotor
+from frbcli.rotor.held import HeldRotor, held_rotor, whole_rotor
 from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
@@ -31,7 +31,8 @@ NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds 
 
 @dataclass(frozen=True)
 class RestingPosition:
-    """A machine at rest. displacements: (n,) in m, rings at their angle 0; journals: (films, 2) in m; ring_speeds:
+    """A machine at rest. displacements: (n,) in m, rings at their angle 0; journals: (films, c) in m, with the
+    tilts in rad that films see; ring_speeds:
     (rings,) rad/s at which the torques on the rings balance; films: the films there, () where nothing turns and nothing
     has to be carried."""
 
@@ -52,19 +53,24 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
 
     Raises NotConverged if no start leads to one.
     """
-    held, clearances = held_rotor(system.rotor, omega), np.array(system.clearances)[:, None]
+    in_plane = replace(system.rotor, journals=system.rotor.journals[:, :2])
+    held, clearances = held_rotor(in_plane, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
     along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
     if not system.names:
         return _position(system, held, omega, held.shape, ())
     starts = [np.zeros_like(loads), OUTER_START * clearances * along]
+    if system.films.coordinates > 2:
+        starts = [held.shape + held.following @ each.ravel() for each in starts]
+        held = whole_rotor(system.rotor, omega)
     if start is not None:
-        starts.insert(0, system.rotor.journals @ start)
+        starts.insert(0, system.rotor.journals @ start if held.journals is None else start)
     left = np.inf
     for first in starts:
-        found = search_rest(partial(_balance, system, held, omega), first, clearances, SEARCH)
-        within = np.linalg.norm(found.position / clearances, axis=1).max() < LARGEST_ECCENTRICITY
+        ends = partial(_ends, system, held)
+        found = search_rest(partial(_balance, system, held, omega), first, ends, SEARCH)
+        within = np.linalg.norm(ends(found.position), axis=1).max() < LARGEST_ECCENTRICITY
         if found.settled and within:
             displacements = held.shape + held.following @ found.position.ravel()
             return _position(system, held, omega, displacements, found.balance.films)
@@ -81,7 +87,7 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
 def _position(
     system: System, held: HeldRotor, omega: float, displacements: Array, films: tuple[FilmForce, ...]
 ) -> RestingPosition:
-    journals = system.rotor.journals @ displacements
+    journals = system.rotor.journals @ displacements + system.films.standing
     return RestingPosition(displacements, journals, ring_speeds(system, held, omega, journals), films)
 
 
@@ -91,6 +97,8 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
 
     Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
     """
+    if not system.ring_count:
+        return np.zeros(0)
     eccentricity = np.linalg.norm(position, axis=1) / np.array(system.clearances)
     sheared = system.films.sheared * np.array(system.drags)
     drag = sheared * 2.0 * np.pi / np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6))
@@ -117,23 +125,47 @@ def _balance(
     """
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
+    places = _places(system, held, position)
     omegas = system.omegas(omega, ring_speeds(system, held, omega, position))
-    following = _following_omegas(system, held, omega, position)
+    following = _following_omegas(system, held, omega, places)
+    on_films, by_places = surplus, slope
+    if held.journals is not None:
+        on_films, by_places = np.zeros(places.size), np.zeros((places.size, places.size))
     forces = []
     for i, many in enumerate(system.rotor.multiplicity):
         near = before.films[i] if before else None
-        force = system.films.force(i, position[i], np.zeros(2), float(omegas[i]), near)
-        own = slice(2 * i, 2 * i + 2)
-        surplus[own] += many * force.force
-        slope[own, own] += many * force.by_displacement
-        by_omega = 0.5 * force.by_velocity @ [position[i, 1], -position[i, 0]]
-        slope[own] += many * np.outer(by_omega, following[i])
+        place = places[i]
+        force = system.films.force(i, place, np.zeros_like(place), float(omegas[i]), near)
+        own = slice(len(place) * i, len(place) * (i + 1))
+        on_films[own] += many * force.force
+        by_places[own, own] += many * force.by_displacement
+        by_omega = 0.5 * force.by_velocity @ _across(place)
+        by_places[own] += many * np.outer(by_omega, following[i])
         forces.append(force)
+    if held.journals is not None:
+        surplus += held.journals.T @ on_films
+        slope += held.journals.T @ by_places @ held.journals
     return ForceBalance(surplus, slope, tuple(forces))
 
 
+def _places(system: System, held: HeldRotor, position: Array) -> Array:
+    """(films, c) coordinates of the journals in their shells; position: the unknowns of the rotor."""
+    found = held.places(position, len(system.names))
+    return found if held.journals is None else found + system.films.standing
+
+
+def _ends(system: System, held: HeldRotor, position: Array) -> Array:
+    """See Films.ends; position: the unknowns of the rotor."""
+    return system.films.ends(_places(system, held, position))
+
+
+def _across(place: Array) -> Array:
+    """(c,) how a gap that turns backwards with 1 rad/s moves, of a journal at `place` (c,)."""
+    return np.column_stack([place[1::2], -place[::2]]).ravel()
+
+
 def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
-    """(films, 2 films) derivatives of the films' speeds by the places of the journals, in rad/s over m."""
+    """(films, c films) derivatives of the films' speeds by the places of the journals, in rad/s over m."""
     found = np.zeros((len(position), position.size))
     for column in range(position.size if system.ring_count else 0):
         step = np.zeros(position.size)

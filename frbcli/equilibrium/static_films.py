@@ -53,6 +53,16 @@ class MeshFilms:
 
 
 @dataclass(frozen=True)
+class FieldFilm:
+    """A film on finite volumes, for the fields of pressure and flow, and on fewer cells for their error; share: of the
+    difference between both that is the error of the former."""
+
+    own: VolumeFilm
+    coarser: VolumeFilm
+    share: float
+
+
+@dataclass(frozen=True)
 class StaticFilms:
     """The machine on the films of static results, and on others for the error, which are made when they are asked for;
     case: whose films they are; top_Hz: largest rotor speed."""
@@ -86,11 +96,13 @@ class StaticFilms:
         case = warm_case(self.case, viscosities, clearances)
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
-    def with_fields(self) -> tuple[VolumeFilm, ...]:
-        """The films on CELLS, for the fields of pressure and flow."""
-        places = film_places(self.case)
-        own = self.system.films.with_fields
-        return own or tuple(volume_film(self.case, each, CELLS, self.top_Hz) for each in places)
+    def with_fields(self) -> tuple[FieldFilm, ...]:
+        """The films on CELLS and on fewer, for the fields of pressure and flow."""
+        own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
+        return tuple(FieldFilm(*films, _share(fewer)) for films in zip(own, self._on(fewer), strict=True))
+
+    def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
+        return tuple(volume_film(self.case, each, cells, self.top_Hz) for each in film_places(self.case))
 
 
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
@@ -110,10 +122,16 @@ def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     if not plan.form.solved:
         return ()
     if plan.form.by_cells:
-        return tuple((replace(plan, cells=cells), 1.0 / ((CELLS[0] / cells[0]) ** FRONTS - 1.0)) for cells in COARSER)
+        own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
+        return tuple((replace(plan, cells=cells), _share(cells, own)) for cells in coarser)
     meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
+
+
+def _share(cells: tuple[int, int], own: tuple[int, int] = CELLS) -> float:
+    """Share of a difference between results on their own cells and on fewer that is the error of the former."""
+    return float(1.0 / ((own[0] / cells[0]) ** FRONTS - 1.0))
 
 
 def _finer(mesh: Mesh) -> Mesh:
@@ -122,9 +140,12 @@ def _finer(mesh: Mesh) -> Mesh:
 
 def _plan(case: Case) -> Plan:
     """The plan of a run, or of the films alone where there is no rotor, with the cells of static results."""
+    form = form_of(case)
+    if form.static_cells:
+        return replace(_films_alone(case, "finite", form, DEFAULT_MESH, ()), cells=form.static_cells[0])
     if case.given_rotor is not None and case.given_speed is not None:
         plan = make_plan(case)
-    elif form_of(case).fine_when_static:
+    elif form.fine_when_static:
         plan = _films_alone(case, "finite", ON_CELLS, DEFAULT_MESH, ())
     else:
         films = choose_films(case, case.accuracy.target)

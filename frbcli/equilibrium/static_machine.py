@@ -106,11 +106,12 @@ def _resting_film(
 ) -> RestingFilm:
     """Film i of a machine at rest at omega rad/s, with its errors from the other meshes, NaN without any."""
     force, clearance = found.forces[i], system.clearances[i]
-    place = found.position.journals[i] / clearance
+    at = found.position.journals[i]
+    place, tilt = at[:2] / clearance, at[2:] if len(at) > 2 else None
     forces = [(other.forces[i], share) for other, share in others]
-    places = [(other.position.journals[i] / clearance, share) for other, share in others]
+    places = [(other.position.journals[i][:2] / clearance, share) for other, share in others]
     errors = coefficient_error(force, forces, omega), place_error(place, places)
-    return resting_film(system.names[i], force, place, *errors)
+    return resting_film(system.names[i], force, place, *errors, tilt=tilt)
 
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:

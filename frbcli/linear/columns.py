@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
@@ -46,6 +46,20 @@ PLACE_ERROR = Column("displacement_error", "", "expected error of the displaceme
 # Of a RestingFilm
 FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR, PLACE_ERROR)
 
+# Of a RestingFilm whose journal tilts
+TILTING = (
+    Column("tilt", "rad", "tilt of the journal against its shell", attrgetter("tilting.tilt"), shape=(2,),
+           more="about x and y"),
+    Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dt`", attrgetter("tilting.tilt_stiffness"), shape=(2, 2)),
+    Column("tilt_damping", "N m s", "damping in tilt `-dM/dt'`", attrgetter("tilting.tilt_damping"), shape=(2, 2)),
+)  # fmt: skip
+
+
+def film_columns(films: Iterable[Any]) -> tuple[Column, ...]:
+    """Of these RestingFilms."""
+    return (*FILM, *TILTING) if any(film.tilting is not None for film in films) else FILM
+
+
 # Of a FilmState
 SHEET = (
     NAME,
@@ -73,7 +87,9 @@ SHEET = (
            shown=(Shown("rise", ".3g", table=FILMS),), more="with `oil.density` and `oil.heat_capacity`; if the case "
            "gives none, 2000 J/(kg K), or with heat that of the oil at 80 degC"),
     Column("force_error_relative", "", "relative error of the force, from other meshes", attrgetter("force_error"),
-           shown=(Shown("err.", ".0e", table=FILMS),), key="error.force_relative"),
+           key="error.force_relative"),
+    Column("largest_error", "", "largest relative error of force, h, p, loss and flow",
+           shown=(Shown("err.", ".0e", table=FILMS),), key="", flat=False),
     Column("temperature", "K", "temperature of the film, with heat",
            shown=(Shown("temperature, degC", ".2f", "degC", WARM),)),
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("viscosity, mPa s", ".4g", "mPa s", WARM),)),
@@ -82,6 +98,12 @@ SHEET = (
     DAMPING,
     ERROR,
     PLACE_ERROR,
+    Column("film_thickness_min_error", "m", "expected error of the smallest film thickness",
+           attrgetter("film_thickness_error"), more="that of the displacement", key="error.film_thickness_min_m"),
+    Column("p_max_error", "Pa", "expected error of the largest pressure", more="by the mesh, and by the displacement",
+           key="error.p_max_Pa"),
+    Column("power_error", "W", "expected error of the power", more="likewise", key="error.power_W"),
+    Column("side_flow_error", "m^3/s", "expected error of the flow", more="likewise", key="error.side_flow_m3_s"),
 )  # fmt: skip
 
 GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",
@@ -194,9 +216,10 @@ RESPONSE_COEFFICIENTS = (
 )
 
 
-def point_columns(films: Sequence[str]) -> tuple[Column, ...]:
-    """Of the points of a rotor with films of these names."""
-    own = [column for i, name in enumerate(films) for column in named(FILM, name if len(films) > 1 else "", _film(i))]
+def point_columns(films: Sequence[str], columns: tuple[Column, ...] = FILM) -> tuple[Column, ...]:
+    """Of the points of a rotor with films of these names; columns: of each film."""
+    names = [name if len(films) > 1 else "" for name in films]
+    own = [column for i, name in enumerate(names) for column in named(columns, name, _film(i))]
     return (*POINT[:2], *own, *POINT[2:])
 
 

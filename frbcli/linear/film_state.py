@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
-from frbcli.equilibrium.coefficients import RestingFilm, force_error, settled_force
-from frbcli.equilibrium.static_films import StaticFilms
+from frbcli.equilibrium.coefficients import LEAST, RestingFilm, force_error, settled_force
+from frbcli.equilibrium.static_films import FieldFilm, StaticFilms
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.loads import loads
+from frbcli.film.cells.loads import CavitationFactor, loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
@@ -35,8 +35,9 @@ class FilmState:
     """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
     which tells what they are.
 
-    error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; problem: why there is no
-    state, then the numbers are NaN.
+    error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
+    p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the
+    numbers are NaN.
     """
 
     film: str
@@ -63,12 +64,24 @@ class FilmState:
     viscosity: float = math.nan
     clearance: float = math.nan
     temperature: float = math.nan
+    film_thickness_error: float = math.nan
+    p_max_error: float = math.nan
+    power_error: float = math.nan
+    side_flow_error: float = math.nan
     problem: str = ""
 
     @property
     def eccentricity(self) -> float:
         """Relative eccentricity of the journal."""
         return math.hypot(*self.displacement)
+
+    @property
+    def largest_error(self) -> float:
+        """The largest relative error of force, film thickness, pressure, power and flow."""
+        numbers = self.film_thickness_min, self.p_max, self.power, self.side_flow
+        errors = self.film_thickness_error, self.p_max_error, self.power_error, self.side_flow_error
+        known = [error / abs(number) for error, number in zip(errors, numbers, strict=True) if abs(number) > 0.0]
+        return max(self.force_error, *known)
 
     @property
     def status(self) -> str:
@@ -101,23 +114,63 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
     raise NotConverged(f"No attitude angle was found at an eccentricity of {eccentricity:g}: off by {off:.2g} rad.")
 
 
+@dataclass(frozen=True)
+class Fields:
+    """What pressure and flow of a film make: largest pressure in Pa, torque on the journal in N m, power in W, flow out
+    of the open ends in m^3/s."""
+
+    p_max: float
+    torque: float
+    power: float
+    side_flow: float
+
+    @classmethod
+    def of(cls, volume: VolumeFilm, d: Array, speeds: tuple[float, float], factor: CavitationFactor) -> Fields:
+        """Those of a steady film. d: (2,) displacement over the clearance; speeds: of journal and shell in rad/s;
+        factor: see loads. Raises NotConverged."""
+        journal, shell = speeds
+        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), journal + shell)
+        solution, at = steady_solution(volume, motion), film_at(volume, math.hypot(*motion.d), motion.omega)
+        found = loads(at, motion, solution, journal - shell, factor)
+        power = -found.torque.journal * journal + found.torque.shell * shell
+        flow = outflow(at, motion.d, at.pressure(solution.state))
+        return cls(found.p_max, found.torque.journal, power, flow)
+
+
+def _field_errors(
+    film: FieldFilm, found: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
+) -> Fields:
+    """Expected errors by the mesh: of the fields in this place, and by the error of the place, as if it were further
+    out; NaN if the film is not solved on fewer cells."""
+    d, e = at_rest.displacement, at_rest.eccentricity
+    off = 0.0 if math.isnan(at_rest.place_error) else min(at_rest.place_error, 0.5 * (1.0 - e))
+    out = d + off * (d / e if e > 0.0 else np.array([0.0, -1.0]))
+    try:
+        here, there = (astuple(Fields.of(film.coarser, place, speeds, factor)) for place in (d, out))
+    except NotConverged:
+        return Fields(*(math.nan,) * len(astuple(found)))
+    return Fields(
+        *(
+            max(film.share * abs(coarse - own) + abs(moved - coarse), LEAST * abs(own))
+            for own, coarse, moved in zip(astuple(found), here, there, strict=True)
+        )
+    )
+
+
 def film_state(
-    static: StaticFilms, volume: VolumeFilm, i: int, bodies: Array, at_rest: RestingFilm, temperature: float = math.nan
+    static: StaticFilms, volume: FieldFilm, i: int, bodies: Array, at_rest: RestingFilm, temperature: float = math.nan
 ) -> FilmState:
     """The state of film i at rest. volume: the film on finite volumes, which tells what the oil does besides in this
     place; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises NotConverged."""
-    case, system, section = static.case, static.system, volume.section
+    case, system, section = static.case, static.system, volume.own.section
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
-    journal, shell = 0.5 * (total + slip), 0.5 * (total - slip)
+    journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
-    motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
-    solution, at = steady_solution(volume, motion), film_at(volume, at_rest.eccentricity, total)
-    found = loads(at, motion, solution, slip, case.film.cavitation_factor)
-    power = -found.torque.journal * journal + found.torque.shell * shell
-    flow = outflow(at, motion.d, at.pressure(solution.state))
+    found = Fields.of(volume.own, d, speeds, case.film.cavitation_factor)
+    errors = _field_errors(volume, found, at_rest, speeds, case.film.cavitation_factor)
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
-    friction = friction_coefficient(found.torque.journal, size, section.radius)
+    friction, flow = friction_coefficient(found.torque, size, section.radius), found.side_flow
     return FilmState(
         film=system.names[i],
         speed_Hz=float(bodies[0]) / (2.0 * math.pi),
@@ -126,23 +179,27 @@ def film_state(
         load=np.array(at_rest.load),
         displacement=d,
         attitude_deg=at_rest.attitude_deg,
-        film_thickness_min=c * float(gap_height(section, motion.d, phi).min()),
+        film_thickness_min=c * float(gap_height(section, (float(d[0]), float(d[1])), phi).min()),
         stiffness=at_rest.stiffness,
         damping=at_rest.damping,
         error=at_rest.error,
         place_error=at_rest.place_error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
-        torque=found.torque.journal,
+        torque=found.torque,
         friction_coefficient=friction,
         friction_variable=friction * section.radius / c,
-        power=power,
-        side_flow=flow,
+        power=found.power,
+        side_flow=found.side_flow,
         p_max=found.p_max,
-        temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
+        temperature_rise=found.power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         force_error=force_error(static, i, d * c, total),
         viscosity=section.viscosity,
         clearance=c,
         temperature=temperature,
+        film_thickness_error=c * at_rest.place_error,
+        p_max_error=errors.p_max,
+        power_error=errors.power,
+        side_flow_error=errors.side_flow,
     )
 
 

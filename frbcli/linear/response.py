@@ -278,9 +278,9 @@ def _at(
     frequency, load = excited(rotor, omega, excitation)
     q = forced_motion(rotor, omega, (frequency, load), stiffness, damping)
     journals = rotor.journals @ q
-    forces = -np.einsum("fij,fj->fi", stiffness + 1j * frequency * damping, journals)
+    forces = -np.einsum("fij,fj->fi", stiffness + 1j * frequency * damping, journals)[:, :2]
     forces = np.concatenate([forces, element_forces(case, rotor, omega, frequency, q)])
-    return np.array([place @ q for _, place in rotor.points]), forces, journals
+    return np.array([place @ q for _, place in rotor.points]), forces, journals[:, :2]
 
 
 def _on_others(

@@ -20,7 +20,7 @@ from frbcli.columns import Table, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
-from frbcli.linear.columns import point_columns
+from frbcli.linear.columns import film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, find_threshold
 from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
@@ -46,8 +46,9 @@ class Stability(Tabular):
 
     def table(self) -> Table:
         """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
-        films = max((tuple(film.name for film in point.films) for point in self.points), key=len, default=())
-        return table_of(point_columns(films), self.points)
+        films = max((point.films for point in self.points), key=len, default=())
+        names = [film.name for film in films]
+        return table_of(point_columns(names, film_columns(films)), self.points)
 
 
 def stability(

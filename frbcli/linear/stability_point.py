@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium import hopf
-from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm
+from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
@@ -195,10 +195,9 @@ def with_errors(point: StabilityPoint, machine: MachineAtRest) -> StabilityPoint
 
 
 def _coefficients(films: FilmsAtRest) -> tuple[Array, Array]:
-    """(films, 2, 2) stiffness in N/m and damping in N s/m of the films of a machine, as they are solved."""
+    """(films, c, c) stiffness and damping of the films of a machine, as they are solved."""
     stiffness, damping = (
-        -np.array([getattr(force, name) for force in films.forces]).reshape(-1, 2, 2)
-        for name in ("by_displacement", "by_velocity")
+        -stacked([getattr(force, name) for force in films.forces]) for name in ("by_displacement", "by_velocity")
     )
     return stiffness, damping
 

@@ -1,4 +1,4 @@
-"""A rotor as its bearings feel it while its journals are held at given places."""
+"""A rotor as its bearings feel it at rest: with its journals held at given places, or in all its degrees of freedom."""
 
 from __future__ import annotations
 
@@ -14,17 +14,33 @@ from frbcli.rotor.linear import Array, LinearRotor
 
 @dataclass(frozen=True)
 class HeldRotor:
-    """A rotor with its journals held at D (2 films,) in m.
+    """A rotor at given u unknowns D: the places (2 films,) of its journals in m, at which it is held.
 
-    load: (2 films,) force in N that it puts on the films at D = 0, and stiffness (2 films, 2 films) N/m: it puts on
-    load - stiffness @ D; shape: (n,) m its deflection at D = 0, and following (n, 2 films): its deflection is
-    shape + following @ D.
+    load: (u,) force in N that it puts on the films at D = 0, and stiffness (u, u) N/m: it puts on load - stiffness @ D;
+    shape: (n,) m its deflection at D = 0, and following (n, u): its deflection is shape + following @ D. journals:
+    (c films, u) their coordinates by the unknowns where these are others, see whole_rotor, else None.
     """
 
     load: Array
     stiffness: Array
     shape: Array
     following: Array
+    journals: Array | None = None
+
+    def places(self, unknowns: Array, films: int) -> Array:
+        """(films, c) coordinates of the journals."""
+        found = unknowns if self.journals is None else self.journals @ unknowns
+        return np.asarray(found.reshape(films, -1))
+
+
+def whole_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
+    """The rotor at omega rad/s in all its degrees of freedom, for films that see tilts: a rigid shaft does not let all
+    coordinates of its journals be held at once. What no film holds, the angle of a ring, stays at zero."""
+    rotor, n = rotor.at(omega), rotor.size
+    p = rotor.journals.reshape(-1, n)
+    loose = ~(rotor.stiffness.any(axis=1) | p.any(axis=0))
+    stiffness = rotor.stiffness + np.diag(loose.astype(float))
+    return HeldRotor(np.where(loose, 0.0, rotor.static_load), stiffness, np.zeros(n), np.eye(n), p)
 
 
 def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:

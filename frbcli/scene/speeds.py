@@ -13,8 +13,8 @@ SPEEDS, SPEEDS_WITH_MEMORY = 60, 20  # 5 and 15 Hz apart from 0 to 300 Hz
 
 def default_speeds(case: Case, count: int | None = None) -> tuple[float, ...]:
     """Speeds in Hz, greater than zero, that sweep the range of the case; fewer where a film keeps oil, whose memory
-    takes longer to compute."""
-    count = count or (SPEEDS_WITH_MEMORY if keeps_oil(case) else SPEEDS)
+    takes longer to compute, or follows the tilt of its journal."""
+    count = count or (SPEEDS_WITH_MEMORY if keeps_oil(case) or form_of(case).static_cells else SPEEDS)
     low, high = sorted((case.speed.start, case.speed.end))
     if low > 0.0:
         return tuple(np.unique(np.linspace(low, high, count)).tolist())

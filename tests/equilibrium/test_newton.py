@@ -11,6 +11,10 @@ CLEARANCES = np.array([[3e-5]])
 STIFFNESS = 2e6  # N/m
 
 
+def over_clearance(position: np.ndarray) -> np.ndarray:
+    return position / CLEARANCES
+
+
 def spring(position: np.ndarray, _: object) -> ForceBalance[None]:
     """A film whose force grows without bounds towards contact: k x / (1 - eps^2), under 50 N along x."""
     x, gap = position[0], 1.0 - float(np.sum((position[0] / CLEARANCES[0]) ** 2))
@@ -22,7 +26,7 @@ def spring(position: np.ndarray, _: object) -> ForceBalance[None]:
 def test_a_journal_rests_where_the_quadratic_equation_says(search: Search) -> None:
     """k c e / (1 - e^2) = 50 N: e = (-1 + sqrt(1 + 4 q^2)) / (2 q) with q = 50 N / (k c)."""
     q = 50.0 / (STIFFNESS * CLEARANCES[0, 0])
-    found = search_rest(spring, np.zeros((1, 2)), CLEARANCES, search)
+    found = search_rest(spring, np.zeros((1, 2)), over_clearance, search)
     assert found.settled
     assert found.position[0] / CLEARANCES[0] == pytest.approx([(np.sqrt(1.0 + 4.0 * q * q) - 1.0) / (2.0 * q), 0.0])
 
@@ -42,5 +46,5 @@ def test_only_patience_gets_past_a_jump_of_the_force() -> None:
         return ForceBalance(found.residual - [fallen, 0.0], found.slope, None)
 
     start = np.array([[0.4 * CLEARANCES[0, 0], 0.0]])
-    assert not search_rest(jump, start, CLEARANCES, Search(0.0, 1e-3, 0.05)).settled
-    assert search_rest(jump, start, CLEARANCES, Search(0.0, 1e-3, 1.0, 5)).settled
+    assert not search_rest(jump, start, over_clearance, Search(0.0, 1e-3, 0.05)).settled
+    assert search_rest(jump, start, over_clearance, Search(0.0, 1e-3, 1.0, 5)).settled

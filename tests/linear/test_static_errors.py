@@ -11,6 +11,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.equilibrium import static_films
 from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
 from frbcli.linear.damped_modes import damped_modes
+from frbcli.linear.film_state import FilmState
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 
@@ -53,12 +54,38 @@ def test_amplitudes(exact: dict[str, Any]) -> None:
     assert np.all(own.amplitude_error < 0.1 * own.amplitude)
 
 
+def holds(own: FilmState, fine: FilmState) -> None:
+    """Smallest film thickness, largest pressure, power and flow of a sheet are off by no more than is stated."""
+    for name, error, most in (
+        ("film_thickness_min", own.film_thickness_error, 0.02),
+        ("p_max", own.p_max_error, 0.02),
+        ("power", own.power_error, 1e-2),
+        ("side_flow", own.side_flow_error, 0.02),
+    ):
+        exact = getattr(fine, name)
+        assert abs(getattr(own, name) - exact) <= error < most * exact
+
+
 @pytest.mark.usefixtures("coarse")
 def test_sheets(exact: dict[str, Any]) -> None:
     for own, fine in zip(bearing_sheet(CASE, SPEEDS).points, exact["sheet"].points, strict=True):
         assert np.hypot(*(own.displacement - fine.displacement)) <= own.place_error < 0.05
+        holds(own, fine)
     own, fine = sommerfeld_chart(CASE, [0.6], 90.0).points[0], exact["chart"].points[0]
     assert np.hypot(*(own.displacement - fine.displacement)) <= own.place_error < 0.05
+    holds(own, fine)
+
+
+@pytest.mark.usefixtures("coarse")
+@pytest.mark.parametrize(
+    ("case", "settings"), [("jeffcott", "film.theory=finite"), ("rigid", "film.cavitation=reynolds")]
+)
+def test_pressures_losses_and_flows_of_other_films(monkeypatch: pytest.MonkeyPatch, case: str, settings: str) -> None:
+    """A film on tables, whose fields are on cells all the same, and one on cells."""
+    own = bearing_sheet(load_case(case, [settings]), SPEEDS).points
+    monkeypatch.undo()
+    for coarse, fine in zip(own, bearing_sheet(load_case(case, [settings]), SPEEDS).points, strict=True):
+        holds(coarse, fine)
 
 
 @pytest.mark.usefixtures("coarse")

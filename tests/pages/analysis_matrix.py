@@ -58,6 +58,8 @@ SEAL = (
     'bearing=[{kind="single-film", width="20 mm", diameter="25 mm", clearance="35 um"}, '
     f'{{kind="coefficients", name="seal", over_speed={{{OVER_SPEED}}}}}]'
 )
+FILM = 'kind="single-film", width="5 mm", diameter="7 mm", clearance="15 um"'
+SINGLE_FILMS = f'bearing=[{{name="left", position="42 mm", {FILM}}}, {{name="right", position="74 mm", {FILM}}}]'
 SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
 
 # Row of the table: a shipped case, and what is set in it.
@@ -98,6 +100,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "harmonic forces": ("jeffcott", (HARMONIC,)),
     "forces over time": ("jeffcott", (TABLE,)),
     "motion of the ground": ("jeffcott", (GROUND,)),
+    "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, "film.tilt=follows")),
     "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
     "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearings alone": ("thrust", ()),

@@ -36,6 +36,7 @@ from frbcli.linear.columns import (
     RESPONSE_FORCES,
     RESPONSE_POINTS,
     SHEET,
+    TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
 from frbcli.linear.thrust.columns import THRUST
@@ -66,6 +67,7 @@ TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "thrust sheet": THRUST,
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
+    "tilting films": TILTING,
     "modes": of_json(MODES),
     "damped modes": DAMPED_MODES,
     "response": RESPONSE_POINTS,

@@ -47,7 +47,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         _check_thrust(case, listed, everything, terminal)
         return
     found = findings(case)
-    _show_findings(found, terminal)
+    _show_findings(case, found, terminal)
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = _tell_bare(listed, terminal)
@@ -183,7 +183,7 @@ def _expectations(
     )
 
 
-def _show_findings(found: Findings, terminal: Terminal) -> None:
+def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 
@@ -197,10 +197,22 @@ def _show_findings(found: Findings, terminal: Terminal) -> None:
         terminal.show("tilt of the journals", table_of(FILM_TILTS, found.tilts))
     tilting = ", ".join(f"{film.film or 'the film'} by {film.change:.0%}" for film in found.tilts if film.matters)
     if tilting:
-        terminal.sentence(
-            f"Note: as journals tilt, the gap at the ends changes, in {tilting}. Results take the gap as even along "
-            "the axis; `frb rotation` with motion.tilt shows what a tilt does to a film."
-        )
+        terminal.sentence(f"Note: as journals tilt, the gap at the ends changes, in {tilting}. {_about_tilt(case)}")
+
+
+def _about_tilt(case: Case) -> str:
+    """What results make of the tilt of journals, with the setting for it where the case allows it."""
+    from frbcli.case.model import altered
+    from frbcli.scene.gate.analysis import STABILITY
+    from frbcli.scene.gate.gate import faults
+
+    follows = altered(case, {"film": altered(case.film, {"tilt": "follows"})})
+    if faults(follows, STABILITY):
+        return "Results take the gap as even along the axis."
+    return (
+        'With film.tilt = "follows" stability, damped modes and response follow it; runs take the gap as even along '
+        "the axis."
+    )
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:

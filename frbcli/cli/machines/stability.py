@@ -169,9 +169,9 @@ def _character(kind: ThresholdKind) -> str:
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
     from frbcli.columns import document, documents, keys
-    from frbcli.linear.columns import FILM, MODES, POINT
+    from frbcli.linear.columns import FILM, MODES, POINT, film_columns
 
-    told, films = document(POINT, point), documents(FILM, point.films)
+    told, films = document(POINT, point), documents(film_columns(point.films), point.films)
     errors = told.pop("error") | (films[0]["error"] if films else {})
     told |= (films[0] if films else dict.fromkeys(keys(FILM))) | {"error": errors}
     if len(films) > 1:

@@ -90,7 +90,7 @@ def loads(
 
 def force(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """Force (3.13) in N of scaled gauge pressures (m, k) on the journal, that in grooves too, (4.8) to (4.10)."""
-    return _pushed(film, pressure)
+    return pushed(film, pressure)
 
 
 def moment(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
@@ -98,11 +98,12 @@ def moment(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     M_y = z F_x summed over the width; sections that are equal on both sides of it have none."""
     if film.section.copies != 1:
         return 0.0, 0.0
-    x, y = _pushed(film, film.section.width * (film.grid.height - 0.5) * pressure)
+    x, y = pushed(film, film.section.width * (film.grid.height - 0.5) * pressure)
     return -y, x
 
 
-def _pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
+def pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
+    """(x, y) of the force in N of scaled gauge pressures (m, k), or of what else is given over the cells."""
     grid, section = film.grid, film.section
     scale = section.copies * section.radius * section.width * section.pressure_scale
     along = scale * (force_weights(section, grid) * pressure).sum(axis=1)

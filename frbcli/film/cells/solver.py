@@ -28,11 +28,11 @@ from frbcli.film.cells.balance.states import (
     STATES,
     cell_states,
 )
-from frbcli.film.cells.balance.tilted import tilted_balances
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.gap import gap_rate
 from frbcli.film.grid import Array
 

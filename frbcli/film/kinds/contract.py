@@ -1,7 +1,8 @@
 """The contract of all kinds of films: a machine uses its films by these functions alone.
 
 Film i has a journal whose displacement `place` (2,) in m and velocity `rate` (2,) in m/s are relative to its shell;
-`total` is omega_J + omega_S, `slip` omega_J - omega_S, in rad/s. Forces act on the journal, by a whole bearing.
+`total` is omega_J + omega_S, `slip` omega_J - omega_S, in rad/s. Forces act on the journal, by a whole bearing. Films
+that see four coordinates have the tilts about x and y behind the displacement, and moments in N m behind the force.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class Films(ABC):
 
     clearances: tuple[float, ...]
 
+    coordinates: ClassVar[int] = 2  # of a journal that its film sees: 2, or 4 with its tilts
     samples: ClassVar[int] = SAMPLES  # states of a run that are kept for the error of its forces
     # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
     # to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
@@ -55,6 +57,16 @@ class Films(ABC):
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """Force and derivatives of film i; of a film that keeps oil, when this has settled. near: of the same film in a
         motion near by, from which it may be sought. Raises NotConverged."""
+
+    @property
+    def standing(self) -> Array:
+        """(films, coordinates) of journals in their shells when nothing has moved: other than 0 in shells that tilt."""
+        return np.zeros((self.count, self.coordinates))
+
+    def ends(self, places: Array) -> Array:
+        """(k, 2) displacements over the clearance that have to stay within the gap: of journals at places (films,
+        coordinates), or at both ends of bearings in which they tilt."""
+        return np.asarray(places / np.array(self.clearances)[:, None])
 
     @property
     def remembering(self) -> tuple[bool, ...]:

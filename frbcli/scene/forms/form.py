@@ -50,6 +50,8 @@ class FilmForm:
     by_cells: ClassVar[bool] = False  # whether it has cells or elements whose number a plan may choose
     chosen_by_target: ClassVar[bool] = False  # whether a plan takes as many of them as the target needs
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
+    # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
+    static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
     told_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
     solved: ClassVar[bool] = (
         True  # whether its pressure is solved, on a mesh whose error is known

@@ -132,6 +132,6 @@ def misalignment_faults(case: Case) -> Iterator[Fault]:
     for index, bearing in enumerate(case.bearings):
         if isinstance(bearing, SingleFilmBearing) and any(bearing.misalignment or ()):
             assert bearing.misalignment is not None
-            problem = "is followed by frb rotation alone: elsewhere journal and shell are parallel."
+            problem = "is followed by frb rotation, and with film.tilt at rest: else journal and shell are parallel."
             key = f"{bearing_key(case, index)}.misalignment"
             yield Fault(key, as_text(bearing.misalignment), None, problem, "Leave it out here.")

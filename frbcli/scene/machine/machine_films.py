@@ -14,6 +14,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film
 from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
@@ -21,6 +22,7 @@ from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.elements import ElementFilms
 from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
+from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import element_film
 from frbcli.film.published.film import PublishedFilm
@@ -32,6 +34,7 @@ from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.solutions import SOLUTIONS
+from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.machine.bearing_model_films import bearing_film
 from frbcli.scene.planning.cell_choice import compared_states
 from frbcli.scene.planning.planned import Plan
@@ -39,6 +42,7 @@ from frbcli.scene.section import film_section
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
+COARSEST = 8, 2  # cells of a film whose section and law alone are taken
 SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 
 
@@ -46,6 +50,7 @@ def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
     default that of the run."""
     makers = {NO_FILM: _none, CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
+    makers[TILTED] = _tilted
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
 
 
@@ -115,6 +120,19 @@ def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
     law = make_law(case, case.cavitation(geometry), section)
     assert isinstance(law, Penalty)
     return SourceFilm(section, law, mesh)
+
+
+def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> Films:
+    places = film_places(case)
+    misalignments = np.array([getattr(place.geometry, "misalignment", None) or (0.0, 0.0) for place in places])
+    own = tuple(_tilted_film(case, place, cells_of(plan), top_Hz) for place in places)
+    return TiltedFilms(_clearances(case), own, misalignments)
+
+
+def _tilted_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None) -> TiltedFilm:
+    flat = volume_film(case, place, COARSEST, top_Hz)
+    section, reference = whole_width(flat.section), flat.scales.reference
+    return tilted_film(section, flat.law, cells, reference, place.geometry.supply.mirrored)
 
 
 def _models(case: Case, _: Plan, __: float | None) -> Films:

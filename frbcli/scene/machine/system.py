@@ -11,6 +11,7 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
+from frbcli.rotor.body import COORDINATES
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
 from frbcli.scene.machine.machine_films import make_films
@@ -74,9 +75,10 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
     """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
     rotor, default that of the run."""
     places, ringed = film_places(case), turning_rings(case)
+    films = make_films(case, plan, top_Hz)
     return System(
-        rotor=make_rotor(case) if rotor is None else rotor,
-        films=make_films(case, plan, top_Hz),
+        rotor=make_rotor(case, COORDINATES[: films.coordinates]) if rotor is None else rotor,
+        films=films,
         names=tuple(place.name for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
         turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),

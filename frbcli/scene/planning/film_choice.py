@@ -21,6 +21,7 @@ from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
+from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.planning.cell_choice import FEWEST, WorstFilm, fewest_cells, given_cells, worst_film
 from frbcli.scene.planning.eccentricity import expected_eccentricity
 from frbcli.scene.planning.short_bearing import short_error, slenderness_of
@@ -64,6 +65,8 @@ def form_of(case: Case) -> FilmForm:
     """The form of the films of a case; TABLE for all gaps made of rectangles, whose forms follow from the target."""
     if not case.films:
         return NO_FILM
+    if case.film.tilt == "follows":
+        return TILTED
     if case.film.bearing_model:
         return GIVEN
     if TwoPhase.name in case.cavitations and case.film.two_phase.form == "published":

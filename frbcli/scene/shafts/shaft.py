@@ -36,6 +36,7 @@ class Shaft(ABC):
 
     equal_bearings: ClassVar[int] = 2  # that a bearing of the case stands for
     gyroscopic: ClassVar[bool] = False  # whether its matrices depend on the speed
+    tilts: ClassVar[bool] = False  # whether its journals do
     elastic: ClassVar[bool] = False  # whether its disk moves against its journals
     fronts: ClassVar[float]  # steps per revolution times the root of the tolerance, where fronts of oil cross cells
     bearings_modelled: ClassVar[tuple[str, str]] = (

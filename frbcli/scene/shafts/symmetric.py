@@ -23,6 +23,8 @@ class RigidShaft(Shaft):
     rotor: RigidRotor
 
     fronts: ClassVar[float] = 0.2
+    disk_count: ClassVar[int] = 0
+    freedoms: ClassVar[int] = 2
 
     def body(self) -> Body:
         """See Shaft."""
@@ -43,16 +45,6 @@ class RigidShaft(Shaft):
         """See Shaft."""
         return self.rotor.unbalance / self.rotor.mass
 
-    @property
-    def disk_count(self) -> int:
-        """See Shaft."""
-        return 0
-
-    @property
-    def freedoms(self) -> int:
-        """See Shaft."""
-        return 2
-
     def stations(self, machine: LinearRotor) -> Stations:
         """See Shaft."""
         journal = dict(machine.points)["journal"]
@@ -67,6 +59,8 @@ class JeffcottShaft(Shaft):
 
     elastic: ClassVar[bool] = True
     fronts: ClassVar[float] = 0.55
+    disk_count: ClassVar[int] = 1
+    freedoms: ClassVar[int] = 4
 
     def body(self) -> Body:
         """See Shaft."""
@@ -100,16 +94,6 @@ class JeffcottShaft(Shaft):
     def eccentricity(self) -> float:
         """See Shaft."""
         return self.rotor.unbalance / self.rotor.mass
-
-    @property
-    def disk_count(self) -> int:
-        """See Shaft."""
-        return 1
-
-    @property
-    def freedoms(self) -> int:
-        """See Shaft."""
-        return 4
 
     @property
     def compliance(self) -> float:

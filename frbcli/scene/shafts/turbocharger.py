@@ -49,6 +49,7 @@ class TurbochargerShaft(Shaft):
 
     equal_bearings: ClassVar[int] = 1
     gyroscopic: ClassVar[bool] = True
+    tilts: ClassVar[bool] = True
     elastic: ClassVar[bool] = True
     fronts: ClassVar[float] = 0.55
 

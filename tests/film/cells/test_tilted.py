@@ -17,15 +17,15 @@ from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion, balances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
-from frbcli.film.cells.balance.tilted import tilted_balances
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
-from frbcli.film.cells.lands import lands, summed
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.balances import tilted_balances
+from frbcli.film.cells.tilted.lands import lands, summed
 from frbcli.film.gap import Hole, Section
 
 LAWS: dict[str, Law] = {

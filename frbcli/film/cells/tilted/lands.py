@@ -35,10 +35,17 @@ def lands(section: Section, motion: Motion, mirrored: bool) -> tuple[Land, ...]:
     motion: of the bearing, its slopes over the whole width; mirrored: whether z over a single section runs against that
     of the bearing.
     """
-    if section.copies == 1 or not motion.tilts:
-        return (_land(section, motion, -1.0 if mirrored else 1.0, 0.0),)
+    if not motion.tilts:
+        return (Land(section, motion, -1.0 if mirrored else 1.0, 0.0),)
+    return tuple(_land(one, motion, side, centre) for one, side, centre in parts(section, mirrored))
+
+
+def parts(section: Section, mirrored: bool) -> tuple[tuple[Section, float, float], ...]:
+    """The sections that a bearing whose journal tilts is solved on, with side and centre of each, see Land."""
+    if section.copies == 1:
+        return ((section, -1.0 if mirrored else 1.0, 0.0),)
     one = replace(section, copies=1)
-    return tuple(_land(one, motion, side, -side * 0.5 * section.width) for side in (1.0, -1.0))
+    return tuple((one, side, -side * 0.5 * section.width) for side in (1.0, -1.0))
 
 
 def _land(section: Section, motion: Motion, side: float, centre: float) -> Land:
@@ -51,10 +58,10 @@ def _land(section: Section, motion: Motion, side: float, centre: float) -> Land:
     return Land(section, Motion(d, v, motion.omega, slope, slope_rate), side, centre)
 
 
-def summed(parts: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
+def summed(films: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
     """The loads of a bearing from those of its lands."""
-    loads = [each for _, each in parts]
-    moments = [land.moment(each) for land, each in parts]
+    loads = [each for _, each in films]
+    moments = [land.moment(each) for land, each in films]
     if len(loads) == 1:
         return replace(loads[0], moment=moments[0])
     oil = [each.oil for each in loads]

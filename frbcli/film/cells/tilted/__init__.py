@@ -1,0 +1,1 @@
+"""Films whose gap changes along the axis, since their journal tilts: balances, lands, forces with derivatives."""

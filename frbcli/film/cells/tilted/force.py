@@ -1,0 +1,157 @@
+"""Force and moments of a steady film whose journal moves and tilts, with all derivatives.
+
+The coordinates q = (x, y, tilt_x, tilt_y) of the journal in the middle of the bearing move the journal over a land by
+u = P q / C, its displacement in the middle of the land and the growth of this over the width, over the clearance. The
+loads of the land that belong to u do the same virtual work as force and moments: these are P^T of them.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.errors import FilmUnsolved
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.loads import pushed
+from frbcli.film.cells.mesh.grid import tilted_ends, volume_grid
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.clipped import mean_change
+from frbcli.film.cells.tilted.lands import parts
+from frbcli.film.gap import Section, gap_rate, graded_ring
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.film import FilmForce
+
+COORDINATES = 4  # of the journal: its displacement along x and y, and its tilts about them
+STEP = 1e-3  # of the gap: differences of five points are exact for the cubes of gaps
+POINTS = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+
+
+@dataclass(frozen=True)
+class TiltedLand:
+    """A land on its cells, of a law that does not follow the motion. map: P, (4, 4), see above."""
+
+    film: VolumeFilm
+    map: Array
+
+
+@dataclass(frozen=True)
+class TiltedFilm:
+    """A whole bearing whose journal tilts. section: over the whole width, or one of the two beside a groove in the
+    middle."""
+
+    section: Section
+    lands: tuple[TiltedLand, ...]
+
+    def ends(self, place: Array) -> Array:
+        """(2, 2) displacements over the clearance at both ends of the bearing of a journal at `place` (4,)."""
+        x, y, tilt_x, tilt_y = place
+        half = 0.5 * self.section.bearing_width
+        ends = [(x + z * tilt_y, y - z * tilt_x) for z in (-half, half)]
+        return np.asarray(ends) / self.section.clearance
+
+
+def tilted_film(
+    section: Section, law: Law, cells: tuple[int, int], reference: float, mirrored: bool = False
+) -> TiltedFilm:
+    """A bearing of a section over its whole width, see whole_width, or of two beside a groove.
+
+    cells: around, equal ones, and along the whole width; reference: see VolumeFilm; mirrored: see lands.
+    """
+    lands, (around, along) = [], cells
+    sections = parts(section, mirrored)
+    spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
+    edges = np.array([middle + side * half for middle, half in spans for side in (-1.0, 1.0)])
+    ring = graded_ring(around, 0.0, 1.0, edges)
+    for one, side, centre in sections:
+        grid = volume_grid(one, ring, tilted_ends(along // len(sections)))
+        width = side * one.width
+        by_tilt = np.array([[0.0, centre], [-centre, 0.0], [0.0, width], [-width, 0.0]])
+        plane = np.vstack([np.eye(2), np.zeros((2, 2))])
+        lands.append(TiltedLand(VolumeFilm(one, grid, law, reference), np.hstack([plane, by_tilt])))
+    return TiltedFilm(section, tuple(lands))
+
+
+def tilted_force(
+    film: TiltedFilm, place: Array, rate: Array, total: float, start: Array | None = None
+) -> FilmForce:
+    """Force and moments (4,) in N and N m of a whole film whose oil has settled, and derivatives (4, 4).
+
+    place, rate: (4,) coordinates of the journal in m and rad, and their rates; total: omega_J + omega_S; start: (lands,
+    m, k) field of a motion near by, if one is known. Raises NotConverged.
+    """
+    least = float(np.linalg.norm(film.ends(place), axis=1).max())
+    if least >= 1.0:
+        raise FilmUnsolved("the journal touches its shell at an end")
+    force, by_place, by_rate, fields = np.zeros(4), np.zeros((4, 4)), np.zeros((4, 4)), []
+    for number, land in enumerate(film.lands):
+        clearance = land.film.section.clearance
+        u, v = (land.map @ each / clearance for each in (place, rate))
+        motion = Motion((u[0], u[1]), (v[0], v[1]), total, (u[2], u[3]), (v[2], v[3]))
+        solution = _solution(land.film, motion, None if start is None else start[number])
+        loads, by_u, by_v = _land_force(land.film, motion, solution)
+        force += land.map.T @ loads
+        by_place += land.map.T @ by_u @ land.map / clearance
+        by_rate += land.map.T @ by_v @ land.map / clearance
+        fields.append(solution.w)
+    return FilmForce(force, by_place, by_rate, np.array(fields))
+
+
+def _solution(film: VolumeFilm, motion: Motion, start: Array | None) -> VolumeSolution:
+    solver = FilmSolver(film)
+    try:
+        return solver.steady(motion, start)
+    except FilmUnsolved:
+        if start is None:
+            raise
+        return solver.steady(motion)
+
+
+def _land_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> tuple[Array, Array, Array]:
+    """Loads (4,) that belong to u in N, and their derivatives (4, 4) by u in N and by its rate in N s."""
+    grid, state = film.grid, solution.state
+    balance = CellBalances(film.section, grid, motion, solution.before)
+    storage = Storage(gap_rate(motion.velocity_at(grid.height), grid.centre[:, None]), np.zeros(grid.shape))
+    _, entries = balance.residual(state, storage)
+    m, k = grid.shape
+    stencil, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + 2 * COORDINATES))
+    stencil[CENTRE], stencil[BEFORE], stencil[BEHIND] = entries.centre, entries.before, entries.behind
+    stencil[BELOW], stencil[ABOVE] = entries.below, entries.above
+    for i in range(COORDINATES):
+        fields[:, :, k + i] = -_by_place(film, motion, solution, i)
+        opening = gap_rate(_unit(i, grid.height), grid.centre[:, None])
+        fields[:, :, k + COORDINATES + i] = -np.where(grid.fixed, 0.0, grid.area * opening * state.fraction)
+    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    changes = np.array([_loads(film, mean_change(film, state, fields[:, :, k + i])) for i in range(2 * COORDINATES)])
+    return _loads(film, film.mean_pressure(state)), changes[:COORDINATES].T, changes[COORDINATES:].T
+
+
+def _unit(i: int, z: Array) -> tuple[Array, Array]:
+    """(k,) displacement along x and y at positions z (k,) over the width, of coordinate i of u."""
+    along = np.ones_like(z) if i < 2 else z - 0.5
+    return (along, 0.0 * along) if i % 2 == 0 else (0.0 * along, along)
+
+
+def _by_place(film: VolumeFilm, motion: Motion, solution: VolumeSolution, i: int) -> Array:
+    """(m, k) derivative by coordinate i of u of what flows out of each cell."""
+    grid, state = film.grid, solution.state
+    step = STEP * (1.0 - math.hypot(*motion.d) - 0.5 * math.hypot(*motion.slope))
+    step = max(step, STEP * STEP)
+    total = np.zeros(grid.shape)
+    for side, weight in POINTS:
+        u = np.array([*motion.d, *motion.slope])
+        u[i] += side * step
+        moved = replace(motion, d=(u[0], u[1]), slope=(u[2], u[3]))
+        fluxes, _, _ = CellBalances(film.section, grid, moved, solution.before).fluxes(state.pressure, state.fraction)
+        total += weight / step * fluxes.net_outflow(grid.share)
+    return np.where(grid.fixed, 0.0, total)
+
+
+def _loads(film: VolumeFilm, pressure: Array) -> Array:
+    """(4,) loads that belong to u in N, of scaled gauge pressures (m, k)."""
+    return np.array([*pushed(film, pressure), *pushed(film, (film.grid.height - 0.5) * pressure)])

@@ -1,0 +1,95 @@
+"""Films whose gap follows the tilt of their journals, on cells over the whole width, for machines at rest."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.schema import Case
+from frbcli.elements.damper import DamperElement
+from frbcli.errors import Fault
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.forms.cells import CellForm
+from frbcli.scene.forms.form import SolveCounts
+from frbcli.scene.gate.analysis import ALL, FILMS, RANGE, STABILITY
+from frbcli.scene.gate.rule import Faults, Rule
+from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.tilt import as_text
+
+KEY, ASKED = "film.tilt", "follows"
+FOLLOWED = (FILMS, STABILITY, RANGE)
+OTHERS = tuple(each for each in ALL if each not in FOLLOWED)
+WITHOUT = f'Write {KEY} = "none".'
+
+
+def _analysis_faults(_: Case) -> Faults:
+    problem = "is for machines at rest: stability, damped modes and response."
+    yield Fault(KEY, ASKED, None, problem, 'Write film.tilt = "none" here, or call `frb stability`.')
+
+
+def _machine_faults(case: Case) -> Iterator[Fault]:
+    """Bodies that do not tilt."""
+    if case.given_rotor is None:
+        yield Fault(KEY, ASKED, None, "needs a shaft that tilts, and there is no [rotor].", WITHOUT)
+    elif not shaft_of(case).tilts:
+        problem = "moves in its plane: its journals do not tilt."
+        yield Fault("rotor.kind", case.rotor.kind, None, problem, f'Take kind = "turbocharger". {WITHOUT}')
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing):
+            problem = "has a ring, whose own tilt is not modelled."
+            yield Fault(f"{bearing_key(case, index)}.kind", bearing.kind, None, problem, WITHOUT)
+    for damper in DamperElement.of(case):
+        yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
+
+
+def _film_faults(case: Case) -> Iterator[Fault]:
+    """Films that do not follow a tilt."""
+    if case.film.theory not in ("auto", "finite"):
+        problem = "has a gap that is the same along the axis."
+        yield Fault("film.theory", case.film.theory, None, problem, f'Write theory = "finite". {WITHOUT}')
+    for key, name in dict(cavitation_keys(case)).items():
+        if law_named(name).keeps_oil:
+            problem = "keeps its oil, whose motion in a film that tilts is not linearised."
+            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {WITHOUT}")
+        elif law_named(name).follow is not Law.follow:
+            problem = "changes with the eccentricity, which in a film that tilts differs along the axis."
+            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {WITHOUT}")
+    if case.heat is not None:
+        problem = "has temperatures of films with a gap that is even along the axis."
+        yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {WITHOUT}')
+
+
+def _misalignment_faults(case: Case) -> Iterator[Fault]:
+    """Shells so far out of line that a journal in the middle touches their ends."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, SingleFilmBearing) and bearing.misalignment is not None:
+            most = bearing.clearance / (0.5 * bearing.width)
+            if math.hypot(*bearing.misalignment) >= most:
+                key = f"{bearing_key(case, index)}.misalignment"
+                problem = "closes the gap at the ends of the bearing around a journal in its middle."
+                remedy = f"Write less than {1e3 * most:.3g} mrad."
+                yield Fault(key, as_text(bearing.misalignment), None, problem, remedy)
+
+
+@dataclass(frozen=True)
+class TiltedForm(CellForm):
+    """Finite volumes over the whole width, finer at the ends."""
+
+    chosen_by_target: ClassVar[bool] = False
+    fine_when_static: ClassVar[bool] = False
+    turns_cells: ClassVar[bool] = False
+    static_cells: ClassVar[tuple[tuple[int, int], ...]] = ((96, 24), (48, 12), (64, 16))
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(_analysis_faults, OTHERS),
+        Rule(_machine_faults, FOLLOWED),
+        Rule(_film_faults, FOLLOWED),
+        Rule(_misalignment_faults, FOLLOWED),
+    )
+
+
+TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 40.0)

@@ -1,0 +1,212 @@
+"""Rotors at rest in films that follow the tilt of the shaft: eigenvalues, limits, what is refused."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.machines.stability import _point as document_of
+from frbcli.columns import table_of
+from frbcli.elements.housing import HousingElement
+from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.static_films import static_films as films_of
+from frbcli.errors import InputError
+from frbcli.film.cells.tilted.force import tilted_force
+from frbcli.linear.columns import FILM, film_columns, point_columns
+from frbcli.linear.stability import stability_points
+from frbcli.linear.stability_point import StabilityPoint
+from frbcli.rotor.body import COORDINATES
+from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.machine.rotor import make_rotor
+
+D, WIDTH, SPAN, LENGTH, RHO = 0.01, 0.005, 0.006, 0.02, 7850.0
+DISK, POLAR, DIAMETRAL, SPEED = 0.05, 4e-7, 3e-7, 300.0
+FEW = ((24, 8), (16, 6))
+
+
+@pytest.fixture(autouse=True)
+def few_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(TiltedForm, "static_cells", FEW)
+
+
+def rigid_shaft(*more: str) -> Case:
+    """A rigid shaft, symmetric about its middle, in two bearings that are nearly as wide as they are apart."""
+    film = f'{{kind = "single-film", width = "{WIDTH} m", diameter = "{D} m", clearance = "30 um", ends = "oil-bath"'
+    settings = (
+        'rotor={kind = "turbocharger", modes = 2}',
+        f'shaft=[{{length = "{LENGTH} m", diameter = "{D} m", density = "{RHO} kg/m^3", '
+        'youngs_modulus = "2.1e11 Pa"}]',
+        f'bearing=[{film}, name = "left", position = "{0.5 * (LENGTH - SPAN)} m"}}, '
+        f'{film}, name = "right", position = "{0.5 * (LENGTH + SPAN)} m"}}]',
+        f'disk=[{{position = "{0.5 * LENGTH} m", mass = "{DISK} kg", polar_inertia = "{POLAR} kg*m^2", '
+        f'diametral_inertia = "{DIAMETRAL} kg*m^2", unbalance = "1 g*mm"}}]',
+        "film.theory=finite",
+        f"speed.to={SPEED} Hz",
+    )
+    return load_case("jeffcott", [*settings, *more])
+
+
+def at_speed(case: Case) -> StabilityPoint:
+    """The machine at one speed, without the sweep for its threshold."""
+    return stability_points(case, [SPEED])[1][0]
+
+
+def pencil(mass: np.ndarray, damping: np.ndarray, stiffness: np.ndarray) -> np.ndarray:
+    n = len(mass)
+    lower = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    return np.linalg.eigvals(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
+
+
+def test_cylindrical_and_conical_motion_of_a_rigid_rotor() -> None:
+    """Without weight the journals rest in the middle; the rotor then has two motions that do not know of each other:
+    2 K and 2 D of a film hold its mass, and s^2/2 of them with twice those in tilt its inertia."""
+    case = rigid_shaft("film.tilt=follows", "film.cavitation=sommerfeld", "rotor.gravity=0 m/s^2")
+    point = at_speed(case)
+    film, omega = films_of(case).system.films.own[0], 2.0 * math.pi * SPEED  # type: ignore[attr-defined]
+    found = tilted_force(film, np.zeros(4), np.zeros(4), omega)
+    k, d = -found.by_displacement, -found.by_velocity
+    shaft = RHO * math.pi / 4.0 * D**2 * LENGTH
+    inertia = DIAMETRAL + shaft * (3.0 * (0.5 * D) ** 2 + LENGTH**2) / 12.0
+    polar = POLAR + 0.5 * shaft * (0.5 * D) ** 2
+    arm = 0.5 * SPAN * np.array([[0.0, 1.0], [-1.0, 0.0]])  # a tilt moves the journal by z (t_y, -t_x)
+    gyroscopic = omega * polar * np.array([[0.0, 1.0], [-1.0, 0.0]])
+
+    def conical(share: float) -> np.ndarray:
+        stiffness, damping = (2.0 * (arm.T @ a[:2, :2] @ arm + share * a[2:, 2:]) for a in (k, d))
+        return pencil(inertia * np.eye(2), damping + gyroscopic, stiffness)
+
+    cylindrical = pencil((shaft + DISK) * np.eye(2), 2.0 * d[:2, :2], 2.0 * k[:2, :2])
+    expected = np.concatenate([cylindrical, conical(1.0)])
+    values = point.eigenvalues
+    assert len(values) == len(expected)
+    for value in expected:
+        assert np.abs(values - value).min() < 1e-6 * abs(value)
+    flat = at_speed(rigid_shaft("film.cavitation=sommerfeld", "rotor.gravity=0 m/s^2"))
+    unlike = []
+    for value in conical(0.0):
+        assert np.abs(flat.eigenvalues - value).min() < 2e-2 * abs(value)
+        unlike.append(np.abs(values - value).min() / abs(value))
+    assert max(unlike) > 5e-2  # and so the tilt is told from none
+
+
+def test_a_rotor_that_does_not_tilt_rests_as_without() -> None:
+    """The weight in the middle of a rigid shaft: the films of both cases differ by their cells alone."""
+    tilted, flat = (at_speed(rigid_shaft(*more)).films for more in (("film.tilt=follows",), ()))
+    for one, other in zip(tilted, flat, strict=True):
+        assert one.tilting is not None
+        assert np.hypot(*one.tilting.tilt) < 1e-9 * 30e-6 / WIDTH
+        assert one.displacement == pytest.approx(other.displacement, abs=2e-2)
+        assert one.stiffness == pytest.approx(other.stiffness, abs=5e-2 * np.abs(other.stiffness).max())
+        assert one.error < 0.1
+    assert tilted[0].tilting.damping[:2, 2:] == pytest.approx(-tilted[1].tilting.damping[:2, 2:], abs=1e-6)
+
+
+def test_moments_balance_a_couple() -> None:
+    """A disk beside the bearings tilts the shaft until the films hold the moment of its weight."""
+    case = rigid_shaft("film.tilt=follows", f"disk.0.position={LENGTH} m")
+    static = films_of(case)
+    omega = 2.0 * math.pi * SPEED
+    found = resting_position(static.system, omega)
+    loads = np.array([film.force for film in found.films])
+    shaft = RHO * math.pi / 4.0 * D**2 * LENGTH
+    assert loads[:, 1].sum() == pytest.approx(9.81 * (shaft + DISK), rel=1e-8)
+    places = 0.5 * SPAN * np.array([-1.0, 1.0])
+    weight = -9.81 * DISK * 0.5 * LENGTH  # about the middle: M_x = -z F_y
+    assert -(places @ loads[:, 1]) + loads[:, 2].sum() == pytest.approx(weight, rel=1e-8)
+    assert abs(loads[:, 2].sum()) > 1e-2 * abs(weight)
+    assert found.journals[0, 2] != 0.0
+    assert found.journals[0, 2] == pytest.approx(found.journals[1, 2], rel=1e-9)  # the shaft is rigid
+
+
+def test_shells_that_are_not_in_line() -> None:
+    """Tilted against each other they leave a shaft without weight in line, by symmetry; tilted alike they take it along
+    until both films balance."""
+    tilts = 'bearing.{}.misalignment=["{} rad", "0 rad"]'
+    size, omega = 1e-3, 2.0 * math.pi * SPEED
+    more = ("film.tilt=follows", "rotor.gravity=0 m/s^2", tilts.format(0, size))
+    system = films_of(rigid_shaft(*more, tilts.format(1, -size))).system
+    apart = resting_position(system, omega)
+    assert apart.journals[:, 2] == pytest.approx([-size, size], rel=1e-8)
+    assert apart.journals[:, 3] == pytest.approx(0.0, abs=1e-8 * size)
+    alike = resting_position(films_of(rigid_shaft(*more, tilts.format(1, size))).system, omega)
+    loads = np.array([film.force for film in alike.films])
+    places = 0.5 * SPAN * np.array([-1.0, 1.0])
+    assert loads[:, 0].sum() == pytest.approx(0.0, abs=1e-8 * np.abs(loads[:, 0]).max())
+    assert np.abs(loads[:, 2]).min() > 0.0
+    assert -(places @ loads[:, 1]) + loads[:, 2].sum() == pytest.approx(0.0, abs=1e-8 * np.abs(loads[:, 2]).max())
+    assert -size < alike.journals[0, 2] < 0.0  # it follows in part
+    with pytest.raises(InputError) as refused:
+        stability_points(rigid_shaft(*more, tilts.format(1, 0.02)), [SPEED])
+    assert [fault.key for fault in refused.value.faults] == ["bearing.1.misalignment"]
+
+
+def test_response_and_damped_modes_follow() -> None:
+    case = rigid_shaft("film.tilt=follows")
+    motion, flat = (frbcli.response(each, [SPEED]).motion for each in (case, rigid_shaft()))
+    assert np.abs(motion - flat).max() < 5e-2 * np.abs(flat).max()  # an unbalance in the middle moves it in its plane
+    assert len(frbcli.damped_modes(case, SPEED).modes) > 0
+
+
+def test_columns_of_films_that_tilt() -> None:
+    point, flat = at_speed(rigid_shaft("film.tilt=follows")), at_speed(rigid_shaft())
+    names = [film.name for film in point.films]
+    table = table_of(point_columns(names, film_columns(point.films)), [point]).to_pandas()
+    assert table["tilt_stiffness_xx_N_m_left"][0] == point.films[0].tilting.stiffness[2, 2]  # type: ignore[union-attr]
+    assert "tilt_x_rad_right" in table
+    assert film_columns(flat.films) == FILM
+    told = document_of(point)
+    assert len(told["tilt_rad"]) == 2
+    assert told["films"][1]["tilt_damping_N_m_s"][0][0] > 0.0
+    assert not [key for key in document_of(flat) if "tilt" in key]
+
+
+def test_shells_of_a_housing_tilt_with_it() -> None:
+    """No journal moves against its shell as shaft and housing move together."""
+    case = load_case("turbocharger-car", [
+        'housing={mass = "1 kg", inertia = "1e-3 kg*m^2", position = "50 mm", '
+        'mounts = [{position = "0 mm", stiffness = "1e6 N/m"}, {position = "90 mm", stiffness = "1e6 N/m"}]}'
+    ])  # fmt: skip
+    rotor = make_rotor(case, COORDINATES)
+    assert next(HousingElement.of(case)).given.mass == 1.0
+    points, size = dict(rotor.points), rotor.size
+    together = np.zeros(size)
+    fixed = np.vstack([points["housing_compressor"], points["housing_turbine"]])
+    together[np.abs(fixed).max(axis=0) > 0.0] = [1e-3, 2e-3, 0.1, 0.2]
+    inner = rotor.journals[::2] @ together
+    at = [points[f"housing_{name}"] @ together for name in ("compressor", "turbine")]
+    slope = (at[1] - at[0]) / 32e-3
+    shells = rotor.journals[1::2] @ together
+    assert shells[:, 2:] == pytest.approx(np.array([[slope[1], -slope[0]]] * 2), rel=1e-9)  # ring against shell
+    assert inner[:, 2:] == pytest.approx(0.0, abs=1e-12)
+
+
+SUPPLIED = "thermal.supply_temperature=60 degC"
+REFUSED = {
+    "rings": ("turbocharger-car", (), "bearing.0.kind"),
+    "a rotor in its plane": ("jeffcott", (), "rotor.kind"),
+    "oil": ("", ("film.cavitation=elrod",), "film.cavitation"),
+    "a law that follows": ("", ("film.cavitation=penalty",), "film.cavitation"),
+    "a short film": ("", ("film.theory=short",), "film.theory"),
+    "heat": ("", ('oil.viscosity={grade = "SAE 10W-40"}', "thermal.model=lumped", SUPPLIED), "thermal.model"),
+}
+
+
+@pytest.mark.parametrize(("name", "settings", "key"), REFUSED.values(), ids=REFUSED)
+def test_what_does_not_tilt_is_refused(name: str, settings: tuple[str, ...], key: str) -> None:
+    more = ("film.tilt=follows", *settings)
+    case = load_case(name, list(more)) if name else rigid_shaft(*more)
+    with pytest.raises(InputError) as refused:
+        frbcli.stability(case, [100.0])
+    assert key in [fault.key for fault in refused.value.faults]
+
+
+def test_runs_do_not_follow() -> None:
+    for ask in (frbcli.make_plan, frbcli.limit_cycles, frbcli.bearing_sheet):
+        with pytest.raises(InputError) as refused:
+            ask(rigid_shaft("film.tilt=follows"))
+        assert "film.tilt" in [fault.key for fault in refused.value.faults]
