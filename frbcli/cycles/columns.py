@@ -133,6 +133,7 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
         LYAPUNOV,
         Column("lyapunov_uncertainty", "1/s", "its uncertainty"),
         Column("speed_uncertainty", "Hz", "uncertainty of the speed of a Hopf point", attrgetter("uncertainty_Hz")),
+        Column("frequency_uncertainty", "Hz", "uncertainty of its frequency", attrgetter("frequency_uncertainty_Hz")),
     )  # fmt: skip
 
 

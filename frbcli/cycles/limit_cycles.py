@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import Follower
+from frbcli.cycles.branch import HOPF, Follower
 from frbcli.cycles.diagram import Observer, diagram, over_speed, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
@@ -16,11 +16,13 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import make_machine
-from frbcli.cycles.result import LimitCycles, hertz
+from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.linear.threshold import threshold_at
 from frbcli.scene.gate.cycles import by_shooting
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -90,6 +92,7 @@ def limit_cycles(
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
+    found = replace(found, special=_with_errors(case, fastest, found.special))
     changes = case.heat is not None or system.rotor.over_speed is not None
     if changes or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
@@ -97,6 +100,25 @@ def limit_cycles(
     if with_unbalance:
         found = whirls_with_unbalance(found, machine, observe)
     return with_response(found, walk, response, time.process_time() - begun)
+
+
+def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:
+    """Special points, the Hopf points with their errors by the mesh of the films; without heat, whose temperatures are
+    others on another mesh. fastest: rad/s."""
+    machines = StaticMachines(case, None, hertz(fastest))
+    return tuple(
+        point if point.kind != HOPF or case.heat is not None else _with_error(machines, point) for point in special
+    )
+
+
+def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:
+    try:
+        found = threshold_at(machines, point.speed_Hz, point.frequency_Hz)
+    except NotConverged:
+        return point
+    return replace(
+        point, uncertainty_Hz=found.speed_uncertainty_Hz, frequency_uncertainty_Hz=found.frequency_uncertainty_Hz
+    )
 
 
 def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:

@@ -115,7 +115,8 @@ class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
     point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
     cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
-    criticality.py; eccentricity_max: (F,); uncertainty_Hz: of the speed of a Hopf point of films that keep their oil.
+    criticality.py; eccentricity_max: (F,); uncertainty_Hz, frequency_uncertainty_Hz: of the speed and the frequency of
+    a Hopf point, by the mesh of the films, of films that keep their oil of the speed alone.
     """
 
     kind: str
@@ -128,6 +129,7 @@ class SpecialPoint:
     lyapunov: float = math.nan
     lyapunov_uncertainty: float = math.nan
     uncertainty_Hz: float = math.nan
+    frequency_uncertainty_Hz: float = math.nan
 
 
 @dataclass(frozen=True)

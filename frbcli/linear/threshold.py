@@ -7,12 +7,20 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from frbcli.case.schema import Case
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import NotConverged
-from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
+from frbcli.linear.stability_point import (
+    Eigenvalues,
+    StabilityPoint,
+    critical_eigenvalue,
+    other_eigenvalues,
+    point_at_rest,
+)
 from frbcli.scene.remedies import advised
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
@@ -87,7 +95,7 @@ def _crossing(
         with advised(case):
             close = SCATTERED_TOLERANCE if machines.system.remembers else THRESHOLD_TOLERANCE
             found = hopf.located(lambda speed: _point(machines, speed), low, high, 0, close)
-            return _with_error(machines, found.speed_Hz), ""
+            return threshold_at(machines, found.speed_Hz), ""
     except NotConverged as error:
         between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
         return None, f"A threshold lies between {between}, but was not found: {error}"
@@ -98,20 +106,34 @@ def _point(machines: StaticMachines, speed: float) -> StabilityPoint:
     return point_at_rest(machines.at(2 * math.pi * speed, with_error=False), speed)
 
 
-def _with_error(machines: StaticMachines, speed: float) -> Threshold:
+def threshold_at(machines: StaticMachines, speed: float, frequency_Hz: float | None = None) -> Threshold:
     """The threshold at a speed in Hz. Its error is the distance to the thresholds on the other meshes, to first order
-    in the eigenvalues there."""
+    in the eigenvalues there.
+
+    frequency_Hz: of the whirl whose threshold it is on films of a run, which may be others; the distance to that on
+    these films is part of the error. By default it is the threshold of the least damped whirl on these films.
+    """
+
+    def critical(values: Eigenvalues) -> complex:
+        if frequency_Hz is None:
+            return critical_eigenvalue(values)
+        return complex(values[np.argmin(np.abs(values - 2j * math.pi * frequency_Hz))])
+
     machine = machines.at(2 * math.pi * speed)
-    own = point_at_rest(machine, speed).critical
+    own = critical(point_at_rest(machine, speed).eigenvalues)
     frequency = own.imag / (2 * math.pi)
     ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD
-    slope = (_point(machines, speed * (1.0 + ahead)).critical - own) / (ahead * speed)
+    slope = (critical(_point(machines, speed * (1.0 + ahead)).eigenvalues) - own) / (ahead * speed)
     known = machine.static.case.films == () or bool(machine.others or machine.dynamic)
     least = (LEAST if machine.static.case.films else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]
     for others, share in other_eigenvalues(machine):
-        apart = critical_eigenvalue(others) - own
+        apart = critical(others) - own
         further = -apart.real / slope.real
         speeds.append(share * abs(further))
         frequencies.append(share * abs(apart.imag + slope.imag * further) / (2 * math.pi))
-    return Threshold(speed, frequency, max(speeds), max(frequencies))
+    if frequency_Hz is None:
+        return Threshold(speed, frequency, max(speeds), max(frequencies))
+    off = -own.real / slope.real
+    its_frequency = frequency + slope.imag * off / (2 * math.pi)
+    return Threshold(speed, frequency_Hz, max(speeds) + abs(off), max(frequencies) + abs(its_frequency - frequency_Hz))

@@ -9,11 +9,13 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.equilibrium import static_films
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
+from frbcli.linear.threshold import threshold_at
 
 SPEEDS = [40.0, 90.0]
 CASE = load_case("rigid-axial-groove", ["rotor.unbalance=3 g*mm"])
@@ -100,6 +102,19 @@ def test_a_peak_is_as_uncertain_as_the_films() -> None:
     assert len(found.critical_speeds_Hz) == len(found.critical_speed_errors_Hz) > 0
     for speed, error in zip(found.critical_speeds_Hz, found.critical_speed_errors_Hz, strict=True):
         assert 3e-5 * speed <= error < 1e-2 * speed
+
+
+def test_a_hopf_point_of_other_films_is_as_uncertain_as_it_is_off() -> None:
+    """On the same films its error is that of the threshold. A threshold 1 % higher on other films is 1 % more off."""
+    case = load_case("jeffcott", ["film.theory=short"])
+    threshold = stability(case, [150.0, 200.0]).threshold
+    assert threshold is not None
+    speed, frequency, machines = threshold.speed_Hz, threshold.frequency_Hz, StaticMachines(case)
+    same, higher = (threshold_at(machines, factor * speed, frequency) for factor in (1.0, 1.01))
+    assert same.speed_uncertainty_Hz == pytest.approx(threshold.speed_uncertainty_Hz, rel=1e-5)
+    assert same.frequency_uncertainty_Hz == pytest.approx(threshold.frequency_uncertainty_Hz, rel=1e-5)
+    more = higher.speed_uncertainty_Hz - same.speed_uncertainty_Hz
+    assert more == pytest.approx(0.01 * speed, rel=0.1)
 
 
 def test_without_films_no_error_is_stated() -> None:
