@@ -21,11 +21,11 @@ from frbcli.case.quantities import (
     Position,
     RingInertia,
     SpecificHeat,
-    Temperature,
     ThermalConductivity,
     Tilt,
 )
 from frbcli.case.surroundings.damper import Damper
+from frbcli.case.surroundings.over_time import InputTemperature
 from frbcli.case.surroundings.support import Support
 from frbcli.case.thermal import AnyWall, Material
 from frbcli.materials.solids import SOLIDS, Solid
@@ -36,8 +36,8 @@ class BearingWalls(Model):
 
     shaft: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.shaft")
     housing: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.housing")
-    supply_temperature: Temperature | None = Field(
-        default=None, description="of this bearing, if not that of [thermal]"
+    supply_temperature: InputTemperature | None = Field(
+        default=None, description="of this bearing, if not that of [thermal]; may change over time"
     )
 
 

@@ -47,6 +47,7 @@ from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
 from frbcli.case.surroundings.magnetic_pull import MagneticPull
+from frbcli.case.surroundings.over_time import largest
 from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.case.theories import Theory, adopt_models, check_model
 from frbcli.case.thermal import Thermal
@@ -416,7 +417,7 @@ class Case(Model):
         """The dynamic viscosity [Pa s] of the oil: given, or at its temperature, or at that of the supply."""
         law = self.oil.law
         if law is not None and self.oil.temperature is None and self.thermal is not None:
-            return law.at(self.thermal.supply_temperature)
+            return law.at(largest(self.thermal.supply_temperature))
         return self.oil.viscosity
 
     def viscosity(self, film: FilmGeometry) -> float:

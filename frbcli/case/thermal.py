@@ -8,6 +8,7 @@ from pydantic import Discriminator, Field, Tag
 
 from frbcli.case.model import Model
 from frbcli.case.quantities import Conductance, HeatCapacity, Quantity, Temperature
+from frbcli.case.surroundings.over_time import InputTemperature, is_over_time
 from frbcli.materials.solids import SOLIDS
 from frbcli.units import NUMBER
 
@@ -25,18 +26,18 @@ class WallNode(Model):
 
     capacity: HeatCapacity = Field(description="heat that warms it by 1 K")
     conductance: Conductance = Field(description="heat that it passes on per K")
-    temperature: Temperature = Field(description="of the place that it passes heat on to")
+    temperature: InputTemperature = Field(description="of the place that it passes heat on to; may change over time")
 
 
 def _wall_form(given: object) -> str:
-    if isinstance(given, dict | WallNode):
+    if isinstance(given, dict | WallNode) and not is_over_time(given):
         return "(node)"
     return "(adiabatic)" if given == "adiabatic" else "(temperature)"
 
 
 AnyWall = Annotated[
     Annotated[Literal["adiabatic"], Tag("(adiabatic)")]
-    | Annotated[Temperature, Tag("(temperature)")]
+    | Annotated[InputTemperature, Tag("(temperature)")]
     | Annotated[WallNode, Tag("(node)")],
     Discriminator(_wall_form),
 ]
@@ -48,13 +49,16 @@ class Thermal(Model):
     model: Literal["lumped", "none"] = Field(
         default="lumped", description="one temperature per film, two per ring; or none: all keep their temperature"
     )
-    supply_temperature: Temperature = Field(description="of the oil that is supplied")
+    supply_temperature: InputTemperature = Field(
+        description="of the oil that is supplied; may change over time, docs/surroundings.md"
+    )
     start_temperature: Temperature | None = Field(
         default=None,
         description="of films, rings, shaft and housing at the start of a run; that of the supply if not given",
     )
     shaft: AnyWall = Field(
-        default="adiabatic", description="`adiabatic`, a temperature, or `{ capacity, conductance, temperature }`"
+        default="adiabatic",
+        description="`adiabatic`, a temperature, perhaps over time, or `{ capacity, conductance, temperature }`",
     )
     housing: AnyWall = Field(default="adiabatic", description="the same")
     clearance: Clearances = Field(

@@ -7,8 +7,10 @@ from collections.abc import Iterable, Mapping
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import first
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
+from frbcli.runs.inputs import signal_of
 from frbcli.runs.record.film_numbers import FilmNumbers
 from frbcli.runs.record.restored import array
 from frbcli.scene.films import film_places
@@ -30,6 +32,7 @@ from frbcli.thermal.exchange import (
     IN_FILMS,
     REFERENCE,
     SHARE,
+    SHARE_OF_SUPPLY,
     VISCOSITY,
     arrays_of,
 )
@@ -54,7 +57,7 @@ class RunHeat:
         self.start = system
         if case.heat is None:
             return
-        self._heat = heat_of(case)
+        self._heat = heat_of(case, first)
         self._loop, self.films = _lumped(case, system, self._heat), system.films.changeable()
         model, start, still = self._heat.model, self._heat.start, np.zeros(1 + system.ring_count)
         clearances = clearances_at(model, start, still)
@@ -67,7 +70,7 @@ class RunHeat:
         """Go on with another machine, whose clearances have changed: all temperatures and the books stay the same."""
         if self._loop is None:
             return
-        state, self._heat = self._loop.state, heat_of(case)
+        state, self._heat = self._loop.state, heat_of(case, first)
         self._loop, self.films = _lumped(case, system, self._heat)._replace(state=state), system.films.changeable()
 
     def warm(self, case: Case, plan: Plan, system: System) -> System:
@@ -147,9 +150,9 @@ def heat_units(case: Case, system: System) -> dict[str, str]:
     """The signals of heat of a run and their units; none without heat."""
     if case.heat is None:
         return {}
-    nodes = (node.replace(" ", "_") for node in heat_of(case).nodes[len(system.names) :])
-    told = {_signal(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
-    return told | {_signal(QUANTITIES[0], node): "K" for node in nodes}
+    nodes = (node.replace(" ", "_") for node in heat_of(case, first).nodes[len(system.names) :])
+    told = {signal_of(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
+    return told | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
 
 
 def hot_film(signals: Iterable[str], checkpoint: Mapping[str, Array]) -> str:
@@ -165,17 +168,13 @@ def _is_flow(name: str) -> bool:
     return name.startswith(begin.rstrip("_")) and name.endswith(end)
 
 
-def _signal(form: str, name: str) -> str:
-    return form.format(name) if name else form.replace("{}_", "")
-
-
 def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
     model, places = heat.model, film_places(case)
     count, n, bodies = len(places), len(heat.start), 1 + system.ring_count
     state = np.zeros(BOOKS + bodies + n)
     state[BOOKS + bodies :] = heat.start
     now = np.zeros((FILM_ROWS, count))
-    now[SHARE], now[CLEARANCE] = 1.0, system.clearances
+    now[SHARE], now[SHARE_OF_SUPPLY], now[CLEARANCE] = 1.0, 1.0, system.clearances
     viscosity = np.array([case.viscosity(place.geometry) for place in places])
     by_formula = case.heat is not None and case.heat.side_flow == "concentric"
     return LumpedHeat(

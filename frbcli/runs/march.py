@@ -18,6 +18,8 @@ from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.heat import RunHeat
+from frbcli.runs.inputs import RunInputs, films_change
+from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals
 from frbcli.runs.record.header import FLOW, named, ring_names
 from frbcli.runs.record.restored import array, check_samples, restored
@@ -87,13 +89,14 @@ class March:
         self._case, self._plan = case, plan
         self._segments = [segment for segment in segments if segment.start < profile.end]
         self._profile = profile.with_stops(segment.start for segment in self._segments)
+        self._inputs = RunInputs.of(case, segments[0].system)
         self._take_up(0)
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
         self._control = control_of(case, plan)
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
-            self._state = first_state(case.start, self._heat.start, profile)
+            self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
         self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
             self._state = in_turn(system, self._state, float(profile.speeds[0]))
@@ -107,7 +110,7 @@ class March:
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
         self._sample_every = max(1, int(profile.end / self._control.output_step) // system.films.samples)
-        warm = 2 * len(system.names) if case.heat is not None else 0
+        warm = 2 * len(system.names) if films_change(case) else 0
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering) + warm))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
@@ -121,7 +124,9 @@ class March:
         films = self._system.films
         self._ends = films.end_flows if FLOW in self._case.output.signals else ()
         self._far_open = films.far_open
-        self._rotor = rotor_data(self._system, self._profile.until(ends[0] if ends else self._profile.end))
+        self._films = films.changeable() if self._inputs.change_films else films
+        until = self._profile.until(ends[0] if ends else self._profile.end)
+        self._rotor = rotor_data(self._system, until, self._inputs.loop(self._system))
 
     def _change(self) -> int:
         """At the end of a segment: the machine and the state of the next one. Returns the status of the run."""
@@ -183,7 +188,7 @@ class March:
 
     def _go(self, budget: int) -> tuple[int, int]:
         """At most `budget` steps. Returns (status, rows of the output written)."""
-        films = self._heat.films or self._system.films
+        films = self._heat.films or self._films
         given = self._rotor, films.loop, self._tableau, self._control, self._state, budget
         if self._apart:
             return advance_in_turn(*given, self._output)
@@ -204,7 +209,7 @@ class March:
         times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
         speeds = self._profile.speed(times)
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
-        warm = self._heat.numbers(rows)
+        warm = self._numbers(times)
         changed = () if warm is None else (warm.clearances[kept], warm.scales[kept])
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept], *changed])
         self._samples = np.concatenate([self._samples, fresh])
@@ -239,8 +244,13 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        kinds, warm = self._case.output.signals, self._heat.numbers(len(times))
+        kinds, warm = self._case.output.signals, self._numbers(times)
+        signals |= self._inputs.signals(times)
         return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
+
+    def _numbers(self, times: Array) -> FilmNumbers | None:
+        """The numbers of the films that change, in the rows that the loop has written."""
+        return supplied(self._system, self._heat.numbers(len(times)), self._inputs.shares(times))
 
     def snapshot(self) -> dict[str, Array]:
         """The checkpoint, from which the run continues with the same result."""

@@ -17,14 +17,15 @@ from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.system import System
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
+from frbcli.solve.inputs import Inputs
 from frbcli.solve.stage.loads import varying_loads
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 
 
-def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
-    """The system and its speed as the time loop takes them."""
+def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()] = ()) -> RotorData:
+    """The system, its speed and its inputs over time as the time loop takes them."""
     rotor = system.rotor
     # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
     observed = np.concatenate([points / system.length for _, points in rotor.points])
@@ -56,6 +57,7 @@ def rotor_data(system: System, profile: SpeedProfile) -> RotorData:
         table_stiffness=table.stiffness,
         follows_speed=rotor.over_speed is not None or (not system.names and bool(np.any(rotor.gyroscopic))),
         loads=varying_loads(rotor.loads),
+        inputs=inputs,
     )
 
 

@@ -48,6 +48,10 @@ def _with_heat(case: Case) -> str | None:
     return None if case.heat is None else case.film.coupling
 
 
+def _with_changing_supply(case: Case) -> str | None:
+    return case.film.coupling if any(film.supply.over_time is not None for film in case.films) else None
+
+
 def _over_speed(case: Case) -> str | None:
     return case.film.coupling if changes_with_speed(case) else None
 
@@ -99,6 +103,9 @@ APART = Coupling(
             "has a rotor of constant coefficients, and those of a bearing depend on the speed", "Write auto.",
         ),
         Rule(_load_faults, (RUN,)),
+        refusal(
+            (RUN,), KEY, _with_changing_supply, "has films of a supply pressure that stays", "Write auto."
+        ),
         refusal(
             (RUN,), "output.signals", _signals,
             "are not known in a co-simulation, but for film-thickness", "Choose another film.coupling.",

@@ -45,6 +45,7 @@ from frbcli.thermal.exchange import (
     REFERENCE,
     SCALE,
     SHARE,
+    SHARE_OF_SUPPLY,
     VISCOSITY,
     HeatArrays,
     heat_step,
@@ -162,10 +163,11 @@ def _carry(
         now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, factor) * slip * slip
         now[POWER, f] += 0.5 * moved * total - journal[FORCE, x] * v_x - journal[FORCE, y] * v_y
         if numbers[BY_FORMULA] != 0.0:
-            now[FLOW, f] = made[FORMULA, f] * c * c * c / now[ETA, f]
+            now[FLOW, f] = now[SHARE_OF_SUPPLY, f] * made[FORMULA, f] * c * c * c / now[ETA, f]
         else:
             w_x, w_y = r_x + 0.5 * total * d_y, r_y - 0.5 * total * d_x
-            now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, w_x, w_y, now[SCALE, f])
+            scale = now[SCALE, f] / now[SHARE_OF_SUPPLY, f]
+            now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale)
         now[SHARE, f] = oil_share(films, work, f)
     heat_step(capacity, links, made, numbers, now, step, state[BOOKS + bodies.shape[0] :], gain, state)
     return int(_follow(heat, films, drag, clearances, wet, True))

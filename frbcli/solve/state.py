@@ -43,6 +43,7 @@ class RotorData(NamedTuple):
     table_stiffness: Array
     follows_speed: bool  # whether the inverse is renewed at every change of the speed
     loads: Any = ()  # that change with the angle of the rotor or with time, see stage/loads.py
+    inputs: Any = ()  # that change with time, see inputs.py
 
 
 class Control(NamedTuple):

@@ -15,6 +15,7 @@ from frbcli.compiled import compiled
 from frbcli.solve.films.forces import left_over
 from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
+from frbcli.solve.inputs import Inputs, set_inputs
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
@@ -70,8 +71,11 @@ def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: An
     own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n), make_rings(rotor.spins.shape[0])
     )
-    scales = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None
-    return Space(make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages, scales), own)
+    scales, shares = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None, None
+    if isinstance(rotor.inputs, Inputs) and len(rotor.inputs.pressures):
+        scales, shares = rotor.inputs.scales, rotor.inputs.shares
+    work = make_work(films, state.wet, stages, scales, shares)
+    return Space(make_scratch(rotor, state.numbers, stages), work, own)
 
 
 @compiled()
@@ -177,6 +181,7 @@ def _advance(
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
+        set_inputs(rotor.inputs, films, heat, t + 0.5 * step)
         begin_past(past_now, own.past)
         begin_stages(v, a, stage_v, stage_a)
         g, solved, speed = gamma * step, True, 0.0

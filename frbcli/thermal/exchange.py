@@ -26,8 +26,8 @@ HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = r
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
 # Rows of what a film is now: power W, flow m^3/s, viscosity Pa s, clearance m, scale of its pressures over that of its
-# table, share of its gap that is oil, heat that its oil takes along W/K.
-POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, FILM_ROWS = range(8)
+# table, share of its gap that is oil, heat that its oil takes along W/K, share of its gauge supply pressure.
+POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, SHARE_OF_SUPPLY, FILM_ROWS = range(9)
 LONGEST = 0.2  # of the shortest time constant: an explicit step
 ITERATIONS, FURTHEST, SETTLED = 30, 30.0, 1e-9  # of a film in balance: the steps of Newton's method and its end, K
 

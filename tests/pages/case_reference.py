@@ -8,6 +8,7 @@ from paths import DOCS
 
 from frbcli.case.schema import json_schema
 from frbcli.case.supplies.table import SUPPLIES, kind_of
+from frbcli.case.surroundings.over_time import OVER_TIME
 from frbcli.film.cavitation.table import SHIPPED
 
 PAGE = DOCS / "case-file.md"
@@ -124,6 +125,8 @@ def _value(entry: dict[str, Any]) -> str:
         return f"list of {_value(entry['items'])}"
     if "prefixItems" in entry:
         return f"[{', '.join(_value(item) for item in entry['prefixItems'])}]"
+    if entry.get("description") == OVER_TIME:
+        return OVER_TIME
     forms = entry.get("anyOf", entry.get("oneOf", []))
     forms = [form for form in forms if form.get("type") != "null"]
     if len(forms) == 2 and forms[0].get("type") == "number" and forms[1].get("type") == "string":

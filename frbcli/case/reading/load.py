@@ -23,7 +23,7 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.housing_rules import housing_breaches
 from frbcli.case.surroundings.places import base_breaches, force_breaches, pull_breaches
 from frbcli.case.surroundings.speed_points import with_speed_points
-from frbcli.case.surroundings.time_tables import with_time_tables
+from frbcli.case.surroundings.time_tables import with_input_files, with_time_tables
 from frbcli.errors import Fault, InputError
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
@@ -193,8 +193,11 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, unknown = with_coefficient_files(data, Path(folder))
     data, unfit = with_time_tables(data, Path(folder))
     data, wrong = with_speed_points(data, Path(folder))
-    unfit += wrong
+    data, unread_inputs = with_input_files(data, Path(folder))
+    unfit += [*wrong, *unread_inputs]
     case, found = _validate(data)
+    files = {breach.path[:-1] for breach in unread_inputs}
+    found = [breach for breach in found if breach.path not in files]
     if wrong:  # from, to and duration would follow
         found = [breach for breach in found if breach.path[0] != "speed"]
     if case is not None and not (found or unfit):

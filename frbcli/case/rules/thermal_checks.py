@@ -8,6 +8,7 @@ from typing import Any
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
 from frbcli.case.rules.film_checks import law_breaches
+from frbcli.case.surroundings.over_time import is_over_time, values_of
 from frbcli.case.thermal import HOTTEST_FILM
 from frbcli.units import display
 
@@ -55,23 +56,31 @@ def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
 
 def _temperatures(data: Mapping[str, Any], thermal: Mapping[str, Any]) -> Iterator[tuple[Path, float | None]]:
     """The temperatures that the oil meets, by their keys."""
-    for key in ("supply_temperature", "start_temperature"):
-        if key in thermal:
-            yield ("thermal", key), number(thermal, key, "K")
+    if "start_temperature" in thermal:
+        yield ("thermal", "start_temperature"), number(thermal, "start_temperature", "K")
     places: list[tuple[Path, Mapping[str, Any]]] = [(("thermal",), thermal), *tables(data, "bearing")]
     for path, holder in places:
-        if path[0] == "bearing" and "supply_temperature" in holder:
-            yield (*path, "supply_temperature"), number(holder, "supply_temperature", "K")
-        for key in WALLS:
-            if key in holder and holder[key] != "adiabatic" and not isinstance(holder[key], dict):
-                yield (*path, key), number(holder, key, "K")
+        for key in ("supply_temperature", *WALLS):
+            if key in holder and holder[key] != "adiabatic":
+                values = values_of(holder[key], "K")
+                yield from (((*path, key), limit(values)) for limit in (min, max) if values)
 
 
 def _without_heat(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Keys of bearings that have an effect with heat only."""
     if "thermal" in data:
+        yield from _inputs_without_heat(data)
         return
     for path, bearing in tables(data, "bearing"):
         for key in (*WALLS, "supply_temperature"):
             if key in bearing:
                 yield Breach((*path, key), "has no effect without heat.", "Remove it, or add the table [thermal].")
+
+
+def _inputs_without_heat(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Temperatures over time where [thermal] has no model."""
+    for path, holder in ((("thermal",), table(data, "thermal")), *tables(data, "bearing")):
+        for key in (*WALLS, "supply_temperature"):
+            if is_over_time(holder.get(key)):
+                problem = "changes over time, and without heat all films keep their temperature."
+                yield Breach((*path, key), problem, 'Write thermal.model = "lumped", or one temperature.')

@@ -14,9 +14,10 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 from pydantic import Field
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Pressure, RiseTime
+from frbcli.case.quantities import RiseTime
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number
+from frbcli.case.surroundings.over_time import InputPressure, OverTime, largest, values_of
 from frbcli.errors import Fault
 from frbcli.film.gap import AxialGroove, Edge, Hole
 from frbcli.units import NUMBER, display
@@ -26,7 +27,9 @@ if TYPE_CHECKING:
 
 MIDDLE = 0.5  # of the width
 TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
-SupplyPressure = Annotated[Pressure, Field(description="supply pressure, absolute")]
+SupplyPressure = Annotated[
+    InputPressure, Field(description="supply pressure, absolute; may change over time, docs/surroundings.md")
+]
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
 ]
@@ -69,8 +72,14 @@ class OilSupply(Model):
     sizes: ClassVar[tuple[str, ...]] = ("width", "diameter")  # keys that are no larger than the width of the bearing
 
     def absolute(self, ambient: float) -> float:
-        """The absolute pressure of the supply in Pa, that of the air where nothing supplies."""
+        """The absolute pressure of the supply in Pa, the largest one where it changes over time; that of the air where
+        nothing supplies."""
         return ambient
+
+    @property
+    def over_time(self) -> OverTime | None:
+        """Its pressure over time, None where that does not change."""
+        return None
 
     def gauge(self, ambient: float) -> float:
         """The pressure of the supply over the ambient one, Pa; 0 where nothing supplies."""
@@ -152,7 +161,7 @@ class OilSupply(Model):
     ) -> Iterator[Breach]:
         """Rules that its table, as given, breaks; diameter and width of the bearing in m, ambient pressure in Pa, None
         where they cannot be read."""
-        pressure = number(given, "pressure", "Pa")
+        pressure = min(values_of(given.get("pressure"), "Pa"), default=None)
         if pressure and ambient and pressure < ambient:
             problem = f"is {display(pressure, 'Pa')}, below the ambient pressure of {display(ambient, 'Pa')}."
             yield Breach((*path, "pressure"), problem, "Pressures are absolute: ambient plus gauge pressure.")
@@ -172,12 +181,17 @@ class PressureSupply(OilSupply):
     """A supply with a pressure of its own. Its class declares the keys `pressure` and `ramp` after its other ones."""
 
     if TYPE_CHECKING:
-        pressure: float
+        pressure: float | OverTime
         ramp: float
 
     def absolute(self, ambient: float) -> float:
         """See OilSupply."""
-        return self.pressure
+        return largest(self.pressure)
+
+    @property
+    def over_time(self) -> OverTime | None:
+        """See OilSupply."""
+        return self.pressure if isinstance(self.pressure, OverTime) else None
 
     @property
     def rise_time(self) -> float:
@@ -187,7 +201,8 @@ class PressureSupply(OilSupply):
     @property
     def words(self) -> str:
         """See OilSupply."""
-        return f"{super().words}, {1e-5 * self.pressure:.4g} bar"
+        up_to = "" if self.over_time is None else "up to "
+        return f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
 
 
 class SpacedSupply(PressureSupply):

@@ -1,16 +1,20 @@
-"""Values over time, as they were read from a file."""
+"""Values over time: tables that were read from a file, and inputs, which are one value or such a table."""
 
 from __future__ import annotations
 
 import itertools
-from typing import Annotated
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any
 
-from pydantic import Field
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic_core import CoreSchema, core_schema
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Label, Quantity
-from frbcli.units import NUMBER
+from frbcli.case.quantities import LABEL_LENGTH, Label, Quantity
+from frbcli.units import NUMBER, ValueFault, quantity
 
+OVER_TIME = "over time"  # a form of an input in the schema
 Entry = Annotated[float, Quantity(NUMBER, "0.5")]
 
 
@@ -33,10 +37,100 @@ class OverTime(Model):
         return f"{len(self.time)} rows of {self.source}" if self.source else f"{len(self.time)} rows"
 
 
-def over_time_problem(time: tuple[float, ...], *columns: tuple[float, ...]) -> str:
+def over_time_problem(time: Sequence[float], *columns: Sequence[float]) -> str:
     """What is wrong with the numbers of a table, "" if nothing."""
     if any(len(column) not in (0, len(time)) for column in columns) or len(time) < 2:
         return "needs at least two times, and a value at each of them."
-    if any(later <= earlier for earlier, later in itertools.pairwise(time)):
-        return "has times that do not rise."
+    for row, (earlier, later) in enumerate(itertools.pairwise(time), start=2):
+        if later <= earlier:
+            return f"has times that do not rise: {later:.9g} s in row {row} after {earlier:.9g} s."
     return ""
+
+
+def largest(value: float | OverTime) -> float:
+    """The value of an input, or the largest one of its table: that of all analyses but runs."""
+    return max(value.x) if isinstance(value, OverTime) else value
+
+
+def first(value: float | OverTime) -> float:
+    """The value of an input, or the first one of its table: that of the start of a run."""
+    return value.x[0] if isinstance(value, OverTime) else value
+
+
+def is_over_time(given: object) -> bool:
+    """Whether an input, as it was written, is a table over time."""
+    return isinstance(given, list) or (isinstance(given, dict) and bool(given.keys() & {"file", "time", "x"}))
+
+
+def values_of(given: object, unit: str) -> tuple[float, ...]:
+    """SI values of an input as it was written, all of those of a table; none where it cannot be read."""
+    try:
+        if isinstance(given, dict):
+            return tuple(_numbers(given.get("x", ())))
+        return tuple(quantity(each[1], unit) for each in given) if isinstance(given, list) else (quantity(given, unit),)
+    except (ValueFault, TypeError, IndexError, KeyError):
+        return ()
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input of a machine: a quantity, or times with quantities, or the numbers of a file as an OverTime."""
+
+    quantity: Quantity
+
+    @property
+    def remedy(self) -> str:
+        """An example of a table."""
+        value = self.quantity.written_example()
+        return f'Write e.g. [["0 s", {value}], ["1 s", {value}]], or {{ file = "input.csv" }}.'
+
+    def read(self, given: object) -> float | OverTime:
+        """The SI value or table. Raises ValueFault."""
+        if isinstance(given, OverTime):
+            return self._checked(given.source, given.time, given.x)
+        if isinstance(given, dict):
+            if not {"time", "x"} <= given.keys() <= {"time", "x", "source"}:
+                raise ValueFault("is neither a quantity nor a table over time.", self.remedy)
+            return self._checked(str(given.get("source", "")), *(_numbers(given[key]) for key in ("time", "x")))
+        if not isinstance(given, list | tuple):
+            return self.quantity.read(given)
+        if any(not isinstance(each, list | tuple) or len(each) != 2 for each in given):
+            raise ValueFault("is no list of times with values.", self.remedy)
+        return self._checked("", [quantity(time, "s") for time, _ in given], [self._one(value) for _, value in given])
+
+    def _one(self, given: object) -> float:
+        try:
+            return self.quantity.read(given)
+        except ValueFault as fault:
+            raise ValueFault(f"has a value that {fault.problem}", self.remedy) from None
+
+    def _checked(self, source: str, time: Sequence[float], x: Sequence[float]) -> OverTime:
+        if problem := over_time_problem(time, x) or ("" if x else over_time_problem(())):
+            raise ValueFault(problem, self.remedy)
+        if not source.isprintable() or len(source) > LABEL_LENGTH:
+            raise ValueFault("has a source that is not one line of text.", "Name the file that it was read from.")
+        return OverTime(source=source, time=tuple(time), x=tuple(map(self._one, x)))
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        one = self.quantity.__get_pydantic_json_schema__(schema, handler)
+        pair = {"type": "array", "minItems": 2, "maxItems": 2}
+        points = {"type": "array", "items": pair, "minItems": 2, "description": "times with values"}
+        file = {"type": "object", "description": "a file with the columns time and value: { file = ... }"}
+        table = {"description": OVER_TIME, "anyOf": [points, file]}
+        told, examples = f"{one['description']}, or {OVER_TIME}", [self.quantity.example]
+        return {"description": told, "examples": examples, "anyOf": [one, table]}
+
+
+def _numbers(given: object) -> list[float]:
+    if not isinstance(given, list | tuple):
+        raise ValueFault("is no list of numbers.", "Write the numbers of the table in SI.")
+    return [quantity(each, NUMBER) for each in given]
+
+
+PRESSURE = Quantity("Pa", "1 bar", above=0)
+TEMPERATURE = Quantity("K", "100 degC", above=0)
+InputPressure = Annotated[float | OverTime, PRESSURE, Input(PRESSURE)]
+InputTemperature = Annotated[float | OverTime, TEMPERATURE, Input(TEMPERATURE)]

@@ -6,13 +6,16 @@ The case gets the numbers in place of the key `file`, so that a run has all that
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from frbcli.case.quantities import SMALLEST
-from frbcli.case.reading.tables import Breach, tables
+from frbcli.case.model import Model
+from frbcli.case.quantities import SMALLEST, unit_of
+from frbcli.case.reading.lines import Path as Key
+from frbcli.case.reading.tables import Breach, table, tables
+from frbcli.case.surroundings.over_time import OverTime
 from frbcli.errors import InputError
 from frbcli.units import ValueFault, quantity
 
@@ -41,6 +44,10 @@ class TableKind:
 
 FORCE = TableKind("N", ("x", "fx", "force_x", "1"), ("y", "fy", "force_y", "2"))
 ACCELERATION = TableKind("m/s^2", ("x", "ax", "acceleration_x", "1"), ("y", "ay", "acceleration_y", "2"))
+PRESSURE = TableKind("Pa", ("pressure", "supply_pressure", "p"), ())
+TEMPERATURE = TableKind("K", ("temperature", "supply_temperature"), ())
+WALLS = ("shaft", "housing")
+IN_A_BEARING = ("inner", "outer", "damper")  # tables of films
 KINDS = {"force": FORCE, "base": ACCELERATION}  # tables of the case file that can have `file`
 
 
@@ -167,22 +174,23 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
 
 
 def _values(columns: Columns, name: str, wanted: TableKind) -> Values:
-    values = columns[name] * _unit(columns, name, wanted.unit)
+    none, one = (_unit(columns, name, wanted.unit, number) for number in (0, 1))
+    values = columns[name] * (one - none) + none
     values[abs(values) < SMALLEST] = 0.0  # round-off, as of a sine at its zero
     return values
 
 
-def _unit(columns: Columns, name: str, si: str) -> float:
-    """SI value of 1 in a column. Raises Unfit for a unit of something else."""
+def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
+    """SI value of a number in a column. Raises Unfit for a unit of something else."""
     told = columns.unit(name) or ""
     suffix = SUFFIX.fullmatch(name)
     if not told.strip("-1 ") and suffix is None:
-        return 1.0
+        return float(number)
     try:
-        return quantity(f"1 {told}" if told.strip("-1 ") else f"1 {suffix.group(2) if suffix else si}", si)
+        return quantity(f"{number} {told if told.strip('-1 ') else suffix.group(2) if suffix else si}", si)
     except ValueFault:
         if not told.strip("-1 "):
-            return 1.0  # the end of a name that is no unit
+            return float(number)  # the end of a name that is no unit
         problem = f'has "{told}" as unit of the column "{name}".'
         raise Unfit(problem, f"Give it in {si} or a unit like it.") from None
 
@@ -204,3 +212,83 @@ def _check_times(columns: Columns, time: Values) -> None:
         row = int(np.argmax(steps > 1.5 * usual)) + 1
         problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; other rows are {usual:.4g} s apart."
         raise Unfit(problem, "Fill the gap, or cut the table there.")
+
+
+@dataclass(frozen=True)
+class InputOverTime:
+    """An input of a case that changes over time: its key, its values in SI, and their unit."""
+
+    key: str
+    values: OverTime
+    unit: str
+
+
+def inputs_of(model: Model, key: str = "") -> Iterator[InputOverTime]:
+    """The inputs over time of a case, or of a part of it under a key."""
+    for name, field in type(model).model_fields.items():
+        found, here = getattr(model, name), f"{key}.{field.alias or name}".lstrip(".")
+        unit = unit_of(field)
+        if isinstance(found, OverTime) and unit is not None:
+            yield InputOverTime(here, found, unit)
+        elif isinstance(found, Model):
+            yield from inputs_of(found, here)
+        elif isinstance(found, tuple):
+            parts = [part for part in found if isinstance(part, Model)]
+            for number, part in enumerate(parts):
+                yield from inputs_of(part, here if len(parts) == 1 else f"{here}.{number}")
+
+
+def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
+    """The tables of a case with the numbers of each `{ file = ... }` of an input in its place, and the faults.
+
+    folder: that a relative path counts from.
+    """
+    found = list[Breach]()
+    for path, wanted in _places(data):
+        given = _at(data, path)
+        name = given.get("file") if isinstance(given, dict) else None
+        if not isinstance(name, str) or not name:
+            continue
+        if len(given) > 1:
+            found.append(Breach((*path, "file"), "is given beside other keys.", "Keep the file alone."))
+            continue
+        try:
+            numbers = read_table(folder / name, wanted)
+        except Unfit as fault:
+            found.append(Breach((*path, "file"), *fault.args))
+        else:
+            data = _replaced(data, path, {"source": name, **numbers})
+    return data, found
+
+
+def _places(data: Mapping[str, Any]) -> Iterator[tuple[Key, TableKind]]:
+    """The paths of all keys that can be inputs over time, with what their files hold."""
+    bearings = tables(data, "bearing")
+    for path, holder in ((("thermal",), table(data, "thermal")), *bearings):
+        yield (*path, "supply_temperature"), TEMPERATURE
+        for wall in WALLS:
+            yield (*path, wall), TEMPERATURE
+            if "temperature" in table(holder, wall):
+                yield (*path, wall, "temperature"), TEMPERATURE
+    for path, _ in bearings:
+        for within in ((), *((film,) for film in IN_A_BEARING)):
+            yield (*path, *within, "supply", "pressure"), PRESSURE
+
+
+def _at(data: Any, path: Key) -> Any:
+    """What stands at a path, None where nothing does."""
+    for element in path:
+        try:
+            data = data[element]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return data
+
+
+def _replaced(data: Any, path: Key, value: Any) -> Any:
+    """`data` with another value at a path that it has."""
+    if not path:
+        return value
+    changed: Any = list(data) if isinstance(data, list) else dict(data)
+    changed[path[0]] = _replaced(data[path[0]], path[1:], value)
+    return changed

@@ -12,8 +12,8 @@ from frbcli.film.grid import Array
 class CellEnds(NamedTuple):
     """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
     the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
-    (channels,) over the viscosity; exponents (F, p): by which the parameters of the laws follow the scale of the
-    pressures."""
+    (channels,) over the viscosity; groove_pressure (channels,) Pa; exponents (F, p): by which the parameters of the
+    laws follow the scale of the pressures."""
 
     far_open: Indices
     units: Array
@@ -22,3 +22,4 @@ class CellEnds(NamedTuple):
     feed_holes: Records
     resistance: Array
     exponents: Array
+    groove_pressure: Array

@@ -15,7 +15,7 @@ from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm, refilled
+from frbcli.film.cells.film import VolumeFilm, refilled, supplied
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
@@ -192,6 +192,7 @@ class CellFilms(Films):
             feed_holes=self.data.feed_holes.copy(),
             resistance=self.data.channels["resistance"] / self.viscosity,
             exponents=self.exponents,
+            groove_pressure=self.data.channels["groove_pressure"].copy(),
         )
 
     @property
@@ -233,6 +234,11 @@ class CellFilms(Films):
             channels=data.channels.copy(),
         )
         return replace(self, data=own)
+
+    def supplied(self, shares: Array) -> Self:
+        """See Films.supplied."""
+        own = tuple(supplied(film, float(share)) for film, share in zip(self.own, shares, strict=True))
+        return replace(self, own=own)
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """See Films.smooth: as the mean over the angle of openings that turn."""

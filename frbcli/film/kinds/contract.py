@@ -154,6 +154,11 @@ class Films(ABC):
         by scales (films,); None where they have to be made anew."""
         return None
 
+    def supplied(self, shares: Array) -> Self:
+        """These films with shares (films,) of their gauge supply pressures: their forces and their first state, not
+        what the time loop takes."""
+        return self
+
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
         outside of each film over its total, 0 without one that turns."""

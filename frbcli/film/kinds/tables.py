@@ -24,11 +24,13 @@ from frbcli.film.rectangles.untabulated import direct_force
 @dataclass(frozen=True)
 class TableFilms(Films):
     """data: of each film; sections: over the whole width, see whole_width of gap.py; scales: None, or by what the
-    velocities of each film have to be multiplied for its table, see Films.scaled."""
+    velocities of each film have to be multiplied for its table, see Films.scaled; shares: None, or of their gauge
+    supply pressures, see Films.supplied: r F(w / r) is the force with r times these."""
 
     data: tuple[FilmData, ...]
     sections: tuple[Section, ...]
     scales: tuple[float, ...] | None = field(default=None, kw_only=True)
+    shares: tuple[float, ...] | None = field(default=None, kw_only=True)
 
     @property
     def loop(self) -> Any:
@@ -41,7 +43,8 @@ class TableFilms(Films):
             return evaluate(self.data[i], self.clearances[i], place, rate, total)
         s = self.scales[i]
         found = evaluate(self.data[i], self.clearances[i], place, s * np.asarray(rate), s * total)
-        return FilmForce(found.force, found.by_displacement, s * found.by_velocity)
+        r = 1.0 if self.shares is None else self.shares[i]
+        return FilmForce(r * found.force, r * found.by_displacement, r * s * found.by_velocity)
 
     @cached_property
     def end_flows(self) -> tuple[EndFlow, ...]:
@@ -64,6 +67,11 @@ class TableFilms(Films):
     def scaled(self, scales: Array, clearances: Array) -> Self | None:
         """See Films.scaled."""
         return replace(self, clearances=tuple(clearances.tolist()), scales=tuple(scales.tolist()))
+
+    def supplied(self, shares: Array) -> Self:
+        """See Films.supplied."""
+        scales = np.ones(self.count) if self.scales is None else np.asarray(self.scales)
+        return replace(self, scales=tuple((scales / shares).tolist()), shares=tuple(shares.tolist()))
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """See Films.smooth."""

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import largest
 from frbcli.case.thermal import Thermal, WallNode
 from frbcli.film.pads.film import PadFilm, PadOil
 from frbcli.scene.machine.heat import OIL_AT
@@ -52,17 +53,17 @@ class PadHeat:
         """Nodes, the film first, and the temperatures in K to begin from."""
         oil, thermal = self.case.oil, self.thermal
         transfer = thermal.nusselt * oil.thermal_conductivity * inverse_gap
-        nodes = [(1.0, thermal.start_temperature or thermal.supply_temperature)]  # heat capacity, temperature
+        nodes = [(1.0, thermal.start_temperature or largest(thermal.supply_temperature))]  # heat capacity, temperature
         links: list[tuple[int, int, float]] = []
         for wall in (thermal.shaft, thermal.housing):
             if isinstance(wall, str):  # adiabatic
                 continue
             links.append((0, len(nodes), transfer))
             if isinstance(wall, WallNode):
-                nodes += [(wall.capacity, wall.temperature), (math.inf, wall.temperature)]
+                nodes += [(wall.capacity, largest(wall.temperature)), (math.inf, largest(wall.temperature))]
                 links.append((len(nodes) - 2, len(nodes) - 1, wall.conductance))
             else:
-                nodes.append((math.inf, wall))
+                nodes.append((math.inf, largest(wall)))
         first, last = (oil.density * oil.heat_capacity_at(at) for at in OIL_AT)
         slope, law = (last - first) / (OIL_AT[1] - OIL_AT[0]), oil.law
         assert law is not None  # the checks of a case see to it
@@ -71,7 +72,7 @@ class PadHeat:
             links=np.array([link[:2] for link in links], dtype=np.int64).reshape(-1, 2),
             conductance=np.array([link[2] for link in links]),
             of_film=np.full(len(links), -1),
-            supply=np.array([thermal.supply_temperature]),
+            supply=np.array([largest(thermal.supply_temperature)]),
             inlet=np.array([FROM_SUPPLY]),
             mixing=thermal.mixing,
             oil_heat=np.array([first - slope * OIL_AT[0], slope]),

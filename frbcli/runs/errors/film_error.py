@@ -11,6 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.runs.control import control_of
+from frbcli.runs.inputs import films_change
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.stage.contact import felt_motion
@@ -47,23 +48,24 @@ class FilmErrors:
 def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samples: Array) -> FilmErrors:
     """Errors of the film forces at sampled states, against the finite-length film on a finer mesh.
 
-    times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s; with heat the last
-    columns are clearances in m and scales of the films, see FilmNumbers: s times the scale gives the force of s times
-    the velocities. For the short-bearing theory this is the error of the theory itself. In contact it is that of the
-    film in the contact gap. Mass-conserving films are compared in their steady state; where there is none, they are
-    left out.
+    times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s; where heat or inputs
+    change films the last columns are clearances in m and scales of the films, see FilmNumbers: s times the scale gives
+    the force of s times the velocities. For the short-bearing theory this is the error of the theory itself. In contact
+    it is that of the film in the contact gap. Mass-conserving films are compared in their steady state; where there is
+    none, they are left out.
     """
     forces = system.films.compared()
     if forces is None:
         return FilmErrors(*np.zeros((3, 0)))
     control, n, count, found = control_of(case, plan), system.rotor.size, len(system.names), []
+    changing = films_change(case)
     every = max(1, len(samples) // (system.films.compared_states or len(samples) or 1))
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
         for i, selection in enumerate(system.rotor.journals):
             at, rate, clearance, scale = selection @ q, selection @ v, system.clearances[i], 1.0
-            if case.heat is not None:
+            if changing:
                 now, scale = (float(sample[column * count + i]) for column in (-2, -1))
                 at, rate = at * clearance / now, rate * clearance / now
             if control.contact_stiffness > 0.0:

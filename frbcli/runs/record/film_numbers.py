@@ -1,4 +1,4 @@
-"""The numbers of the films of a run that heat changes, at its samples."""
+"""The numbers of the films of a run that heat and inputs over time change, at its samples."""
 
 from __future__ import annotations
 
@@ -12,9 +12,10 @@ from frbcli.solve.state import Array
 
 @dataclass(frozen=True)
 class FilmNumbers:
-    """The numbers of films that heat changes, at the k samples, or once for all: (k, films) or (1, films) each.
+    """The numbers of films that heat and inputs change, at k samples, or once for all: (k, films) or (1, films) each.
 
-    clearances m; drags N m s; scales: 12 eta / psi^2 over that of the films as they were made.
+    clearances m; drags N m s; scales: 12 eta / psi^2 over that of the films as they were made, over the share of their
+    gauge supply pressures.
     """
 
     clearances: Array
@@ -26,3 +27,12 @@ def unchanged(system: System) -> FilmNumbers:
     """Those of films without heat."""
     clearances, drags = np.array([system.clearances]), np.array([system.drags])
     return FilmNumbers(clearances, drags, np.ones_like(drags))
+
+
+def supplied(system: System, warm: FilmNumbers | None, shares: Array | None) -> FilmNumbers | None:
+    """The numbers `warm` with shares (k, films) of the gauge supply pressures; None where nothing changes."""
+    if shares is None:
+        return warm
+    films = warm or unchanged(system)
+    clearances, drags = (np.broadcast_to(each, shares.shape) for each in (films.clearances, films.drags))
+    return FilmNumbers(clearances, drags, films.scales / shares)

@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from frbcli.case.schema import Case
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.runs.heat import heat_units
+from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.bearing_model_films import model_record
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
@@ -60,7 +61,7 @@ def header(
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
-    units |= heat_units(case, system)
+    units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, case.output.signals)
     return Header(
         title=case.heading,

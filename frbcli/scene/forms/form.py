@@ -65,6 +65,7 @@ class FilmForm:
     parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
+    follows_supply: ClassVar[bool] = True  # whether its pressures may follow those of the supply over time
     creates_oil: ClassVar[bool] = False  # whether oil is part of the state, and some is created
     compiling: ClassVar[tuple[float, float]] = 26.0, 3.6e8  # at the first start: CPU time in s, memory in bytes
     rules: ClassVar[tuple[Rule, ...]] = ()  # what it is not made for, and why

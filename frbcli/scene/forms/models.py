@@ -145,6 +145,7 @@ class ModelForm(FilmForm):
 
     solved: ClassVar[bool] = False
     same_in_tests: ClassVar[bool] = True
+    follows_supply: ClassVar[bool] = False
     rules: ClassVar[tuple[Rule, ...]] = RULES
 
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:

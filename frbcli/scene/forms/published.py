@@ -138,6 +138,7 @@ class PublishedForm(FilmForm):
     parts: ClassVar[tuple[str, str]] = "elements", "around x along of a section"
     creates_oil: ClassVar[bool] = True
     compiling: ClassVar[tuple[float, float]] = COMPILING
+    follows_supply: ClassVar[bool] = False
     rules: ClassVar[tuple[Rule, ...]] = RULES
 
     def solve_us(self, plan: Plan) -> float:

@@ -83,6 +83,8 @@ def table_obstacle(case: Case) -> str:
             return TURNING
         if place.geometry.ends == "free-to-air":
             return "the flow out of free ends is not in the table"
+        if place.geometry.supply.over_time is not None:
+            return "the pressure of the supply changes over time, and a table has one"
         gauge = place.geometry.supply.gauge(oil.ambient_pressure)
         equal = gauge == 0.0 and oil.ambient_pressure == oil.cavitation_pressure
         if film.penalty.pressure == "dimensionless" and not equal:

@@ -73,6 +73,7 @@ RULES = (
     Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),
     Rule(_of_films(runs.form_faults), (RUN,)),
+    Rule(_of_films(runs.changing_supply_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
     Rule(dampers.sheet_faults, SHEETS),
     Rule(static.loaded_heat_faults, (LOADED,)),

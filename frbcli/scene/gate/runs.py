@@ -9,6 +9,7 @@ from frbcli.errors import Fault
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.gate.rule import run_omega
+from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 
 
@@ -35,6 +36,25 @@ def form_faults(case: Case) -> Iterator[Fault]:
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")
+
+
+def changing_supply_faults(case: Case) -> Iterator[Fault]:
+    """The films of a run follow the pressure of their supply over time: all pressures of a table by one factor."""
+    form, oil = form_of(case), case.oil
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        film, remedy = place.geometry, "Give one pressure."
+        if film.supply.over_time is None:
+            continue
+        if not form.follows_supply:
+            problem = f"changes over time, which a {form} does not follow."
+        elif any(each.clearance_steps for each in case.films):
+            problem = "changes over time, and bearing.clearance_steps make films of a pressure that stays."
+        elif form.by_cells or oil.cavitation_pressure == oil.ambient_pressure:
+            continue
+        else:
+            problem = "changes over time, and not in proportion to oil.cavitation_pressure, which a table has, too."
+            remedy = 'Write film.solution = "cells", or oil.cavitation_pressure as oil.ambient_pressure.'
+        yield Fault(f"{key}.supply.pressure", "over time", None, problem, remedy)
 
 
 def speed_faults(case: Case) -> Iterable[Fault]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -76,15 +76,18 @@ def table_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
     site = site_of(case)
     for element in elements_of(case):
         for _, load in element.parts(site).loads:
-            if not isinstance(load, Tabulated):
-                continue
-            if load.times[0] > begin:
-                problem = f"has a table that begins at {load.times[0]:.9g} s, and the run begins at {begin:g} s."
-                yield Fault(f"{element.key}.file", load.name, None, problem, "Begin the table with the run.")
-            if load.times[-1] < end:
-                problem = f"has a table that ends at {load.times[-1]:.9g} s, and the run ends at {end:.9g} s."
-                remedy = "Lengthen the table, or end the run before."
-                yield Fault(f"{element.key}.file", load.name, None, problem, remedy)
+            if isinstance(load, Tabulated):
+                yield from span_faults(f"{element.key}.file", load.name, load.times, begin, end)
+
+
+def span_faults(key: str, named: str, times: Sequence[float] | Array, begin: float, end: float) -> Iterator[Fault]:
+    """The faults of a table whose times in s do not last from begin to end of a run."""
+    if times[0] > begin:
+        problem = f"has a table that begins at {times[0]:.9g} s, and the run begins at {begin:g} s."
+        yield Fault(key, named, None, problem, "Begin the table with the run.")
+    if times[-1] < end:
+        problem = f"has a table that ends at {times[-1]:.9g} s, and the run ends at {end:.9g} s."
+        yield Fault(key, named, None, problem, "Lengthen the table, or end the run before.")
 
 
 def table_times(case: Case) -> Array:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ import numpy as np
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime, largest
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.film.grid import Array
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
@@ -35,38 +37,42 @@ class RingNodes:
 @dataclass(frozen=True)
 class Heat:
     """The model of a machine. nodes: names of all nodes, films first; rings; start (n,) K; concentric (F,): Q eta / C^3
-    of the formula of a concentric film, m Pa s / s."""
+    of the formula of a concentric film, m Pa s / s; supplies (F,): temperatures of the oil that films are supplied
+    with, and walls: nodes of given temperature with it, in K or over time."""
 
     model: HeatModel
     nodes: tuple[str, ...]
     rings: tuple[RingNodes, ...]
     start: Array
     concentric: Array
+    supplies: tuple[float | OverTime, ...]
+    walls: tuple[tuple[int, float | OverTime], ...]
 
 
-def heat_of(case: Case) -> Heat:
-    """The heat of a case that has it."""
+def heat_of(case: Case, value: Callable[[float | OverTime], float] = largest) -> Heat:
+    """The heat of a case that has it. value: of temperatures that change over time, the largest or the first one."""
     assert case.heat is not None
-    return _Builder(case, case.heat).heat()
+    return _Builder(case, case.heat, value).heat()
 
 
 class _Builder:
     """Collects nodes and links, bearing by bearing."""
 
-    def __init__(self, case: Case, thermal: Thermal) -> None:
-        self._case, self._thermal, self._places = case, thermal, film_places(case)
+    def __init__(self, case: Case, thermal: Thermal, value: Callable[[float | OverTime], float]) -> None:
+        self._case, self._thermal, self._places, self._value = case, thermal, film_places(case), value
         self._names = [place.name or "film" for place in self._places]
         oil, films = case.oil, len(self._places)
         first, last = (case.oil.density * oil.heat_capacity_at(t) for t in OIL_AT)
         slope = (last - first) / (OIL_AT[1] - OIL_AT[0])
         self._oil_heat = np.array([first - slope * OIL_AT[0], slope])
-        initial = thermal.start_temperature or thermal.supply_temperature
+        initial = thermal.start_temperature or value(thermal.supply_temperature)
         self._initial = initial
         self._start = [initial] * films
         at_start = float(self._oil_heat[0] + self._oil_heat[1] * initial)
         self._capacity = [at_start * _volume(place.geometry) for place in self._places]
         self._links: list[tuple[int, int, float, int]] = []
         self._rings: list[RingNodes] = []
+        self._walls: list[tuple[int, float | OverTime]] = []
         self._expansions: list[tuple[int, int, float]] = []  # film, node, m/K
         self._base = np.array([place.geometry.clearance for place in self._places])
         self._growth = np.zeros((films, 1 + len(turning_rings(case))))
@@ -86,13 +92,13 @@ class _Builder:
             expansion[f, node] += rate
         thermal, law = self._thermal, self._case.oil.law
         assert law is not None  # the checks of a case see to it
-        supplies = [bearing.supply_temperature or thermal.supply_temperature for bearing in self._bearings()]
+        supplies = tuple(bearing.supply_temperature or thermal.supply_temperature for bearing in self._bearings())
         model = HeatModel(
             capacity=np.array(self._capacity),
             links=np.array([link[:2] for link in self._links], dtype=np.int64).reshape(-1, 2),
             conductance=np.array([link[2] for link in self._links]),
             of_film=np.array([link[3] for link in self._links], dtype=np.int64),
-            supply=np.array(supplies),
+            supply=np.array([self._value(given) for given in supplies]),
             inlet=np.array(self._inlets(), dtype=np.int64),
             mixing=thermal.mixing,
             oil_heat=self._oil_heat,
@@ -105,7 +111,8 @@ class _Builder:
             balanced=thermal.films == QUASI_STEADY,
         )
         concentric = np.array([_concentric(self._case, place.geometry) for place in self._places])
-        return Heat(model, tuple(self._names), tuple(self._rings), np.array(self._start), concentric)
+        nodes, rings, walls = tuple(self._names), tuple(self._rings), tuple(self._walls)
+        return Heat(model, nodes, rings, np.array(self._start), concentric, supplies, walls)
 
     def _bearings(self) -> list[FilmBearing]:
         """The bearing of each film."""
@@ -176,16 +183,22 @@ class _Builder:
         transfer = self._thermal.nusselt * self._case.oil.thermal_conductivity / geometry.clearance
         self._links.append((film, node, transfer * math.pi * geometry.diameter * geometry.width, film))
 
-    def _wall(self, film: int, wall: str | float | WallNode, name: str) -> int:
+    def _given(self, name: str, temperature: float | OverTime) -> int:
+        """A node of given temperature."""
+        node = self._node(name, math.inf, self._value(temperature))
+        self._walls.append((node, temperature))
+        return node
+
+    def _wall(self, film: int, wall: str | float | OverTime | WallNode, name: str) -> int:
         """The node of a shaft or housing at a film; an adiabatic one has the temperature of its film, and no node."""
         if isinstance(wall, WallNode):
             node = self._node(name, wall.capacity)
-            place = self._node(f"beyond {name}", math.inf, wall.temperature)
+            place = self._given(f"beyond {name}", wall.temperature)
             self._links.append((node, place, wall.conductance, -1))
         elif isinstance(wall, str):
             return film
         else:
-            node = self._node(name, math.inf, wall)
+            node = self._given(name, wall)
         self._to_film(film, node)
         return node
 

@@ -18,12 +18,14 @@ from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.costs.cost import clock, expected_cost
 from frbcli.scene.costs.reference_length import reference_length
+from frbcli.scene.costs.resolution import resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import require
+from frbcli.scene.inputs import input_decisions
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.expected_error import expected_error
@@ -81,6 +83,7 @@ def make_plan(case: Case) -> Plan:
     while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:
         target = min(LOOSER * target, LOOSEST)
         plan = _plan(case, target)
+    plan = replace(plan, decisions=(*plan.decisions, *resolution_decisions(case, plan)))
     if not plan.form.chosen_by_target and budget is None:
         return plan
     return replace(plan, decisions=(*plan.decisions, _about_target(case, plan)))
@@ -211,7 +214,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for place in places:
         if (sealing := place.geometry.sealing) and form_of(case).solved:
             decide(f"{place.name} ends".strip().replace("_", " "), *sealing)
-    for decided in clearance_decisions(case):
+    for decided in (*clearance_decisions(case), *input_decisions(case)):
         decide(*decided)
     if case.heat is not None:
         gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"

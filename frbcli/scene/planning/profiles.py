@@ -7,6 +7,7 @@ import math
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.scene.inputs import input_faults, input_times
 from frbcli.scene.machine.elements import table_faults, table_times
 
 
@@ -36,7 +37,8 @@ def run_down_profile(case: Case) -> SpeedProfile:
 
 def _with_tables(case: Case, times: list[float], speeds: list[float]) -> SpeedProfile:
     """The profile through speeds in Hz at times in s, with kinks of no angle at the rows of tables over time."""
-    faults = tuple(table_faults(case, times[0], times[-1]))
+    faults = (*table_faults(case, times[0], times[-1]), *input_faults(case, times[0], times[-1]))
     if faults:
         raise InputError(case.name or "case", faults)
-    return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(table_times(case).tolist())
+    stops = (*table_times(case).tolist(), *input_times(case))
+    return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(stops)

@@ -25,7 +25,7 @@ from frbcli.solve.films.cells import (
 from frbcli.solve.films.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.films.elements import back_off, element_response, left_of_elements, move_elements
 from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, by_kind, kind_of
-from frbcli.solve.films.steps import Scaled
+from frbcli.solve.films.steps import Scaled, Supplied
 from frbcli.solve.stage.equations import FilmMotion
 from frbcli.solve.state import Array
 
@@ -117,6 +117,16 @@ def _scaled(
     return f_x, f_y, k_xx, k_xy, k_yx, k_yy, scale * d_xx, scale * d_xy, scale * d_yx, scale * d_yy
 
 
+@compiled()
+def _supplied(
+    films: Any, f: int, scale: float, share: float, d_x: float, d_y: float, v_x: float, v_y: float, omega: float
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """_scaled with forces of a share of the pressures of the table."""
+    f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _scaled(films, f, scale, d_x, d_y, v_x, v_y, omega)
+    r = share
+    return r * f_x, r * f_y, r * k_xx, r * k_xy, r * k_yx, r * k_yy, r * d_xx, r * d_xy, r * d_yx, r * d_yy
+
+
 @overload(film_response, jit_options=AS_KERNELS | {"forceinline": True}, strict=False)
 def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-untyped-def]
     kind = kind_of(films)
@@ -135,6 +145,10 @@ def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-
             return scaled
         return lambda films, work, f, motion, g, s, iteration: _scaled(
             films, f, work.scales[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
+        )
+    if getattr(work, "instance_class", None) is Supplied:
+        return lambda films, work, f, motion, g, s, iteration: _supplied(
+            films, f, work.scales[f], work.shares[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
     if isinstance(films, types.UniTuple):
         return lambda films, work, f, motion, g, s, iteration: film_force(

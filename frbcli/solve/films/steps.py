@@ -44,17 +44,30 @@ class Scaled(NamedTuple):
     scales: Array
 
 
+class Supplied(NamedTuple):
+    """Scaled of films whose supply pressure changes: scales and forces follow shares (F,) of it, see inputs.py."""
+
+    stage_oil: Array
+    grids: Records
+    cross: Array
+    scales: Array
+    shares: Array
+
+
 def make_work(
-    films: Any, wet: Array, stages: int, scales: Array | None = None
-) -> Work | ElementWork | NoCells | Scaled:
-    """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat."""
+    films: Any, wet: Array, stages: int, scales: Array | None = None, shares: Array | None = None
+) -> Work | ElementWork | NoCells | Scaled | Supplied:
+    """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat; shares: of their
+    supply pressure, where it changes, which the scales then follow, too."""
     kind = kind_of(films)
     if kind == ELEMENTS:
         return make_element_work(films, stages)
     if kind == CELLS:
         return make_cell_work(films, wet, stages)
     none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros(0, GRID), np.zeros((0, 0)))
-    return none if scales is None else Scaled(*none, scales)
+    if scales is None:
+        return none
+    return Scaled(*none, scales) if shares is None else Supplied(*none, scales, shares)
 
 
 def most_iterations(films: Any) -> int:

@@ -113,7 +113,7 @@ def _prepare(loads: VaryingLoads, rotor: RotorData, g: float, speed: float) -> N
 
 
 @compiled()
-def _row_at(times: Array, first: int, end: int, t: float) -> int:
+def row_at(times: Array, first: int, end: int, t: float) -> int:
     """The row of a table, of rows from first up to end, whose piece holds the time t."""
     low, high = first, end - 1
     while high - low > 1:
@@ -140,7 +140,7 @@ def _add(
             theta = loads.turns[k, ORDER] * angle + loads.turns[k, FREQUENCY] * t
             one, other = math.cos(theta), math.sin(theta)
         else:
-            row = _row_at(loads.times, loads.first[k - harmonics], loads.first[k - harmonics + 1], t)
+            row = row_at(loads.times, loads.first[k - harmonics], loads.first[k - harmonics + 1], t)
             since = t - loads.times[row]
             one, other = _cubic(loads.cubics[row, 0], since), _cubic(loads.cubics[row, 1], since)
         for i in range(at.shape[1]):

@@ -11,6 +11,7 @@ from frbcli.bearing_tests import kinematic
 from frbcli.case.schema import Case
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.stability import stability_points
+from frbcli.runs.inputs import machine_inputs
 from frbcli.runs.run import runup
 from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.gate.gate import faults
@@ -51,7 +52,7 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     for analysis in found:
         decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
         chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
-        loaded = analysis not in KINEMATIC and bool(element_parts(case).loads)
+        loaded = analysis not in KINEMATIC and (bool(element_parts(case).loads), machine_inputs(case) is not None)
         kind = (analysis, *chosen, loaded, case.heat is not None, case.output.signals, case.film.bearing_model)
         on_cells = analysis in (BEARING, *KINEMATIC) or form_of(case).by_cells
         yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)

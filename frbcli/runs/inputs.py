@@ -1,0 +1,147 @@
+"""The inputs over time of a run: what the time loop follows, and their signals."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime
+from frbcli.case.surroundings.time_tables import inputs_of
+from frbcli.scene.films import film_places
+from frbcli.scene.machine.heat import heat_of
+from frbcli.scene.machine.system import System
+from frbcli.solve.inputs import Inputs
+from frbcli.solve.state import Array
+
+LEAST_SHARE = 1e-9  # of the largest gauge pressure: a supply at the ambient pressure counts as having so little
+PRESSURE, TEMPERATURE = ("supply_pressure_{}_Pa", "Pa"), ("supply_temperature_{}_K", "K")
+
+
+@dataclass(frozen=True)
+class MachineInputs:
+    """What changes over time in a run, in SI: temperatures of the supplies of films, and of nodes of the heat; absolute
+    pressures of the supplies of films, each with the number of the film or node. ambient: Pa; largest: (films,) gauge
+    pressures of all supplies, of those that change the largest one, 1 where nothing supplies."""
+
+    supplies: tuple[tuple[int, OverTime], ...]
+    walls: tuple[tuple[int, OverTime], ...]
+    pressures: tuple[tuple[int, OverTime], ...]
+    ambient: float
+    largest: Array
+
+    def shares(self, times: Array) -> Array | None:
+        """(k, films) shares of the largest gauge pressure at times (k,) in s; None where no pressure changes."""
+        if not self.pressures:
+            return None
+        found = np.ones((len(times), len(self.largest)))
+        for film, table in self.pressures:
+            found[:, film] = (np.interp(times, table.time, table.x) - self.ambient) / self.largest[film]
+        return np.maximum(found, LEAST_SHARE)
+
+
+def machine_inputs(case: Case) -> MachineInputs | None:
+    """The inputs of a case that change over time, None without any."""
+    if not any(True for _ in inputs_of(case)):
+        return None
+    ambient, heat = case.oil.ambient_pressure, None if case.heat is None else heat_of(case)
+    supplies = [place.geometry.supply for place in film_places(case)]
+    gauges = [supply.gauge(ambient) for supply in supplies]
+    fed = (supply.over_time if gauge > 0.0 else None for supply, gauge in zip(supplies, gauges, strict=True))
+    found = MachineInputs(
+        () if heat is None else _changing(enumerate(heat.supplies)),
+        () if heat is None else _changing(heat.walls),
+        _changing(enumerate(fed)),
+        ambient,
+        np.array([gauge if gauge > 0.0 else 1.0 for gauge in gauges]),
+    )
+    return found if found.supplies or found.walls or found.pressures else None
+
+
+def films_change(case: Case) -> bool:
+    """Whether clearances or scales of films change in a run: by heat, or with the pressure of their supplies."""
+    found = None if case.heat is not None else machine_inputs(case)
+    return case.heat is not None or (found is not None and bool(found.pressures))
+
+
+def _changing(given: Iterable[tuple[int, float | OverTime | None]]) -> tuple[tuple[int, OverTime], ...]:
+    return tuple((number, value) for number, value in given if isinstance(value, OverTime))
+
+
+@dataclass(frozen=True)
+class RunInputs:
+    """The inputs of a run, None where nothing changes over time; names: of its films."""
+
+    machine: MachineInputs | None
+    names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, case: Case, system: System) -> RunInputs:
+        """The inputs of a case."""
+        return cls(machine_inputs(case), system.names)
+
+    @property
+    def change_films(self) -> bool:
+        """Whether they change the films, beside the heat."""
+        return self.machine is not None and bool(self.machine.pressures)
+
+    def at_start(self, system: System) -> System:
+        """The machine as it is at the start of a run."""
+        shares = self.shares(np.zeros(1))
+        return system if shares is None else replace(system, films=system.films.supplied(shares[0]))
+
+    def shares(self, times: Array) -> Array | None:
+        """See MachineInputs.shares."""
+        return None if self.machine is None else self.machine.shares(times)
+
+    def loop(self, system: System) -> Inputs | tuple[()]:
+        """The inputs as the time loop takes them."""
+        machine = self.machine
+        if machine is None:
+            return ()
+        groups = machine.supplies, machine.walls, machine.pressures
+        tables = [table for group in groups for _, table in group]
+        places, count = [], 0
+        for group in groups:
+            found = [(count + number, place) for number, (place, _) in enumerate(group)]
+            places.append(np.array(found, dtype=np.int64).reshape(-1, 2))
+            count += len(group)
+        films = len(self.names)
+        return Inputs(
+            np.cumsum([0, *(len(table.time) for table in tables)]),
+            np.concatenate([np.array(table.time) for table in tables]),
+            np.concatenate([np.array(table.x) for table in tables]),
+            places[0],
+            places[1],
+            places[2],
+            machine.ambient,
+            LEAST_SHARE,
+            machine.largest,
+            np.ones(films),
+            np.ones(films),
+            system.films.heat_ends() if machine.pressures else (),
+        )
+
+    def units(self) -> dict[str, str]:
+        """The signals of inputs and their units."""
+        return {name: unit for name, unit, _ in self._told()}
+
+    def signals(self, times: Array) -> dict[str, Array]:
+        """The signals of inputs at times (k,) in s."""
+        return {name: np.interp(times, table.time, table.x) for name, _, table in self._told()}
+
+    def _told(self) -> Sequence[tuple[str, str, OverTime]]:
+        """Names, units and tables of the signals: of the films whose supplies change."""
+        if self.machine is None:
+            return ()
+        groups = (PRESSURE, self.machine.pressures), (TEMPERATURE, self.machine.supplies)
+        return tuple(
+            (signal_of(form, self.names[film]), unit, table) for (form, unit), group in groups for film, table in group
+        )
+
+
+def signal_of(form: str, film: str) -> str:
+    """The name of a signal of a film, which may be the only one."""
+    return form.format(film) if film else form.replace("{}_", "")
