@@ -99,7 +99,7 @@ class StaticFilms:
     def with_fields(self) -> tuple[FieldFilm, ...]:
         """The films on CELLS and on fewer, for the fields of pressure and flow."""
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
-        return tuple(FieldFilm(*films, _share(fewer)) for films in zip(own, self._on(fewer), strict=True))
+        return tuple(FieldFilm(*films, _share(fewer, CELLS)) for films in zip(own, self._on(fewer), strict=True))
 
     def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
         return tuple(volume_film(self.case, each, cells, self.top_Hz) for each in film_places(self.case))
@@ -129,7 +129,7 @@ def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
 
 
-def _share(cells: tuple[int, int], own: tuple[int, int] = CELLS) -> float:
+def _share(cells: tuple[int, int], own: tuple[int, int]) -> float:
     """Share of a difference between results on their own cells and on fewer that is the error of the former."""
     return float(1.0 / ((own[0] / cells[0]) ** FRONTS - 1.0))
 
