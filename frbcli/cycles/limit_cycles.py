@@ -92,7 +92,8 @@ def limit_cycles(
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
-    found = replace(found, special=_with_errors(case, fastest, found.special))
+    if case.heat is None and found.of(HOPF):
+        found = replace(found, special=_with_errors(case, fastest, found.special))
     changes = case.heat is not None or system.rotor.over_speed is not None
     if changes or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
         return found
@@ -103,12 +104,9 @@ def limit_cycles(
 
 
 def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:
-    """Special points, the Hopf points with their errors by the mesh of the films; without heat, whose temperatures are
-    others on another mesh. fastest: rad/s."""
+    """Special points without heat, the Hopf points with their errors by the mesh of the films. fastest: rad/s."""
     machines = StaticMachines(case, None, hertz(fastest))
-    return tuple(
-        point if point.kind != HOPF or case.heat is not None else _with_error(machines, point) for point in special
-    )
+    return tuple(_with_error(machines, point) if point.kind == HOPF else point for point in special)
 
 
 def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:

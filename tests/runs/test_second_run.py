@@ -109,6 +109,18 @@ def test_it_is_made_unasked_only_where_it_is_cheap() -> None:
     assert not is_cheap(cost.total_s / 2.9, cost)
 
 
+def test_an_onset_on_a_table_of_solutions_is_not_certain(tmp_path: Path) -> None:
+    """Both runs have the error of the table: with numbers of another machine the onset was at 230 Hz +- 4 Hz on it, and
+    at 248 Hz on cells."""
+    case = load_case("jeffcott", ["film.cavitation=penalty", "speed.from=100 Hz", "speed.duration=2 s"])
+    assert make_plan(case).form.table_of_solutions
+    events = runup(case, tmp_path / "run.h5", uncertainty=True).events
+    onsets = [event for event in events if event["kind"] == "onset"]
+    assert onsets
+    assert all(event["certain"] is False and "table" in event["reason"] for event in onsets)
+    assert all(event["speed_uncertainty_Hz"] > 0.0 for event in onsets)
+
+
 def test_a_second_run_that_does_not_begin_leaves_the_events(
     monkeypatch: pytest.MonkeyPatch, case: Case, tmp_path: Path
 ) -> None:

@@ -20,6 +20,8 @@ from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run
 
+SHARED = "the table of its film, which the second run has, too, may move it further"
+
 Observer = Callable[[Progress], None]
 Record = dict[str, Any]
 
@@ -67,7 +69,15 @@ def with_second_run(march: March, run: Run, observe: Observer | None = None) -> 
         return run.events, run.error
     found = [asdict(event) for event in find_events(second)]
     events = with_uncertainties(run, run.events, found, _least_amplitude(run.error))
+    if march.plan.form.table_of_solutions:
+        events = [_shared(event) for event in events]
     return events, {**run.error, **slow_uncertainties(run, second)}
+
+
+def _shared(event: Record) -> Record:
+    """An event of films on tables of solutions. Both runs have the error of such a table, which may move the begin of a
+    whirl by far more than they differ."""
+    return {**event, "certain": False, "reason": SHARED} if event["kind"] == "onset" and event["certain"] else event
 
 
 def _least_amplitude(error: Record) -> float:

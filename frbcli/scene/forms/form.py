@@ -56,6 +56,7 @@ class FilmForm:
     solved: ClassVar[bool] = (
         True  # whether its pressure is solved, on a mesh whose error is known
     )
+    table_of_solutions: ClassVar[bool] = False  # whether it is tabulated from solutions on cells before a run
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too

@@ -33,6 +33,7 @@ class SolutionForm(FilmForm):
     """Tables of solutions on cells."""
 
     fine_when_static: ClassVar[bool] = True
+    table_of_solutions: ClassVar[bool] = True
     why: ClassVar[str] = "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
     elements: ClassVar[str] = "cells"
     compiling: ClassVar[tuple[float, float]] = 42.0, 4.2e8
