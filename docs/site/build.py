@@ -67,6 +67,8 @@ MORE = [
      "Undamped critical speeds over the stiffness of the bearings."),
     (["runup", "squeeze-film-damper", "-o", "damper.h5"], "damper-summary.png",
      "A rotor on squeeze film dampers passes its critical speed."),
+    (["runup", "turbocharger-engine", "-o", "engine.h5"], "engine-summary.png",
+     "A turbocharger in an elastic housing, shaken by orders 2, 4 and 6 of its engine."),
     (["bearing", "bearing", "--over", "eccentricity"], "bearing-bearing.png", "A bearing over its eccentricity."),
 ]  # fmt: skip
 LONGEST = 40  # lines of output on a page

@@ -204,19 +204,20 @@ def orders(
 
 
 def _label_line(axes: Axes, across: Values, frequency: Values, label: str, limits: tuple[float, float]) -> None:
-    """Write the name of a line beside it, where it is highest yet well inside the picture."""
+    """Write the name of a line beside it, on the left of where it is highest yet well inside the picture; of a level
+    line on the right of where that begins, away from the names of rising ones."""
     span = abs(across[-1] - across[0])
     middle = np.abs(across - 0.5 * (across[0] + across[-1]))
     inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
     if not inside.any():
         return
-    place = int(np.argmax(np.where(inside, frequency, -np.inf)))
+    place, level = int(np.argmax(np.where(inside, frequency, -np.inf))), np.ptp(frequency[inside]) == 0.0
     axes.annotate(
         label,
         (across[place], frequency[place]),
         xytext=(-3, 4),
         textcoords="offset points",
-        ha="right",
+        ha="left" if level else "right",
         va="bottom",
         color="white",
         fontsize=9.0,
