@@ -20,6 +20,7 @@ Films = TypeVar("Films")
 ITERATIONS = 80
 GAP_KEPT = 0.25  # a step may shrink 1 - eps of a journal to this share of it
 SHORTER = 0.5  # of the share of a step that is tried, while the force that is left over does not fall
+STUCK, GAIN = 10, 1e-3  # shortened steps in a row that each take less than this share of the force that is left over
 
 
 @dataclass(frozen=True)
@@ -41,12 +42,14 @@ class ForceBalance(Generic[Films]):
 class Search:
     """When a search ends. step: over the clearance, a full step below it has arrived; force: N, and so has less left
     over; share: smallest one of a step that is tried until less is left over; patience: places that may be no better
-    one after the other, where forces have jumps."""
+    one after the other, where forces have jumps; gap: over the clearance, a journal that is nearer to its shell and
+    still not held there does not rest."""
 
     step: float
     force: float
     share: float
     patience: int = 0
+    gap: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +74,8 @@ def search_rest(
     raises.
     """
     best = here = SearchEnd(start, balance(start, None), False)
-    still, since = ends(np.zeros_like(start)), 0
+    still = ends(np.zeros_like(start))
+    since = stuck = 0
     for _ in range(ITERATIONS):
         found = here.balance
         if found.left < search.force:
@@ -80,8 +84,10 @@ def search_rest(
             break
         solved = np.asarray(np.linalg.solve(found.slope, -found.residual), dtype=np.float64)
         step = solved.reshape(*here.position.shape)
-        moved = ends(step) - still
-        share = min([1.0, *(largest_share(*pair) for pair in zip(ends(here.position), moved, strict=True))])
+        there, moved = ends(here.position), ends(step) - still
+        if _leaves(there, moved, search.gap):
+            break
+        share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
         arrives = bool(np.abs(moved).max() < search.step)
         while True:
             following = here.position + share * step
@@ -92,9 +98,17 @@ def search_rest(
         here = SearchEnd(following, new, arrives and share == 1.0)
         since = 0 if arrives or new.left < best.balance.left else since + 1
         best = here if since == 0 else best
-        if here.settled or since > search.patience:
+        stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * found.left else 0
+        if here.settled or since > search.patience or stuck == STUCK:
             break
     return best
+
+
+def _leaves(places: Array, moved: Array, gap: float) -> bool:
+    """Whether a journal at places (k, 2) has less than the gap left and a step by `moved` (k, 2) takes it still nearer
+    to its shell; all over the clearance."""
+    beyond = np.linalg.norm(places, axis=1) > 1.0 - gap
+    return bool((beyond & ((places * moved).sum(axis=1) > 0.0)).any())
 
 
 def largest_share(position: Array, step: Array) -> float:

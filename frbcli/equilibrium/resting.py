@@ -23,7 +23,7 @@ from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 
-SEARCH = Search(step=1e-10, force=0.0, share=1e-8)
+SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds follow a journal

@@ -87,6 +87,11 @@ class StaticFilms:
         """Whether the films are on cells, the other meshes then being coarser ones."""
         return self.own.plan.form.by_cells
 
+    @property
+    def coarse(self) -> StaticFilms:
+        """The films on the coarsest mesh of the errors, where they are on cells, for what does not depend on more."""
+        return replace(self, own=self.others[0], make_others=tuple) if self.on_cells else self
+
     def warm(self, viscosities: Array, clearances: Array) -> StaticFilms:
         """These films with viscosities in Pa s and clearances in m, (films,) each."""
 

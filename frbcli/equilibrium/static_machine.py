@@ -52,15 +52,21 @@ class MachineAtRest:
 
 class StaticMachines:
     """Machines of a case at rest at any speed; their films are made once. load, top_Hz: as static_films; memory:
-    whether films that keep oil are wanted with its memory.
+    whether films that keep oil are wanted with its memory; coarse: see StaticFilms.
 
     With heat, the temperatures are those at which the heat balances with the films of a run; positions and coefficients
     are then of static films with these viscosities and clearances."""
 
     def __init__(
-        self, case: Case, load: float | None = None, top_Hz: float | None = None, memory: bool = False
+        self,
+        case: Case,
+        load: float | None = None,
+        top_Hz: float | None = None,
+        memory: bool = False,
+        coarse: bool = False,
     ) -> None:
-        self._static, self._heat = static_films(case, load, top_Hz), None
+        films, self._heat = static_films(case, load, top_Hz), None
+        self._static = films.coarse if coarse else films
         self._memory = memory and self._static.system.remembers
         if case.heat is not None:
             plan = make_plan(case)

@@ -11,7 +11,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -28,6 +29,8 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds
+
+TRIED = 5  # speeds at which rest is sought before it is given up, where there is none at the highest one
 
 
 @dataclass(frozen=True, repr=False)
@@ -144,12 +147,37 @@ def _sweep(
     machines = StaticMachines(case, memory=True)
     points: list[StabilityPoint] = []
     near: MachineAtRest | None = None
-    for speed in sorted(speeds_Hz, reverse=True):  # from near the centre, where a fast journal rests, outwards
+    ordered = sorted(speeds_Hz, reverse=True)  # from near the centre, where a fast journal rests, outwards
+    for speed in ordered:
         point, near = _point(case, machines, speed, near, frequency, with_error)
+        if not points and not point.rests and len(ordered) > TRIED:
+            seek = partial(_point, case, machines, near=None, frequency=frequency, with_error=with_error)
+            if tried := _none_rests(seek, point, ordered):
+                return machines, tried
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
     return machines, tuple(reversed(points))
+
+
+def _none_rests(
+    seek: Callable[[float], tuple[StabilityPoint, MachineAtRest | None]],
+    fastest: StabilityPoint,
+    speeds: Sequence[float],
+) -> tuple[StabilityPoint, ...]:
+    """The points at descending speeds, ascending, if there is no rest at the fastest one nor at others between it and
+    the slowest, TRIED in all; () if there is rest at one of them. To seek in vain takes long, and is not done at all
+    speeds."""
+    found = {fastest.speed_Hz: fastest}
+    for i in np.linspace(0, len(speeds) - 1, TRIED).round().astype(int)[:0:-1].tolist():
+        point, _ = seek(speeds[i])
+        if point.rests:
+            return ()
+        found[point.speed_Hz] = point
+    why = f"Sought at {TRIED} speeds from {speeds[-1]:.4g} to {speeds[0]:.4g} Hz only, since there is none at these."
+    left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), why)) for speed in speeds)
+    slowest, *others = tuple(left)[::-1]
+    return replace(slowest, problem=f"{slowest.problem} {why}"), *others
 
 
 def _point(

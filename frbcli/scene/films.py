@@ -10,7 +10,8 @@ import numpy as np
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import FilmGeometry
-from frbcli.case.schema import Case
+from frbcli.case.model import altered
+from frbcli.case.schema import Case, FilmModel
 from frbcli.case.supplies.bores import Bores
 from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import FilmOil, Law
@@ -73,6 +74,13 @@ def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
 def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
     """The bearings with rings that turn, in the order of the rings' numbers."""
     return tuple(bearing for bearing in rings(case) if bearing.ring.spin == "free")
+
+
+def full_films(case: Case) -> Case:
+    """The case with half-Sommerfeld films, full wherever they carry; a bearing model is kept."""
+    if case.film.bearing_model:
+        return case
+    return altered(case, {"film": FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)})
 
 
 def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:

@@ -18,9 +18,14 @@ from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.uncertainty import BETWEEN
 from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.linear import critical_speeds
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
+from frbcli.scene.costs.preparation import CRITICAL_s, before_s
+from frbcli.scene.planning.plan import make_plan
 
 
 def found(rotor: Rotor, status: str = "finished") -> dict[str, Event]:
@@ -347,6 +352,25 @@ def test_linear_critical_speeds_are_those_of_the_full_film(kind: str) -> None:
     found = linear_critical_speeds(load_case(kind))
     assert found
     np.testing.assert_allclose(found, 143.5, atol=1.5)
+
+
+def test_linear_critical_speeds_on_cells_are_those_of_the_mesh_of_static_results(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """They take a quarter of the cells, and an announced time."""
+    case = load_case("jeffcott", ['bearing.supply={kind="bores", count=3, diameter="3 mm", pressure="2 bar"}'])
+    found = linear_critical_speeds(case)
+    meshes: list[tuple[int, int]] = []
+
+    def fine(case: Case, coarse: bool) -> StaticMachines:
+        coarsest = StaticMachines(case, coarse=coarse)
+        meshes.append(coarsest.static.own.plan.cells or (0, 0))
+        return StaticMachines(case)
+
+    monkeypatch.setattr(critical_speeds, "StaticMachines", fine)
+    assert found == pytest.approx(linear_critical_speeds(case), rel=1e-4)
+    assert meshes == [(72, 10)]
+    assert before_s(case, make_plan(case)) >= CRITICAL_s
 
 
 def test_linear_critical_speeds_of_a_fast_ramp_and_of_a_rigid_rotor() -> None:

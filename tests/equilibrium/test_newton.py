@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 
@@ -48,3 +51,41 @@ def test_only_patience_gets_past_a_jump_of_the_force() -> None:
     start = np.array([[0.4 * CLEARANCES[0, 0], 0.0]])
     assert not search_rest(jump, start, over_clearance, Search(0.0, 1e-3, 0.05)).settled
     assert search_rest(jump, start, over_clearance, Search(0.0, 1e-3, 1.0, 5)).settled
+
+
+def counted(balance: Callable[..., ForceBalance[None]], start: list[float], search: Search) -> int:
+    """Places that a search in vain tries."""
+    places = []
+
+    def counting(position: np.ndarray, before: ForceBalance[None] | None) -> ForceBalance[None]:
+        places.append(position)
+        return balance(position, before)
+
+    found = search_rest(counting, np.array([start]) * CLEARANCES, over_clearance, search)
+    assert not found.settled
+    return len(places)
+
+
+def test_a_journal_that_its_film_does_not_hold_is_given_up_at_the_smallest_gap() -> None:
+    """A spring of 50 N at the shell under 80 N: seven quarters of the gap reach 1e-4 of it, eighty iterations are
+    allowed."""
+    stiffness = 50.0 / CLEARANCES[0, 0]
+
+    def weak(position: np.ndarray, _: object) -> ForceBalance[None]:
+        return ForceBalance(stiffness * position[0] - [80.0, 0.0], stiffness * np.eye(2), None)
+
+    reached = 1 + math.ceil(math.log(1e-4) / math.log(GAP_KEPT))
+    assert counted(weak, [0.0, 0.0], Search(1e-10, 0.0, 1e-8, gap=1e-4)) == reached
+    assert counted(weak, [0.0, 0.0], Search(1e-10, 0.0, 1e-8)) > 2 * reached
+
+
+def test_a_search_that_gains_nothing_by_shortened_steps_ends() -> None:
+    """Along a winding valley that hardly falls every step is far too long, and is halved some times: 700 places."""
+
+    def winding(position: np.ndarray, _: object) -> ForceBalance[None]:
+        x, y = position[0] / CLEARANCES[0]
+        residual = [1.0 - 1e-4 * y, x - 0.3 * math.sin(20.0 * y)]
+        slope = np.array([[0.0, -1e-4], [1.0, -6.0 * math.cos(20.0 * y)]])
+        return ForceBalance(np.array(residual), slope / CLEARANCES[0, 0], None)
+
+    assert counted(winding, [0.0, 0.0], Search(1e-10, 0.0, 1e-8)) < 250

@@ -334,6 +334,37 @@ def test_speed_without_resting_position_is_reported_and_the_rest_computed() -> N
     assert found.threshold is not None
 
 
+def test_rest_is_not_sought_at_all_speeds_where_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A journal of a quarter millimetre carries none of 60 N: rest was sought at each of 60 speeds."""
+    sought = []
+
+    def counting(*given: object, **named: object) -> object:
+        sought.append(given)
+        return point(*given, **named)
+
+    point = stability_room._point
+    monkeypatch.setattr(stability_room, "_point", counting)
+    settings = ["bearing.diameter=0.25 mm", 'confirm=["clearance"]', "speed.from=20 Hz", "speed.to=60 Hz"]
+    found = stability(load_case("jeffcott", settings))
+    assert len(sought) == stability_room.TRIED
+    assert len(found.sweep) == 60
+    assert not any(each.rests for each in found.sweep)
+    assert f"Sought at {stability_room.TRIED} speeds from 20 to 60 Hz only" in found.sweep[0].problem
+
+
+def test_rest_at_lower_speeds_is_found_where_there_is_none_at_the_highest(monkeypatch: pytest.MonkeyPatch) -> None:
+    point = stability_room._point
+
+    def not_at_the_highest(case: object, machines: object, speed: float, *given: object, **named: object) -> object:
+        if speed == 60.0:
+            return StabilityPoint(speed, (), np.zeros(0, dtype=complex), "none"), None
+        return point(case, machines, speed, *given, **named)
+
+    monkeypatch.setattr(stability_room, "_point", not_at_the_highest)
+    found = stability(load_case("jeffcott", ["speed.from=20 Hz", "speed.to=60 Hz"]))
+    assert [each.speed_Hz for each in found.sweep if not each.rests] == [60.0]
+
+
 def test_no_resting_position_names_speed_residual_and_remedy() -> None:
     case = load_case("jeffcott")
     system = make_system(case, make_plan(case))

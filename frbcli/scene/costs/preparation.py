@@ -1,8 +1,8 @@
 """Expected cost of a run outside its time loop, and its memory.
 
-Before the loop films are tabulated, the shaft is reduced to its modes, and the first state is computed; after it the
-error of the forces is computed on a finer mesh, and runs with finite-volume films are repeated on fewer cells. All
-numbers are CPU seconds of the reference machine of cost.py.
+Before the loop films are tabulated, the shaft is reduced to its modes, and critical speeds and the first state are
+computed; after it the error of the forces is computed on a finer mesh, and runs with finite-volume films are repeated
+on fewer cells. All numbers are CPU seconds of the reference machine of cost.py.
 """
 
 from __future__ import annotations
@@ -13,13 +13,14 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.clearance_steps import step_times
-from frbcli.scene.films import film_places, rings, turning_rings
+from frbcli.scene.films import film_places, full_films, rings, turning_rings
 from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
 
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
+CRITICAL_s = 0.5  # of the critical speeds of a machine on cells
 PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
 MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
@@ -48,6 +49,8 @@ def before_s(case: Case, plan: Plan) -> float:
     machines, films, form = 1 + len(step_times(case)), len(film_places(case)), plan.form
     resting = case.start.position == "resting" and case.start.displacement is None
     found = machines * (films * form.table_s(plan) + _reduction_s(case))
+    if not rings(case) and form_of(full_films(case)).by_cells:
+        found += machines * CRITICAL_s
     return found + form.first_state_s(plan, films, resting)
 
 
