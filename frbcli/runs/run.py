@@ -22,10 +22,10 @@ from frbcli.runs.record.header import header
 from frbcli.runs.record.interrupt import held_back
 from frbcli.runs.record.restored import WrongCheckpoint
 from frbcli.runs.record.standing import standing_run
-from frbcli.scene.costs.cost import ExpectedCost, expected_cost
+from frbcli.scene.costs.cost import ExpectedCost
 from frbcli.scene.costs.limits import require_affordable
 from frbcli.scene.machine.segments import Segment, make_segments
-from frbcli.scene.planning.coarser_plan import is_cheap, second_run_s
+from frbcli.scene.planning.coarser_plan import cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
@@ -154,7 +154,7 @@ class Wanted:
 
 def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
     plan, profile = make_plan(case), PROFILES[command](case)
-    cost = expected_cost(case, plan, profile)
+    cost = cost_of_run(case, plan, profile)
     require_affordable(case, plan, cost)
     return plan, profile, cost
 

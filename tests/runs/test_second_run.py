@@ -16,9 +16,9 @@ from frbcli.results.store import Run, read_run
 from frbcli.runs.errors import second_run
 from frbcli.runs.errors.account import about_certainty
 from frbcli.runs.march import March
-from frbcli.runs.run import runup
+from frbcli.runs.run import run_cost, runup
 from frbcli.scene.costs.cost import expected_cost
-from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, is_cheap, second_run_s
+from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 
@@ -119,6 +119,18 @@ def test_an_onset_on_a_table_of_solutions_is_not_certain(tmp_path: Path) -> None
     assert onsets
     assert all(event["certain"] is False and "table" in event["reason"] for event in onsets)
     assert all(event["speed_uncertainty_Hz"] > 0.0 for event in onsets)
+
+
+@pytest.mark.parametrize(("law", "unasked"), [("elrod", True), ("reynolds", False)])
+def test_its_cost_is_announced_where_it_is_made_unasked(law: str, unasked: bool) -> None:
+    """The run with Elrod's law takes 1.4 times the time without it."""
+    case = load_case("jeffcott", [f"film.cavitation={law}"])
+    plan, profile = make_plan(case), run_up_profile(case)
+    alone = expected_cost(case, plan, profile)
+    second = second_run_s(case, plan, profile)
+    assert is_cheap(second, alone) == unasked
+    assert cost_of_run(case, plan, profile).total_s == alone.run_s + (second if unasked else 0.0)
+    assert run_cost("runup", case) == cost_of_run(case, plan, profile)
 
 
 def test_a_second_run_that_does_not_begin_leaves_the_events(

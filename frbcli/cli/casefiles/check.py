@@ -31,11 +31,11 @@ TURNING_TOLD = 0.02  # of the gap
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
     from frbcli.case.reading.listing import values
-    from frbcli.scene.costs.cost import expected_cost
     from frbcli.scene.costs.limits import require_affordable
     from frbcli.scene.costs.preparation import compile_B
     from frbcli.scene.machine.findings import findings
     from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
+    from frbcli.scene.planning.coarser_plan import cost_of_run
     from frbcli.scene.planning.expected_error import expected_error
     from frbcli.scene.planning.kinematic_plan import kinematic_plan
     from frbcli.scene.planning.plan import make_plan
@@ -62,7 +62,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         decisions = kinematic_plan(case, test=test).decisions
     else:
         plan = make_plan(case)
-        cost, error = expected_cost(case, plan, run_up_profile(case)), expected_error(plan)
+        cost, error = cost_of_run(case, plan, run_up_profile(case)), expected_error(plan)
         decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case), bool(case.films))
         expected = {
             "eccentricity_error": error.eccentricity,
@@ -70,6 +70,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
             "cpu_s": cost.cpu_s,
             "cpu_before_s": cost.before_s,
             "cpu_after_s": cost.after_s,
+            "cpu_second_run_s": cost.second_s,
             "memory_B": cost.memory_B,
             "steps": cost.steps,
             "film_solves": cost.film_solves,
@@ -171,6 +172,8 @@ def _expectations(
     solved = f", {cost.film_solves} film solves" if with_films else ""
     solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"
     beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
+    if cost.second_s:
+        beside += f", {clock(cost.second_s)} for the uncertainty of its events"
     first = memory(max(cost.memory_B, compile_B))
     parts = "of the eccentricities before a whirl grows" if with_films else "of the displacements, over the length"
     if error.film_force is not None:
@@ -178,7 +181,7 @@ def _expectations(
     return (
         Decision("expected error", f"{error.eccentricity:.1g}", parts),
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
-        Decision("before, after", clock(cost.before_s + cost.after_s), beside),
+        Decision("before, after", clock(cost.total_s - cost.cpu_s), beside),
         Decision("memory", memory(cost.memory_B), f"of the whole process; {first} where it compiles the kernels"),
     )
 

@@ -77,10 +77,11 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     pieces = np.clip(np.searchsorted(profile.times, times, side="right") - 1, 0, len(profile.times) - 2)
     rate = np.maximum(rate, 1.0 / np.diff(profile.times)[pieces])  # a step ends at each kink of the profile
     rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
-    pressed = work.pressed[0] * (ELASTIC if case.contact.policy == "elastic" else 1.0)
-    rate = np.where(presses, pressed * rate, rate)
+    pressed_steps, pressed_solves = plan.form.pressed(plan)
+    pressed_steps *= ELASTIC if case.contact.policy == "elastic" else 1.0
+    rate = np.where(presses, pressed_steps * rate, rate)
     iterations = _solves_of_a_stage(case, plan, whirls, rate / np.maximum(turns, SLOWEST_Hz))
-    iterations = np.where(presses, work.pressed[1] * iterations, iterations)
+    iterations = np.where(presses, pressed_solves * iterations, iterations)
     coupling = coupling_named(plan.coupling)
     if coupling.once:
         iterations = np.ones_like(rate)

@@ -79,6 +79,10 @@ class FilmForm:
         """Time of one film solve, us."""
         return self.us
 
+    def pressed(self, plan: Plan) -> tuple[float, float]:
+        """Steps and solves of a stage in a whirl that presses the journal into the shell, see SolveCounts."""
+        return self.work.pressed
+
     def table_s(self, plan: Plan) -> float:
         """To tabulate one film before a run."""
         return 0.0

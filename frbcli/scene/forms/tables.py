@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER, SAMPLES
 from frbcli.film.grid import CHAIN_MODES
 from frbcli.scene.forms.form import FilmForm, SolveCounts, mean_us
@@ -19,6 +20,8 @@ MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
 SHORT_POINTS = 96, 32  # around and along, in kinematic tests
 FIELD_ELEMENTS = 64  # around
+# Solves of a stage over those of another whirl, where a full film is pressed, whose journal comes to 2e-4 of the gap.
+FULL_PRESSED = 6.0
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 
 
@@ -29,6 +32,11 @@ class TableForm(FilmForm):
     lines: int = 0
 
     any_theory: ClassVar[bool] = True
+
+    def pressed(self, plan: Plan) -> tuple[float, float]:
+        """See FilmForm."""
+        full = plan.theory == "finite" and not law_named(plan.cavitation).cavitates
+        return (self.work.pressed[0], FULL_PRESSED) if full else self.work.pressed
 
     def table_s(self, plan: Plan) -> float:
         """See FilmForm."""

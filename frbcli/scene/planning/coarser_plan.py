@@ -23,6 +23,12 @@ def coarser_plan(case: Case, plan: Plan) -> Plan:
     return replace(plan, films=films, mesh=_coarser(plan.mesh), cells=cells, tolerance=LOOSER * plan.tolerance)
 
 
+def cost_of_run(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
+    """Expected cost of a run with what is made unasked."""
+    cost, second = expected_cost(case, plan, profile), second_run_s(case, plan, profile)
+    return replace(cost, second_s=second) if is_cheap(second, cost) else cost
+
+
 def second_run_s(case: Case, plan: Plan, profile: SpeedProfile) -> float:
     """Expected CPU time in s of the second run."""
     cost = expected_cost(case, coarser_plan(case, plan), profile)
@@ -31,7 +37,7 @@ def second_run_s(case: Case, plan: Plan, profile: SpeedProfile) -> float:
 
 def is_cheap(second_s: float, cost: ExpectedCost) -> bool:
     """Whether a second run of so many s of CPU time is made unasked, beside a run of that cost."""
-    return second_s <= SHARE * cost.total_s
+    return second_s <= SHARE * cost.run_s
 
 
 def _coarser(mesh: Mesh) -> Mesh:

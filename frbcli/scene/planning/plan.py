@@ -16,7 +16,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
-from frbcli.scene.costs.cost import clock, expected_cost
+from frbcli.scene.costs.cost import clock
 from frbcli.scene.costs.reference_length import reference_length
 from frbcli.scene.costs.resolution import resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
@@ -28,6 +28,7 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.inputs import input_decisions
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
+from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films, form_of
 from frbcli.scene.planning.planned import Decision, Plan
@@ -115,7 +116,7 @@ def _about_target(case: Case, plan: Plan) -> Decision:
 
 def _total_s(case: Case, plan: Plan) -> float:
     """Expected CPU time of a run-up."""
-    return expected_cost(case, plan, run_up_profile(case)).total_s
+    return cost_of_run(case, plan, run_up_profile(case)).total_s
 
 
 def _plan(case: Case, target: float) -> Plan:
