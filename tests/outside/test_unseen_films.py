@@ -28,13 +28,22 @@ def test_an_unseen_film_holds_its_targets(seed: int, tmp_path: Path) -> None:
         assert film.true <= film.stated
 
 
-@pytest.mark.parametrize("seed", [5, pytest.param(93, marks=pytest.mark.nightly)])
+@pytest.mark.parametrize("seed", [281, pytest.param(93, marks=pytest.mark.nightly)])
 def test_a_film_that_misses_its_target_states_it(seed: int, tmp_path: Path) -> None:
-    """Large steps beside two grooves of an oil-keeping law, whose error stays on any cells; slots in a film that comes
-    five times nearer to its shell than the plan expects. They stated a third of their errors."""
+    """A two-phase film under 89 bar; slots in a film that comes five times nearer to its shell than the plan expects.
+    They stated a third of their errors."""
     for film in tried(seed, tmp_path):
         assert film.true > film.target
         assert film.true <= film.stated <= 6.0 * film.true
+
+
+def test_steps_are_short_where_their_errors_grow_and_the_target_is_not_called_certain(tmp_path: Path) -> None:
+    """A two-phase film under a mean pressure of 58 bar: its eccentricities had 5.5 times their targets, which `frb
+    check` called held."""
+    for film in tried(1019, tmp_path):
+        assert film.true <= film.target
+        assert film.true <= film.stated
+        assert film.announced == f"{film.target:g} is not certain"
 
 
 @pytest.mark.nightly

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
@@ -83,6 +84,7 @@ class Law:
     quadratic elements.
     order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
     fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.
+    heavy: static load over width and diameter, Pa, above which errors of steps grow in its films.
     compared: values of keys that the picture of theta(p) shows beside those of the case.
     """
 
@@ -105,6 +107,7 @@ class Law:
     order: ClassVar[float] = FRONTS
     cost: ClassVar[float] = 1.0
     fronts: ClassVar[float] = 1.0
+    heavy: ClassVar[float] = math.inf
     compared: ClassVar[tuple[tuple[str, tuple[float, ...]], ...]] = ()
 
     @classmethod

@@ -53,6 +53,7 @@ class TwoPhase(Law):
     starves = True
     published_form = True
     cost = 1.1
+    heavy = 5e6
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.profiles import run_up_profile
@@ -35,6 +36,15 @@ def expected_eccentricity(case: Case) -> float | None:
     if len(case.films) != len(case.bearings) or not case.bearings:
         return None
     return max(_expected(case, film) for film in case.films)
+
+
+def heavily_loaded(case: Case) -> bool:
+    """Whether a film carries a mean pressure from which on its law needs shorter steps; False where the static load of
+    the films is not known, as above."""
+    if len(case.films) != len(case.bearings) or not case.bearings:
+        return False
+    load = _weight(case)
+    return any(load > law_named(case.cavitation(film)).heavy * film.width * film.diameter for film in case.films)
 
 
 def _expected(case: Case, film: FilmGeometry) -> float:
