@@ -94,12 +94,13 @@ def limit_cycles(
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
     if case.heat is None and found.of(HOPF):
         found = replace(found, special=_with_errors(case, fastest, found.special))
-    changes = case.heat is not None or system.rotor.over_speed is not None
-    if changes or not (machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()):
-        return found
-    response = synchronous_response(machine, walk.resting.points[-1], slowest)
     if with_unbalance:
-        found = whirls_with_unbalance(found, machine, observe)
+        found = whirls_with_unbalance(found, walk.course, observe)
+    changes = case.heat is not None or system.rotor.over_speed is not None
+    unbalance = machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()
+    if changes or not (unbalance or machine.rotor.loads):
+        return replace(found, cost=replace(found.cost, cpu_s=time.process_time() - begun))
+    response = synchronous_response(machine, walk.resting.points[-1], slowest)
     return with_response(found, walk, response, time.process_time() - begun)
 
 

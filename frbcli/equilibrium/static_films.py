@@ -101,8 +101,11 @@ class StaticFilms:
         case = warm_case(self.case, viscosities, clearances)
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
-    def with_fields(self) -> tuple[FieldFilm, ...]:
-        """The films on CELLS and on fewer, for the fields of pressure and flow."""
+    def with_fields(self) -> tuple[FieldFilm | None, ...]:
+        """The films on CELLS and on fewer, for the fields of pressure and flow; None for bearing models, which have
+        none."""
+        if not self.own.plan.form.solved:
+            return (None,) * len(film_places(self.case))
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
         return tuple(FieldFilm(*films, _share(fewer, CELLS)) for films in zip(own, self._on(fewer), strict=True))
 

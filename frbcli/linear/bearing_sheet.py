@@ -22,11 +22,13 @@ from frbcli.equilibrium.resting import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.film.bearing_model.table import label_of
+from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
 from frbcli.linear.columns import SHEET
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.held import held_rotor
-from frbcli.scene.films import film_places
+from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.analysis import BEARING, CHART, LOADED
 from frbcli.scene.gate.gate import require
 from frbcli.scene.remedies import advised
@@ -40,14 +42,20 @@ SPEED, ECCENTRICITY = "speed", "eccentricity"
 
 @dataclass(frozen=True, repr=False)
 class BearingSheet(Tabular):
-    """States of the films of a case over "speed" or "eccentricity", film by film within each of them; laws: the
-    cavitation model of each film, in the order of the films."""
+    """States of the films of a case over "speed" or "eccentricity", film by film within each of them, without those of
+    dampers; laws: the cavitation model of each film, in the order of the films."""
 
     case: Case
     over: str
     films: tuple[str, ...]
     laws: tuple[str, ...]
     points: tuple[FilmState, ...]
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """The model of each film in words."""
+        model = self.case.film.bearing_model
+        return tuple(label_of(model) if model else law_named(law).label for law in self.laws)
 
     def of(self, film: str) -> tuple[FilmState, ...]:
         """The states of one film that were found."""
@@ -84,7 +92,7 @@ def bearing_sheet(
     Raises
     ------
     InputError
-        If the case has no film on cells, no load or no speed, or heat and a load that is not that of its rotor.
+        If the case has no film, no load or no speed, or heat and a load that is not that of its rotor.
 
     Examples
     --------
@@ -105,11 +113,16 @@ def bearing_sheet(
                 near = machines.at(2.0 * math.pi * speed, near)
                 found.append(_states(near))
         except NotConverged as error:
-            found.append([no_state(place.name, speed, str(error)) for place in film_places(case)])
+            found.append([no_state(place.name, speed, str(error)) for place in bearing_films(case)])
         if observe is not None:
             observe(number + 1, len(speeds))
     points = tuple(point for states in reversed(found) for point in states)
-    return BearingSheet(case, SPEED, tuple(place.name for place in film_places(case)), case.cavitations, points)
+    return _sheet(case, SPEED, points)
+
+
+def _sheet(case: Case, over: str, points: tuple[FilmState, ...]) -> BearingSheet:
+    names = tuple(place.name for place in bearing_films(case))
+    return BearingSheet(case, over, names, case.cavitations[: len(names)], points)
 
 
 def sommerfeld_chart(
@@ -157,7 +170,7 @@ def sommerfeld_chart(
     bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
     for number, eccentricity in enumerate(eccentricities):
-        for i, name in enumerate(system.names):
+        for i, name in enumerate(place.name for place in bearing_films(case)):
             try:
                 at_rest = _at_eccentricity(static, i, eccentricity, float(omegas[i]))
                 points.append(film_state(static, volumes[i], i, bodies, at_rest))
@@ -165,17 +178,17 @@ def sommerfeld_chart(
                 points.append(no_state(name, speed, str(error), eccentricity))
         if observe is not None:
             observe(number + 1, len(eccentricities))
-    return BearingSheet(case, ECCENTRICITY, system.names, system.laws, tuple(points))
+    return _sheet(case, ECCENTRICITY, tuple(points))
 
 
 def _states(machine: MachineAtRest) -> list[FilmState]:
-    """The states of the films of a machine."""
-    volumes = machine.static.with_fields()
+    """The states of the films of a machine but those of dampers, which do not turn."""
+    volumes = machine.static.with_fields()[: len(bearing_films(machine.static.case))]
     bodies = np.concatenate([[machine.omega], machine.at_rest.position.ring_speeds])
     warm = (math.nan,) * len(volumes) if machine.warm is None else [film.temperature for film in machine.warm.films]
     return [
         film_state(machine.static, volume, i, bodies, film, temperature)
-        for i, (volume, film, temperature) in enumerate(zip(volumes, machine.films, warm, strict=True))
+        for i, (volume, film, temperature) in enumerate(zip(volumes, machine.films, warm, strict=False))
     ]
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import astuple, dataclass
+from dataclasses import astuple, dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,9 @@ from frbcli.film.cells.steady_force import film_at, steady_solution
 from frbcli.film.gap import gap_height
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.scene.films import film_places
 from frbcli.scene.machine.system import System
+from frbcli.scene.section import film_section
 
 Array = NDArray[np.float64]
 
@@ -158,20 +160,24 @@ def _field_errors(
 
 
 def film_state(
-    static: StaticFilms, volume: FieldFilm, i: int, bodies: Array, at_rest: RestingFilm, temperature: float = math.nan
+    static: StaticFilms,
+    volume: FieldFilm | None,
+    i: int,
+    bodies: Array,
+    at_rest: RestingFilm,
+    temperature: float = math.nan,
 ) -> FilmState:
-    """The state of film i at rest. volume: the film on finite volumes, which tells what the oil does besides in this
-    place; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises NotConverged."""
-    case, system, section = static.case, static.system, volume.own.section
+    """The state of film i at rest. volume: the film on finite volumes, which has torque, flow and pressure in this
+    place, None for a bearing model; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises
+    NotConverged."""
+    case, system = static.case, static.system
+    section = film_section(case, film_places(case)[i].geometry) if volume is None else volume.own.section
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
-    found = Fields.of(volume.own, d, speeds, case.film.cavitation_factor)
-    errors = _field_errors(volume, found, at_rest, speeds, case.film.cavitation_factor)
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
-    friction, flow = friction_coefficient(found.torque, size, section.radius), found.side_flow
-    return FilmState(
+    state = FilmState(
         film=system.names[i],
         speed_Hz=float(bodies[0]) / (2.0 * math.pi),
         journal_speed_Hz=journal / (2.0 * math.pi),
@@ -185,18 +191,32 @@ def film_state(
         error=at_rest.error,
         place_error=at_rest.place_error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
-        torque=found.torque,
-        friction_coefficient=friction,
-        friction_variable=friction * section.radius / c,
-        power=found.power,
-        side_flow=found.side_flow,
-        p_max=found.p_max,
-        temperature_rise=found.power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         force_error=force_error(static, i, d * c, total),
         viscosity=section.viscosity,
         clearance=c,
         temperature=temperature,
         film_thickness_error=c * at_rest.place_error,
+    )
+    return state if volume is None else _with_fields(case, volume, state, at_rest, speeds)
+
+
+def _with_fields(
+    case: Case, volume: FieldFilm, state: FilmState, at_rest: RestingFilm, speeds: tuple[float, float]
+) -> FilmState:
+    """A state with torque, loss, flow and pressure. speeds: of journal and shell, rad/s. Raises NotConverged."""
+    radius, factor = volume.own.section.radius, case.film.cavitation_factor
+    found = Fields.of(volume.own, state.displacement, speeds, factor)
+    errors = _field_errors(volume, found, at_rest, speeds, factor)
+    friction, flow = friction_coefficient(found.torque, math.hypot(*state.load), radius), found.side_flow
+    return replace(
+        state,
+        torque=found.torque,
+        friction_coefficient=friction,
+        friction_variable=friction * radius / state.clearance,
+        power=found.power,
+        side_flow=flow,
+        p_max=found.p_max,
+        temperature_rise=found.power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         p_max_error=errors.p_max,
         power_error=errors.power,
         side_flow_error=errors.side_flow,

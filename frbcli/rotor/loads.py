@@ -24,9 +24,9 @@ class Load:
     columns: Array
 
     @property
-    def changes_with(self) -> str:
-        """What it changes with, in words."""
-        return "time"
+    def strays(self) -> str:
+        """Why it does not repeat with the revolutions of the rotor, empty if it does."""
+        return "changes with time and does not repeat, so that no motion under it is periodic"
 
     @property
     def largest(self) -> Array:
@@ -67,9 +67,13 @@ class Harmonic(Load):
         return abs(self.order) == 1.0 and self.frequency == 0.0
 
     @property
-    def changes_with(self) -> str:
+    def strays(self) -> str:
         """See Load."""
-        return "the angle of the rotor" if self.order else "time"
+        if self.frequency:
+            return "has a frequency of its own, so that no motion under it repeats with a whirl or with the rotor"
+        if not self.order.is_integer():
+            return "has an order that is no whole number, so that no motion under it repeats with the rotor"
+        return ""
 
     @property
     def turning(self) -> str:

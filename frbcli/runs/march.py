@@ -99,7 +99,7 @@ class March:
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
         self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
-            self._state = in_turn(system, self._state, float(profile.speeds[0]))
+            self._state = in_turn(self._heat.start, self._state, float(profile.speeds[0]))
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
@@ -191,7 +191,7 @@ class March:
         films = self._heat.films or self._films
         given = self._rotor, films.loop, self._tableau, self._control, self._state, budget
         if self._apart:
-            return advance_in_turn(*given, self._output)
+            return advance_in_turn(*given, self._output, self._heat.kind)
         if self._watches:
             notes = Notes(self._noted, self._out_noted, self._far_open)
             return advance_watched(*given, self._output, self._heat.kind, notes)

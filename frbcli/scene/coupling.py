@@ -7,11 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.gate.analysis import ALL, RUN
+from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.rule import Rule, refusal
-from frbcli.scene.machine.elements import changes_with_speed, load_faults
+from frbcli.scene.machine.elements import changes_with_speed
 from frbcli.scene.planning.film_choice import form_of
 
 KEY = "film.coupling"
@@ -36,7 +37,7 @@ class Coupling:
 def _oil_faults(case: Case) -> Iterator[Fault]:
     coupling, cavitation = case.film.coupling, _deciding(case)
     if form_of(case).solved and law_named(cavitation).keeps_oil:
-        problem = f"needs a film without a state; {cavitation} is mass-conserving, and its oil is a state."
+        problem = f"needs films without a state; {cavitation} is mass-conserving, and the oil in the film is its state."
         yield Fault(KEY, coupling, None, problem, "Choose monolithic, co-simulation or auto.")
 
 
@@ -44,12 +45,8 @@ def _on_cells(case: Case) -> str | None:
     return case.film.coupling if form_of(case).by_cells else None
 
 
-def _with_heat(case: Case) -> str | None:
-    return None if case.heat is None else case.film.coupling
-
-
-def _with_changing_supply(case: Case) -> str | None:
-    return case.film.coupling if any(film.supply.over_time is not None for film in case.films) else None
+def _over_time(case: Case) -> str | None:
+    return case.film.coupling if any(True for _ in inputs_of(case)) else None
 
 
 def _over_speed(case: Case) -> str | None:
@@ -59,11 +56,6 @@ def _over_speed(case: Case) -> str | None:
 def _signals(case: Case) -> str | None:
     signals = case.output.signals
     return ", ".join(signals) if any(kind != "film-thickness" for kind in signals) else None
-
-
-def _load_faults(case: Case) -> Iterator[Fault]:
-    what = "the co-simulation of rotor and films has no load that changes but the unbalance"
-    return load_faults(case, what, "Write auto for film.coupling.")
 
 
 WITHOUT_STATE = Rule(_oil_faults, (RUN,))
@@ -94,17 +86,11 @@ APART = Coupling(
     film_steps=2.0,
     rules=(
         refusal(
-            ALL, KEY, _with_heat,
-            "exchanges forces alone between rotor and films; [thermal] would follow a film that is not there yet",
-            "Write auto.",
-        ),
-        refusal(
             (RUN,), KEY, _over_speed,
-            "has a rotor of constant coefficients, and those of a bearing depend on the speed", "Write auto.",
+            "solves a rotor with constant coefficients, and those of a bearing depend on the speed", "Write auto.",
         ),
-        Rule(_load_faults, (RUN,)),
         refusal(
-            (RUN,), KEY, _with_changing_supply, "has films of a supply pressure that stays", "Write auto."
+            (RUN,), KEY, _over_time, "takes the pressure and the temperatures of the supply as constant", "Write auto."
         ),
         refusal(
             (RUN,), "output.signals", _signals,

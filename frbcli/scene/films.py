@@ -61,6 +61,11 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
     return tuple(places)
 
 
+def bearing_films(case: Case) -> tuple[FilmPlace, ...]:
+    """The films between surfaces that turn against each other: all but those of dampers."""
+    return film_places(case)[: sum(len(bearing.films) for bearing in case.bearings)]
+
+
 def _opening_body(film: FilmGeometry, inside: int, outside: int) -> int:
     """The body that the openings of a film are in."""
     return {"journal": inside, "shell": outside, "housing": HOUSING}[film.supply.surface]

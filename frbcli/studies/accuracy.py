@@ -35,7 +35,7 @@ TOLERANCES = (100.0, 10.0, 1.0, 0.1)  # of the plan's
 LOOSEST = 0.1  # tolerance that a case may have
 REFERENCE_MESH, REFERENCE_TOLERANCE = 2.0, 0.02
 COARSER_MESH, LOOSER = 1.5, 2.0  # second reference: factors of the plan's elements, and of the tolerance
-INTERRUPTED = "interrupted"
+INTERRUPTED, FINITE = "interrupted", "finite"
 
 
 Observer = Callable[[Rung, int, int, Progress], None]
@@ -87,8 +87,10 @@ def accuracy(
     _check_names(case, theories, couplings)
     short = _until(case, until)
     own = planned_rung(make_plan(short))
-    fine = replace(own, theory="finite", mesh=_mesh(own, REFERENCE_MESH), tolerance=REFERENCE_TOLERANCE * own.tolerance)
-    coarser = replace(fine, mesh=_mesh(own, COARSER_MESH), tolerance=LOOSER * fine.tolerance)
+    *_, best = _theories(case)
+    mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
+    fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)
+    coarser = replace(fine, mesh=coarse, tolerance=LOOSER * fine.tolerance)
     rungs = list(ladder(short, own, theories, couplings))
     begun = 0
     with TemporaryDirectory(prefix="frb-accuracy-") as folder:
@@ -119,6 +121,11 @@ def accuracy(
     return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
 
 
+def _theories(case: Case) -> tuple[str, ...]:
+    """The theories that a case can be computed with, the most exact one last; a bearing model is one of its own."""
+    return (case.film.bearing_model,) if case.film.bearing_model else THEORIES
+
+
 def planned_rung(plan: Plan) -> Rung:
     """The rung that the plan of a case chooses."""
     mesh = plan.form.mesh_of(plan)
@@ -131,8 +138,8 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
     rungs: list[Rung] = [own]
     for coupling in couplings or (own.coupling,):
         for tolerance in sorted({min(LOOSEST, factor * own.tolerance) for factor in TOLERANCES}, reverse=True):
-            for theory in theories or THEORIES:
-                meshes = [None] if theory == "short" else [_mesh(own, factor) for factor in MESHES]
+            for theory in theories or _theories(case):
+                meshes = [_mesh(own, theory, factor) for factor in MESHES]
                 rungs += [Rung(theory, own.cavitation, mesh, tolerance, coupling) for mesh in meshes]
     for rung in dict.fromkeys(rungs):
         try:
@@ -144,8 +151,10 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
         yield rung
 
 
-def _mesh(own: Rung, factor: float) -> tuple[int, int]:
-    """The plan's mesh made finer or coarser by a factor."""
+def _mesh(own: Rung, theory: str, factor: float) -> tuple[int, int] | None:
+    """The plan's mesh made finer or coarser by a factor; None for theories without a mesh."""
+    if theory != FINITE:
+        return None
     along, around = own.mesh or (DEFAULT_MESH.axial, DEFAULT_MESH.circumferential)
     return max(2, round(factor * along)), max(12, 4 * round(0.25 * factor * around))
 
@@ -227,7 +236,7 @@ def _with(case: Case, *settings: str) -> Case:
 def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:
     faults = [
         Fault(option, name, None, "is not known.", did_you_mean(name, known))
-        for option, names, known in (("--theory", theories, THEORIES), ("--coupling", couplings, COUPLINGS))
+        for option, names, known in (("--theory", theories, _theories(case)), ("--coupling", couplings, COUPLINGS))
         for name in dict.fromkeys(names)
         if name not in known
     ]

@@ -100,7 +100,7 @@ def test_cycle_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
     [
         (["thermal.clearance=follows"], False, "over which the motions of a branch are measured"),
         (["film.theory=auto", "film.cavitation=two-phase"], False, "settles over many periods"),
-        ([], True, "has no period"),
+        ([], True, "has two frequencies and no period"),
     ],
 )
 def test_what_has_no_cycle_with_heat(settings: list[str], whirls: bool, said: str) -> None:

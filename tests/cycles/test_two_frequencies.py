@@ -13,7 +13,7 @@ from cycle_machines import machine_of, ring_case
 import frbcli
 from frbcli.case.reading.load import load_case_text
 from frbcli.cycles.method.balance import unpacked
-from frbcli.cycles.parts.machine import Loads, Machine, film_loads, transfer, unbalance_motion
+from frbcli.cycles.parts.machine import Loads, Machine, driven_motions, film_loads, transfer
 from frbcli.cycles.result import CyclePoint, UnbalancedWhirl
 from frbcli.cycles.unbalance import two_frequencies
 from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance
@@ -81,7 +81,7 @@ def test_the_derivative_is_that_of_the_residual(short: tuple[Machine, CyclePoint
     def at(sign: float) -> np.ndarray:
         motion = torus.motion + sign * unpacked(step[:-1], c)
         moved = replace(torus, motion=motion, nu=torus.nu + sign * float(step[-1]) * machine.pace)
-        return two_frequencies._Linearised(machine, moved, torus.motion).residual(np.zeros(c))
+        return two_frequencies._Linearised(machine, moved, torus.motion).residual([])
 
     changed = balance.moved(step)
     np.testing.assert_allclose(changed, 0.5 * (at(1.0) - at(-1.0)), atol=1e-5 * np.abs(changed).max())
@@ -102,14 +102,50 @@ def test_linear_films_make_the_sum_of_whirl_and_response(
 
     monkeypatch.setattr(two_frequencies, "film_loads", linear)
     torus = cycle_of(machine, point)
-    alone = two_frequencies._Linearised(machine, torus, torus.motion).residual(np.zeros(c))
-    omega, driven = torus.omega, unbalance_motion(machine, torus.omega)
+    alone = two_frequencies._Linearised(machine, torus, torus.motion).residual([])
+    omega, ((_, driven),) = torus.omega, driven_motions(machine, torus.omega)
     passing = transfer(machine, np.array([omega]), omega)
     felt = passing.values[0] @ np.diag(passing.kappa[0] - spring - 1j * omega * dashpot)
     motion = torus.motion.copy()
     motion[(torus.orders == [0, 1]).all(axis=1)] = np.linalg.solve(np.eye(c) - felt, driven)
-    both = two_frequencies._Linearised(machine, replace(torus, motion=motion), torus.motion).residual(driven)
+    both = two_frequencies._Linearised(machine, replace(torus, motion=motion), torus.motion).residual([(1, driven)])
     np.testing.assert_allclose(both, alone, atol=1e-13)
+
+
+def test_a_force_that_turns_with_the_rotor_is_an_unbalance(short: tuple[Machine, CyclePoint]) -> None:
+    """Of Omega^2 times the unbalance, at the one speed at which it has this size."""
+    machine, point = short
+    size = 0.3e-6 * (2.0 * math.pi * point.speed_Hz) ** 2
+    push = f'force=[{{at="disk", force=["0 N", "{size!r} N"], rotating=true}}]'
+    pushed = machine_of(jeffcott(0.0, SHORT, "speed.from=186 Hz", "speed.to=192 Hz", push))
+    one, other = (with_unbalance(each, cycle_of(each, point)) for each in (machine, pushed))
+    assert np.abs(harmonic(one, 0, 1)).max() > 1e-4
+    assert other.nu == pytest.approx(one.nu, rel=1e-9)
+    np.testing.assert_allclose(harmonic(other, 0, 1), harmonic(one, 0, 1), atol=1e-9)
+
+
+def test_a_small_force_of_order_two_has_the_linear_response() -> None:
+    push = 'force=[{at="disk", force=["0.2 N", "0.1 N"], order=2}]'
+    case = jeffcott(0.0, SHORT, "speed.from=60 Hz", "speed.to=61 Hz", push)
+    point = frbcli.limit_cycles(case).synchronous[0]
+    linear = frbcli.response(case, [point.speed_Hz], excitation="force 1")
+    journal = linear.motion[0, linear.points.index("journal")]
+    found = 2.0 * 35e-6 * point.harmonics[2].ravel()
+    assert np.abs(found).max() > 1e-4 * 35e-6
+    np.testing.assert_allclose(found, journal, atol=1e-3 * np.abs(journal).max())
+    np.testing.assert_allclose(point.harmonics[1], 0.0, atol=1e-4)
+
+
+def test_a_whirl_beside_a_force_of_order_two_has_its_line(short: tuple[Machine, CyclePoint]) -> None:
+    _, point = short
+    push = 'force=[{at="disk", force=["100 N", "0 N"], order=2}]'
+    machine = machine_of(jeffcott(0.0, SHORT, "speed.from=186 Hz", "speed.to=192 Hz", push))
+    one, two = (solved(machine, of_cycle(motion_of(machine, point), 2.0 * math.pi * point.frequency_Hz,
+                                         2.0 * math.pi * point.speed_Hz, machine.orders), share)
+                for share in (0.01, 0.02))  # fmt: skip
+    assert np.abs(harmonic(one, 0, 2)).max() > 5e-7
+    np.testing.assert_allclose(harmonic(two, 0, 2), 2.0 * harmonic(one, 0, 2), rtol=2e-3)
+    np.testing.assert_allclose(harmonic(two, 0, 1), 0.0, atol=1e-9)
 
 
 def test_a_small_unbalance_acts_linearly(short: tuple[Machine, CyclePoint]) -> None:
@@ -225,7 +261,7 @@ def test_a_branch_with_unbalance() -> None:
     ("case", "problem"),
     [
         (lambda: jeffcott(0.0), "is zero"),
-        (lambda: frbcli.load_case("rigid-two-phase", ["rotor.unbalance=3 g*mm"]), "keeps its oil"),
+        (lambda: frbcli.load_case("rigid-two-phase", ["rotor.unbalance=3 g*mm"]), "a memory in its oil"),
     ],
     ids=["none", "oil"],
 )

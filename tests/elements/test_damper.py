@@ -25,7 +25,7 @@ from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.gate.analysis import BEARING, HEAT, ROTATION, RUN, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.analysis import BEARING, ROTATION, RUN, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.machine.rotor import make_rotor
@@ -373,13 +373,7 @@ def test_a_damper_without_a_spring_sinks_under_a_weight() -> None:
     assert not faults(case.with_settings("rotor.gravity=0 m/s^2"), STABILITY)
 
 
-def test_heat_and_kinematic_tests_refuse_dampers() -> None:
-    hot = load_case("jeffcott").with_settings(
-        {"oil.viscosity": {"grade": "SAE 10W-40"}, "thermal": {"model": "lumped", "supply_temperature": "70 degC"},
-         "bearing.damper": DAMPER}
-    )  # fmt: skip
-    for analysis in (RUN, HEAT):
-        assert "bearing.damper" in [fault.key for fault in faults(hot, analysis)]
+def test_kinematic_tests_refuse_dampers() -> None:
     motion = {"eccentricity": 0.5, "speed": "20 Hz"}
     (found,) = faults(damped().with_settings({"motion": motion}), ROTATION)[:1]
     assert found.key == "bearing.kind"

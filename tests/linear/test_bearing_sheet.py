@@ -321,3 +321,22 @@ def test_the_command_tells_film_temperatures(tmp_path: Path, capsys: pytest.Capt
         assert float(row[name]) == pytest.approx(point[name])
     assert point["temperature_K"] > 323.15
     assert (document["oil_density_kg_m3"], document["oil_heat_capacity_J_kg_K"]) == (830.0, 2100.0)
+
+
+DAMPED = 'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m"}'
+
+
+def test_a_damper_around_a_bearing_leaves_its_sheet_as_it_is() -> None:
+    """Its film does not turn and has no sheet; the film in its shell carries the same load."""
+    case = load_case("jeffcott", ["film.theory=short"])
+    damped = case.with_settings(DAMPED)
+    for make in (lambda each: bearing_sheet(each, [40.0]), lambda each: sommerfeld_chart(each, [0.5])):
+        alone, around = make(case), make(damped)
+        assert around.films == alone.films
+        (known,), (found,) = alone.points, around.points
+        for name in ("displacement", "stiffness", "damping", "power", "side_flow", "p_max"):
+            np.testing.assert_allclose(getattr(found, name), getattr(known, name), rtol=1e-9, err_msg=name)
+    with pytest.raises(InputError, match="the shell sinks"):
+        bearing_sheet(case.with_settings(DAMPED.replace(', spring="1e7 N/m"', "")), [40.0])
+    with pytest.raises(InputError, match="load of a single film"):
+        bearing_sheet(damped, [40.0], load=30.0)

@@ -73,6 +73,16 @@ def test_a_rigid_rotor_approaches_the_monolithic_one_with_third_order() -> None:
     assert errors[-1] < 1e-7
 
 
+def test_forces_act_between_the_exchanges_of_a_co_simulation() -> None:
+    """A force of order 2 moves the journal as far as it does where rotor and film are solved together."""
+    push = 'force=[{at="journal", force=["40 N", "0 N"], order=2}]'
+    pushed, still = load_case("rigid", [*HEAVY, push]), load_case("rigid", HEAVY)
+    exact, none = (marched(case, apart=False, longest=1e-5, tolerance=FREE)[0] for case in (pushed, still))
+    assert np.max(np.abs(exact - none)) > 0.01
+    found, _ = marched(pushed, apart=True, longest=1e-6, tolerance=FREE)
+    np.testing.assert_allclose(found, exact, atol=1e-5)
+
+
 def test_beyond_its_stable_step_a_co_simulation_is_off_but_its_control_holds_it() -> None:
     """The method is explicit. Left alone at 80 us it goes astray; the same longest step under control does not."""
     case = load_case("rigid", HEAVY)

@@ -38,7 +38,7 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         if place[-1] in holder:
             yield Breach(place, "has no effect: no bearing has a film.", REMEDY)
     if "motion" in data:
-        yield Breach(("motion",), "is a kinematic test of a film, and no bearing has one.", REMEDY)
+        yield Breach(("motion",), "moves a journal in a film, and no bearing of the case has a film.", REMEDY)
 
 
 def _body(path: Path, given: object, data: Mapping[str, Any]) -> Iterator[Breach]:

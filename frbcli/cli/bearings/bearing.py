@@ -100,9 +100,9 @@ def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ros
 
 def _check_film(case: Case, film: str | None) -> None:
     from frbcli.nearest import did_you_mean
-    from frbcli.scene.films import film_places
+    from frbcli.scene.films import bearing_films
 
-    names = [place.name for place in film_places(case)]
+    names = [place.name for place in bearing_films(case)]
     if film is not None and film not in names:
         known = did_you_mean(film, names) if any(names) else "It has one film, without a name."
         raise click.UsageError(f"--film {film} is not a film of {case.name}. {known}")
@@ -113,9 +113,9 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     if ross is None:
         return {}
     from frbcli.results.ross import ross_files
-    from frbcli.scene.films import film_places
+    from frbcli.scene.films import bearing_films
 
-    return ross_files(ross, [place.name for place in film_places(case)])
+    return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
 def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Path]) -> None:
@@ -138,14 +138,14 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
     points = len(found.of(films[0]))
     full = full or points <= FEW_POINTS
     rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
-    for film, law in zip(found.films, found.laws, strict=True):
+    for film, label in zip(found.films, found.labels, strict=True):
         if film not in films:
             continue
         name = " ".join(filter(None, (found.case.heading, film)))
         warm = {} if found.case.heat is None else {WARM: "film when everything is warm"}
         matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
         states = table_of(SHEET, _spread(found.of(film), rows))
-        for table, title in ({FILMS: f"{name}, {law_named(law).label}"} | (warm | matrices if full else {})).items():
+        for table, title in ({FILMS: f"{name}, {label}"} | (warm | matrices if full else {})).items():
             terminal.show(title, states, table)
     terminal.sentence(EXPLANATION.format(legend(SHEET, FILMS), found.case.oil.density, heat_capacity(found.case)))
     if not full:

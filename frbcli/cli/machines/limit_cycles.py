@@ -252,13 +252,13 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
 
 def _left_out(found: LimitCycles) -> list[str]:
     from frbcli.scene.clearance_steps import step_times
-    from frbcli.scene.gate.cycles import has_unbalance
+    from frbcli.scene.gate.cycles import drives
 
     notes = []
-    if has_unbalance(found.case):
+    if driven := " and ".join(drives(found.case)):
         asked = any(branch.with_unbalance for branch in found.branches)
         more = "." if asked else ": with it a whirl has two frequencies (--with-unbalance)."
-        notes.append(f"Branches are those without unbalance{more}")
+        notes.append(f"Branches are those without {driven}{more}")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes

@@ -85,8 +85,9 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     terminal.table(f"{found.case.heading}, first {found.until_s:g} s", table.heads(), rows)
     terminal.sentence(f"* choice of the plan, + on Pareto's front; {table.legend()}.")
     reference, change = found.reference.rung, found.reference.error
+    coarser = "" if reference.mesh is None else "on a coarser mesh and "
     terminal.sentence(
-        f"reference: {reference.name}; on a coarser mesh and with "
+        f"reference: {reference.name}; {coarser}with "
         f"twice the tolerance it changes by {short_number(change.eccentricity_largest)} (max) and "
         f"{short_number(change.eccentricity_rms)} (rms)."
     )

@@ -96,7 +96,8 @@ def _moments(machine: Machine, f: int, loads: Loads, u: Array, v: Array, speeds:
     own, shares = slice(2 * f, 2 * f + 2), machine.turning[f]
     turns = int(np.argmax(np.abs(shares[0])))  # the rotor, or a ring, by whose speed the total changes
     by_speed = loads.by_speed[:, own] if turns == 0 else loads.by_u[:, own, 2 * machine.film_count + turns - 1]
-    by_total = by_speed / (shares[0, turns] * (1.0 if turns == 0 else machine.pace))
+    share = float(shares[0, turns]) or 1.0  # nothing turns in the film of a damper, whose derivative is 0
+    by_total = by_speed / (share * (1.0 if turns == 0 else machine.pace))
     return _Moments(
         d=u[:, own],
         v=v[:, own],

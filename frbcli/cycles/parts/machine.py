@@ -27,6 +27,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
 
@@ -50,7 +51,8 @@ class Machine:
     N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
     Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
     rotor as transfer takes it, see rotor_parts.py; scales: (F,) viscosity of each film over that which it was made
-    with; temperatures: (F,) K of the films, empty without heat.
+    with; temperatures: (F,) K of the films, empty without heat; orders: how often in a revolution what drives the rotor
+    swings, 1 of the unbalance, and then of the forces that change with its angle.
     """
 
     rotor: LinearRotor
@@ -69,6 +71,7 @@ class Machine:
     parts: tuple[Part, ...]
     scales: Array
     temperatures: Array
+    orders: tuple[int, ...]
 
     @property
     def film_count(self) -> int:
@@ -88,7 +91,7 @@ class Machine:
     @cached_property
     def rest(self) -> Array:
         """(c,): u at rest without films but on kappa."""
-        return _moved_by(self, 0, 0.0).real
+        return _moved_by(self, 0, 0, 0.0).real
 
     @property
     def places(self) -> Array:
@@ -155,15 +158,22 @@ def make_machine(system: System, top: float) -> Machine:
         parts=(),
         scales=np.ones(len(films)),
         temperatures=np.zeros(0),
+        orders=(1, *(abs(round(load.order)) for load in turning_loads(system.rotor))),
     )
     return replace(machine, parts=_parts(machine))
+
+
+def turning_loads(rotor: LinearRotor) -> tuple[Harmonic, ...]:
+    """The loads of a rotor that change with its angle alone."""
+    return tuple(each for each in rotor.loads if isinstance(each, Harmonic) and each.frequency == 0.0)
 
 
 def _parts(machine: Machine) -> tuple[Part, ...]:
     rotor, shapes, pulls = machine.rotor, machine.places, machine.pulls
     springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
     dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
-    loads = np.column_stack([pulls, rotor.static_load, 0.5 * rotor.unbalance])
+    turning = [0.5 * load.excitation(1.0)[1] for load in turning_loads(rotor)]
+    loads = np.column_stack([pulls, rotor.static_load, 0.5 * rotor.unbalance, *turning])
     return parts_of(rotor, springs, dashpots, shapes, loads)
 
 
@@ -257,16 +267,21 @@ def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
     return Transfer(values, by_frequency, by_speed, kappa, rate)
 
 
-def unbalance_motion(machine: Machine, omega: float) -> Complex:
-    """(c,): u of exp(i Omega t) that the unbalance makes without films but on kappa, at the speed omega in rad/s."""
-    return omega**2 * _moved_by(machine, 1, omega)
+def driven_motions(machine: Machine, omega: float) -> tuple[tuple[int, Complex], ...]:
+    """Of all that drives the rotor its order k, and (c,): u of exp(i k Omega t) that it makes without films but on
+    kappa, at the speed omega in rad/s."""
+    sizes = [omega**2, *np.ones(len(machine.orders) - 1)]
+    return tuple(
+        (order, size * _moved_by(machine, 1 + number, order, omega))
+        for number, (order, size) in enumerate(zip(machine.orders, sizes, strict=True))
+    )
 
 
-def _moved_by(machine: Machine, load: int, omega: float) -> Complex:
-    """(c,): u without films but on kappa under the static load, 0, at rest, or under the unbalance over Omega^2, 1, at
-    the speed omega in rad/s."""
+def _moved_by(machine: Machine, load: int, order: int, omega: float) -> Complex:
+    """(c,): u without films but on kappa at the speed omega in rad/s under a load that turns with `order` times it: the
+    static load, 0, the unbalance over Omega^2, 1, or a force that changes with the angle of the rotor."""
     moved = np.zeros(machine.size, dtype=complex)
     for part in machine.parts:
-        dynamic = part.dynamic(np.array([1j * omega * load]), omega)[0]
+        dynamic = part.dynamic(np.array([1j * omega * order]), omega)[0]
         moved[: 2 * machine.film_count] += part.seen @ (part.basis.T @ np.linalg.solve(dynamic, part.others[:, load]))
     return moved

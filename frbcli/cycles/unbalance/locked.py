@@ -17,7 +17,7 @@ from frbcli.cycles.branch import Cycle, largest
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
 from frbcli.cycles.parts.machine import Machine
-from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion
+from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion, first_harmonics
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -43,6 +43,7 @@ def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> 
 
     Where it cannot be reached with the whole unbalance it is looked for with a part of it, which is raised then.
     """
+    motion = padded(motion, first_harmonics(machine, Locked.periods))
     share = 1.0
     while share >= SMALLEST:
         try:
@@ -117,20 +118,25 @@ def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: 
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
     """The cycle with a share of the unbalance shifted by theta, next to y; its phase is that of the reference. Raises
     Unreachable."""
-    found = corrected(_equations(machine, reference, share * np.exp(1j * theta)), y, unit_vector(len(y)))
+    found = corrected(_equations(machine, reference, share, theta), y, unit_vector(len(y)))
     if found is None:
         raise Unreachable
     return found.y
 
 
-def _equations(machine: Machine, reference: Complex, factor: complex) -> Equations:
-    """Those of a cycle with the unbalance times a factor in its second harmonic."""
+def _equations(machine: Machine, reference: Complex, share: float, theta: float) -> Equations:
+    """Those of a cycle with a share of the unbalance in its second harmonic, the rotor ahead by theta."""
     balance = Balance(machine, reference)
 
     def at(y: Array) -> tuple[Array, Array]:
         residual, slope = balance(y)
-        driven = unpacked(driven_motion(machine, balance.harmonics, 2, float(y[-1])), machine.size)
-        residual[:-1] -= packed(factor * driven)
+        residual[:-1] -= share * driven_motion(machine, balance.harmonics, Locked.periods, float(y[-1]), theta)
         return residual, slope
 
     return at
+
+
+def padded(motion: Complex, harmonics: int) -> Complex:
+    """(H + 1, c) harmonics with zeros behind them, so that H is not below `harmonics`."""
+    more = max(0, harmonics + 1 - len(motion))
+    return np.concatenate([motion, np.zeros((more, motion.shape[1]))])

@@ -2,7 +2,8 @@
 two of its periods, see locked.py.
 
 The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, in place of the phase condition, and
-the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films.
+the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films. A force of the
+order k acts in k times that harmonic.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
-from frbcli.cycles.parts.machine import Machine, unbalance_motion
+from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]
@@ -65,7 +66,7 @@ class Synchronous(Follower):
 def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float) -> Branch | None:
     """The response from the speed of a resting position down to the slowest one in rad/s; None if it does not begin."""
     follower = Synchronous(machine, slowest, resting.omega)
-    motion = np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex)
+    motion = np.zeros((first_harmonics(machine, 1) + 1, machine.size), dtype=complex)
     motion[0] = resting.u
     share = resting.omega / machine.pace
     guess = np.concatenate([packed(motion), [share, share]])
@@ -80,9 +81,15 @@ def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float)
     return replace(found, cycles=(follower.cycle(place), *found.cycles))
 
 
-def driven_motion(machine: Machine, harmonics: int, periods: int, share: float) -> Array:
-    """The packed motion that the unbalance makes at a speed over the pace."""
-    omega = share * machine.pace
+def driven_motion(machine: Machine, harmonics: int, periods: int, share: float, theta: float = 0.0) -> Array:
+    """The packed motion that unbalance and forces make at a speed over the pace, with the rotor ahead by theta."""
     motion = np.zeros((harmonics + 1, machine.size), dtype=complex)
-    motion[periods] = unbalance_motion(machine, omega)
+    for order, driven in driven_motions(machine, share * machine.pace):
+        if periods * order <= harmonics:
+            motion[periods * order] += np.exp(1j * order * theta) * driven
     return packed(motion)
+
+
+def first_harmonics(machine: Machine, periods: int) -> int:
+    """Harmonics that the motion of some periods of the rotor begins with: enough for all that drives it."""
+    return max(FIRST_HARMONICS, periods * max(machine.orders))

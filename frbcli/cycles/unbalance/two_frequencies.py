@@ -5,7 +5,8 @@ With the phases a = nu t and b = Omega t a motion is u(a, b) = sum over (j, k) o
 (-j, -k), whose harmonics are conjugate, one is held, with k >= 0. The loads of the films are taken at a grid of both
 phases, and the rotor behind them is linear at each frequency j nu + k Omega (machine.py):
 
-    u_jk = T (g_jk + kappa u_jk) + rest (0, 0) + the motion that the unbalance makes (0, 1).
+    u_jk = T (g_jk + kappa u_jk) + rest (0, 0) + the motion that the unbalance makes (0, 1), and
+a force of the order k (0, k).
 
 The phase a is that of a reference. Newton's steps are solved by GMRES; films whose derivatives are their mean over b
 part the equations by k, and are their preconditioner: of k = 0 it is the balance of a cycle.
@@ -13,6 +14,7 @@ part the equations by k, and are their preconditioner: of k = 0 it is the balanc
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -22,7 +24,7 @@ from numpy.typing import NDArray
 
 from frbcli.cycles.method.balance import packed, through, unpacked
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.parts.machine import Loads, Machine, Transfer, film_loads, transfer, unbalance_motion
+from frbcli.cycles.parts.machine import Loads, Machine, Transfer, driven_motions, film_loads, transfer
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 
 Array = NDArray[np.float64]
@@ -56,11 +58,12 @@ class Torus:
         return np.asarray(self.orders @ np.array([self.nu, self.omega]))
 
 
-def of_cycle(motion: Complex, nu: float, omega: float) -> Torus:
+def of_cycle(motion: Complex, nu: float, omega: float, driven: Sequence[int] = (1,)) -> Torus:
     """A cycle with harmonics (H + 1, c) as a motion of two frequencies, with room for as many beside k = 1: small ones
     count there, since the motions at nu and Omega - nu, close to each other, act on each other through them."""
     kept = max(2, 1 + int(np.flatnonzero(np.abs(motion).max(axis=1) > TAIL)[-1]))
     orders = [(j, 0) for j in range(kept)] + [(j, 1) for j in range(-kept, kept + 1)]
+    orders += [(0, k) for k in sorted(set(driven)) if k > 1]
     found = np.zeros((len(orders), motion.shape[1]), dtype=complex)
     found[:kept] = motion[:kept]
     return Torus(np.array(orders), found, nu, omega)
@@ -68,7 +71,7 @@ def of_cycle(motion: Complex, nu: float, omega: float) -> Torus:
 
 def solved(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
     """The motion next to a guess, with its harmonics. share: of the unbalance. Raises Unreachable."""
-    torus, driven = guess, share * unbalance_motion(machine, guess.omega)
+    torus, driven = guess, [(order, share * moved) for order, moved in driven_motions(machine, guess.omega)]
     for _ in range(ITERATIONS):
         balance = _Linearised(machine, torus, guess.motion)
         residual = balance.residual(driven)
@@ -189,12 +192,13 @@ class _Linearised:
     def analysed(self, values: Array) -> Complex:
         return harmonics(values.reshape(*self.counts, -1), self.torus.orders)
 
-    def residual(self, driven: Complex) -> Array:
-        """(n,), the phase last."""
+    def residual(self, driven: Sequence[tuple[int, Complex]]) -> Array:
+        """(n,), the phase last. driven: see driven_motions."""
         torus = self.torus
         out = torus.motion - through(self.passing.values, self.inner)
         out[0] -= self.machine.rest
-        out[(torus.orders == [0, 1]).all(axis=1)] -= driven
+        for order, moved in driven:
+            out[(torus.orders == [0, order]).all(axis=1)] -= moved
         return np.append(packed(out), self.row @ packed(torus.motion - self.reference))
 
     def moved(self, step: Array) -> Array:

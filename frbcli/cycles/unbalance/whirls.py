@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from frbcli.cycles.branch import ASKED, MOMENTS, Cycle, largest_of
 from frbcli.cycles.method.balance import motion_along, unpacked
 from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
@@ -28,18 +29,21 @@ PHASES = (256, 128)  # at which eccentricities are taken
 LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
 
 
-def whirls_with_unbalance(found: LimitCycles, machine: Machine, observe: Observer | None = None) -> LimitCycles:
+def whirls_with_unbalance(
+    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None
+) -> LimitCycles:
     """A diagram over the speed with the motions that its stable cycles become with the unbalance.
 
-    observe: called with the number of motions so far, the speed in Hz and the largest eccentricity of the latest one.
+    course: of the machine over the speed; observe: called with the number of motions so far, the speed in Hz and the
+    largest eccentricity of the latest one.
     """
     speeds = [point.speed_Hz for point in found.equilibria]
     apart = APART * (max(speeds) - min(speeds))
     branches, notes, count = [], list(found.notes), 0
     for number, branch in enumerate(found.branches):
-        chain, whirls, missing = _Chain(machine), [], []
+        chain, whirls, missing = _Chain(), [], []
         for point in _taken(branch, apart):
-            whirl = chain.next(point)
+            whirl = chain.next(course.machine(2.0 * math.pi * point.speed_Hz), point)
             if whirl is None:
                 missing.append(point.speed_Hz)
                 continue
@@ -68,45 +72,44 @@ def _taken(branch: CycleBranch, apart: float) -> list[CyclePoint]:
 class _Chain:
     """Motions along a branch, each from the one before it where that leads to it."""
 
-    def __init__(self, machine: Machine) -> None:
-        self.machine = machine
+    def __init__(self) -> None:
         self.locked: Cycle | None = None
         self.last: tuple[Torus, Torus] | None = None  # without and with the unbalance
 
-    def next(self, point: CyclePoint) -> UnbalancedWhirl | None:
-        """The motion that a cycle becomes; None if it is not found."""
-        motion = motion_of(self.machine, point)
+    def next(self, machine: Machine, point: CyclePoint) -> UnbalancedWhirl | None:
+        """The motion that a cycle of a machine becomes; None if it is not found."""
+        motion = motion_of(machine, point)
         nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
-        self.locked = self._locked(motion, nu, omega)
+        self.locked = self._locked(machine, motion, nu, omega)
         if self.locked is not None:
             self.last = None
-            return _locked_whirl(self.machine, self.locked)
-        before = of_cycle(motion, nu, omega)
+            return _locked_whirl(machine, self.locked)
+        before = of_cycle(motion, nu, omega, machine.orders)
         try:
-            torus = self._torus(before)
+            torus = self._torus(machine, before)
         except Unreachable:
             self.last = None
             return None
         self.last = before, torus
-        return _free_whirl(self.machine, torus)
+        return _free_whirl(machine, torus)
 
-    def _locked(self, motion: Complex, nu: float, omega: float) -> Cycle | None:
+    def _locked(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
         if abs(2.0 * nu - omega) > NEAR_HALF * omega:
             return None
         if self.locked is not None:
-            near = unpacked(self.locked.y[:-2], self.machine.size)
-            found = locked_near(self.machine, near, omega)
+            near = unpacked(self.locked.y[:-2], machine.size)
+            found = locked_near(machine, near, omega)
             if found is not None:
                 return found
-        return locked_whirl(self.machine, motion, nu, omega)
+        return locked_whirl(machine, motion, nu, omega)
 
-    def _torus(self, before: Torus) -> Torus:
+    def _torus(self, machine: Machine, before: Torus) -> Torus:
         if self.last is not None:
             try:
-                return fitted(self.machine, _moved_on(before, *self.last))
+                return fitted(machine, _moved_on(before, *self.last))
             except Unreachable:
                 pass
-        return with_unbalance(self.machine, before)
+        return with_unbalance(machine, before)
 
 
 def _moved_on(cycle: Torus, cycle_before: Torus, torus_before: Torus) -> Torus:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.film.cavitation.table import law_named
 from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
 from frbcli.linear.film_state import FilmState
 from frbcli.plot.style import COLOURS, legend_above, new_figure, plain_numbers, styled
@@ -23,10 +23,10 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
     """Six panels over the rotor speed, or over the eccentricity, eight with heat; films by their dashes, quantities by
     their colours."""
     case, chart = sheet.case, sheet.over == ECCENTRICITY
-    laws = ", ".join(dict.fromkeys(law_named(law).label for law in sheet.laws))
+    models = ", ".join(dict.fromkeys(sheet.labels))
     with styled():
         rows, height = (3, 7.4) if case.heat is None else (4, 9.4)
-        figure = new_figure(case.heading, f"bearing sheet, {laws}", width=9.6, height=height)
+        figure = new_figure(case.heading, f"bearing sheet, {models}", width=9.6, height=height)
         panels = figure.subplots(rows, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
         _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])
@@ -34,8 +34,8 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         draw_coefficient(panels[1, 0], sheet, "stiffness")
         draw_coefficient(panels[1, 1], sheet, "damping")
         loss: tuple[str, Reading] = ("power loss in W", lambda s: s.power)
-        _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
         film: tuple[str, Reading] = ("smallest film in µm", lambda s: 1e6 * s.film_thickness_min)
+        _curves(panels[2, 0], sheet, "loss and flow", [loss, ("side flow in mm³/s", lambda s: 1e9 * s.side_flow)])
         _curves(panels[2, 1], sheet, "film and pressure", [film, ("largest pressure in bar", lambda s: 1e-5 * s.p_max)])
         if case.heat is not None:
             _curves(panels[3, 0], sheet, "film temperature in °C", [("", lambda s: s.temperature - ZERO_CELSIUS)])
@@ -43,8 +43,12 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
         for panel in panels[2]:
-            panel.set_yscale("log")
-            plain_numbers(panel.yaxis)
+            if panel.lines:
+                panel.set_yscale("log")
+                plain_numbers(panel.yaxis)
+            else:
+                panel.set_yticks([])
+                panel.text(0.5, 0.5, "not known of a bearing model", transform=panel.transAxes, ha="center")
         if chart:
             panels[0, 0].set_yscale("log")
             plain_numbers(panels[0, 0].yaxis)
@@ -68,13 +72,16 @@ def _dashes(sheet: BearingSheet) -> list[object]:
 
 
 def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[str, Reading]]) -> None:
+    """Readings over the abscissa of the sheet, without those that are not known of any state."""
+    found = [state for film in sheet.films for state in sheet.of(film)]
+    readings = [each for each in readings if not found or not all(math.isnan(each[1](state)) for state in found)]
     for number, (film, dash) in enumerate(zip(sheet.films, _dashes(sheet), strict=True)):
         states = sheet.of(film)
         x = [state.eccentricity if sheet.over == ECCENTRICITY else state.speed_Hz for state in states]
         for colour, (name, reading) in zip(COLOURS, readings, strict=False):
             shown = name if number == 0 and name else None
             axes.plot(x, [reading(state) for state in states], color=colour, linestyle=dash, label=shown)
-    axes.set_ylabel(label)
+    axes.set_ylabel(readings[0][0] or label if len(readings) == 1 else label)
     if len(readings) > 1:
         legend_above(axes)
 

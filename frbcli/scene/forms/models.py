@@ -14,8 +14,8 @@ from frbcli.film.bearing_model.table import model_named
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.form import FilmForm, SolveCounts
-from frbcli.scene.gate.analysis import ALL, KINEMATIC, LADDER, RUN, SHEETS
-from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega
+from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS
+from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega, sheet_omega
 from frbcli.scene.keys import film_keys
 from frbcli.scene.tilt import tilt_refusal
 
@@ -44,10 +44,6 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
         ("cavitation", "in the model", "film.cavitation and bearing.ends have no effect"),
         ("film", str(GIVEN), TOLD.format(by)),
     )
-
-
-def _theory(case: Case) -> str:
-    return case.film.theory
 
 
 def _with_heat(case: Case) -> str | None:
@@ -90,7 +86,8 @@ def _parts_faults(key: str, film: FilmGeometry) -> Iterator[Fault]:
         yield Fault(f"{key}.supply.ramp", f"{supply.rise_time:g} s", None, problem, "Write 0 s.")
     if film.lobes is not None:
         value = f"{film.lobes.count} lobes"
-        yield Fault(f"{key}.lobes", value, None, "are a shape that a bearing model cannot represent.", remedy)
+        problem = "is a shape of the shell that a bearing model cannot represent."
+        yield Fault(f"{key}.lobes", value, None, problem, remedy)
 
 
 def _force_faults(case: Case, omega: float) -> Iterator[Fault]:
@@ -109,33 +106,26 @@ def _force_faults(case: Case, omega: float) -> Iterator[Fault]:
 RULES = (
     refusal(
         ALL, "film.theory", _with_heat,
-        "has neither torque nor flow, which the balance of [thermal] needs", "Write finite, short or auto.",
+        "gives a force, but not the power that its film takes up nor the oil that leaves it, and [thermal] needs both",
+        "Write finite, short or auto.",
     ),
-    Rule(_key_faults, (RUN, *KINEMATIC)),
+    Rule(_key_faults, (RUN, *KINEMATIC, *SHEETS)),
     tilt_refusal(
-        "is not known to a bearing model: it has a force by one displacement and one velocity of the journal",
+        "has no effect on a bearing model, whose force depends on one displacement and one velocity of the journal",
         'Write film.theory = "finite", or leave the tilt out.',
     ),
     refusal(
         (RUN, *KINEMATIC), "bearing.ring.spin", _turning_ring,
-        "needs the torques of the films, which a bearing model does not give", 'Write spin = "blocked".',
+        "needs the torques of the films, and a bearing model gives forces alone", 'Write spin = "blocked".',
     ),
-    Rule(_geometry_faults, (RUN, *KINEMATIC)),
+    Rule(_geometry_faults, (RUN, *KINEMATIC, *SHEETS)),
     refusal(
         (RUN,), "output.signals", oil_flow_signal,
-        "is not told by a bearing model", "Write finite, short or auto for film.theory.",
-    ),
-    refusal(
-        (LADDER,), "film.theory", _theory,
-        "is a bearing model, which has no theories and meshes to compare",
-        "`frb runup --verify` measures the error of a run.",
-    ),
-    refusal(
-        SHEETS, "film.theory", _theory,
-        "is a bearing model: it has a force, but neither pressures nor oil", "Write finite or auto.",
+        "is not known of a bearing model, which gives forces alone", "Write finite, short or auto for film.theory.",
     ),
     Rule(lambda case: _force_faults(case, run_omega(case)), (RUN,), last=True),
     Rule(lambda case: _force_faults(case, motion_omega(case)), KINEMATIC, last=True),
+    Rule(lambda case: _force_faults(case, sheet_omega(case)), SHEETS, last=True),
 )  # fmt: skip
 
 

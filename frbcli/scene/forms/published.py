@@ -83,15 +83,20 @@ def _apart(case: Case) -> str | None:
 RULES = (
     refusal(
         ALL, FORM_KEY, _with_heat,
-        "creates oil, which would carry away heat that nobody has put in: no balance of [thermal]", REMEDY,
+        "creates oil, which would carry away heat that no film has received: [thermal] would not balance",
+        REMEDY,
     ),
-    refusal(SHEETS, FORM_KEY, _always, "creates oil: the flows and losses of a sheet would hang on how much", REMEDY),
+    refusal(
+        SHEETS, FORM_KEY, _always,
+        "creates oil, and the flows and losses of a sheet would depend on how much of it has been created", REMEDY,
+    ),
     refusal(
         (STABILITY,), FORM_KEY, _always,
-        "creates oil: no oil settles in it, about which it could be linearised", REMEDY,
+        "creates oil without end, so that there is no steady film about which it could be linearised", REMEDY,
     ),
     refusal(
-        (SPEED_CYCLES, WHIRLS), FORM_KEY, _always, "is not on cells, whose oil a limit cycle is made of", REMEDY
+        (SPEED_CYCLES, WHIRLS), FORM_KEY, _always,
+        "creates oil without end, so that no motion returns to the same film after one period", REMEDY,
     ),
     refusal(
         KINEMATIC, "bearing.supply.ramp", _ramp,
@@ -103,26 +108,28 @@ RULES = (
     ),
     refusal(
         (RUN,), "bearing.clearance_steps", _steps,
-        "would change the oil, which the published two-phase form does not balance",
+        "changes the volume of the gap, and the published two-phase form does not balance the oil in it",
         'Write film.two-phase.form = "conservative".',
     ),
     refusal(
-        (RUN,), "rotor.kind", _of_several_bearings, "has two bearings; the published form is for one film", REMEDY
+        (RUN,), "rotor.kind", _of_several_bearings,
+        "has two bearings, and the published form is solved for one film", REMEDY,
     ),
-    refusal((RUN,), "bearing.kind", _on_rings, "has two films; the published form is for one", REMEDY),
+    refusal((RUN,), "bearing.kind", _on_rings, "has two films, and the published form is solved for one", REMEDY),
     refusal(
-        (RUN,), "bearing.damper", _in_damper, "has a film that does not turn; the published form is for a journal",
-        REMEDY,
+        (RUN,), "bearing.damper", _in_damper,
+        "adds the film of a damper, and the published form is solved for one film", REMEDY,
     ),
     refusal(
-        (RUN,), "film.grid", _turning_grid, "is for cells; the published form has elements", 'Write "auto".'
+        (RUN,), "film.grid", _turning_grid,
+        "turns cells, and the published form is solved on elements that do not turn", 'Write "auto".',
     ),
     refusal(
         (RUN,), "film.two-phase.whirl_steepness", _whirl_steepness, "is for the conservative form", REMEDY
     ),
     refusal(
         (RUN,), "film.coupling", _apart,
-        "solves the film apart from the rotor, whose elements settle only with it in one step",
+        "solves rotor and film in turn, and the published form settles only where both are solved together",
         "Choose monolithic or auto.",
     ),
 )  # fmt: skip

@@ -10,12 +10,13 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.machine.elements import speed_dependent
+from frbcli.scene.machine.elements import harmonics_of, speed_dependent
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
-CONSTANT = "these limit cycles are of a rotor of constant coefficients"
+CONSTANT = "these limit cycles are computed for one rotor with constant coefficients"
+TWO_FREQUENCIES = "a whirl with unbalance has two frequencies and no period"
 HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
 
 
@@ -43,10 +44,11 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
             yield Fault(f"thermal.{key}", "follows", None, problem, 'Write "fixed".')
 
 
-def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
-    """Cycles over other numbers than the speed, and motions of two frequencies, are computed at given temperatures."""
+def other_cycle_heat_faults(case: Case, but: str) -> Iterator[Fault]:
+    """Cycles over other numbers than the speed, and motions of two frequencies, are computed at given temperatures.
+    but: why they have no balance."""
     if case.heat is not None:
-        problem = "balances over the period of a cycle over the speed: a motion of two frequencies has no period."
+        problem = f"balances the heat over one period of a limit cycle; {but}."
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
 
 
@@ -72,7 +74,7 @@ def speed_cycle_faults(case: Case) -> Iterator[Fault]:
         place.feed_holes is not None or (not is_plain(place.geometry) and _turns(case, place))
         for place in film_places(case)
     ):
-        problem = "has openings that turn: the force follows their angle, and no motion comes back after one period."
+        problem = "has openings that turn: the force depends on their angle, and no whirl returns after one period."
         remedy = "Leave feed holes that turn out, or take a run-up."
         yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
 
@@ -87,18 +89,22 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
 
 def unbalance_faults(case: Case) -> Iterator[Fault]:
     """Whirls with unbalance are found by harmonic balance, of rotors that have an unbalance."""
-    if not has_unbalance(case):
+    if not drives(case):
         problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
     if by_shooting(case):
-        problem = "keeps its oil, or has a force with kinks: its whirl with unbalance is not computed."
+        problem = (
+            "has a force with kinks or a memory in its oil, so that limit cycles are computed over one period of a "
+            f"run; {TWO_FREQUENCIES}."
+        )
         remedy = "Take half-sommerfeld without openings but grooves here, and a run-up for this model."
         yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
 
 
-def has_unbalance(case: Case) -> bool:
-    """Whether the rotor of a case has one."""
-    return shaft_of(case).eccentricity != 0.0
+def drives(case: Case) -> list[str]:
+    """What shakes the rotor of a case once or several times in a revolution, in words."""
+    unbalance = ["unbalance"] if shaft_of(case).eccentricity != 0.0 else []
+    return unbalance + (["harmonic forces"] if harmonics_of(case) else [])
 
 
 def by_shooting(case: Case) -> bool:

@@ -11,19 +11,18 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 
 
-def heat_faults(case: Case) -> Iterator[Fault]:
-    """The balance of heat is of films between surfaces that turn against each other."""
-    if case.heat is not None:
-        for each in DamperElement.of(case):
-            problem = "has no place in the balance of [thermal]: nothing turns in its film, which heat would follow."
-            remedy = 'Write thermal.model = "none", and give its film e.g. temperature = "80 degC".'
-            yield Fault(each.key, "", None, problem, remedy)
-
-
 def sheet_faults(case: Case) -> Iterator[Fault]:
-    """A sheet is of films that turn."""
+    """A sheet has the films between surfaces that turn against each other."""
+    if not case.bearings:
+        for each in DamperElement.of(case):
+            problem = "has the only films of the case, which do not turn: a film of a damper carries nothing at rest."
+            yield Fault(each.key, "", None, problem, "Add a bearing with a film.")
+
+
+def loaded_faults(case: Case) -> Iterator[Fault]:
+    """A given load is that of one film."""
     for each in DamperElement.of(case):
-        problem = "has no sheet: it does not turn, and its film carries nothing at rest."
+        problem = "adds a film to that of the bearing, and a given load is the load of a single film."
         yield Fault(each.key, "", None, problem, "Leave the damper out: the sheet is of the film in its shell.")
 
 

@@ -37,7 +37,13 @@ from frbcli.scene.gate.analysis import (
     WHIRLS,
 )
 from frbcli.scene.gate.rule import Faults, Rule
-from frbcli.scene.machine.elements import element_faults, load_faults, speed_dependent, without_bearing, without_film
+from frbcli.scene.machine.elements import (
+    element_faults,
+    speed_dependent,
+    stray_load_faults,
+    without_bearing,
+    without_film,
+)
 from frbcli.scene.planning.film_choice import form_of
 
 
@@ -50,10 +56,8 @@ def _without_film(what: str) -> Callable[[Case], Faults]:
     return lambda case: without_film(case, what)
 
 
-OWN_PERIOD = "limit cycles have a period of their own"
 RULES = (
     Rule(element_faults, ALL),
-    Rule(dampers.heat_faults, ALL),
     Rule(channel_faults, ALL),
     Rule(pulls.pull_faults, ALL),
     Rule(films.supply_faults, ALL),
@@ -61,10 +65,10 @@ RULES = (
     Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.no_film_faults, KINEMATIC),
-    Rule(_without_film("the sheet is of films"), SHEETS),
-    Rule(_without_film("the comparison is of models of films"), (COMPARISON,)),
-    Rule(_without_film("the ladder is of films"), (LADDER,)),
-    Rule(_without_film("a linear machine has no limit cycle"), EVERY_CYCLE),
+    Rule(_without_film("a bearing sheet describes films"), SHEETS),
+    Rule(_without_film("a comparison is one of models of films"), (COMPARISON,)),
+    Rule(_without_film("the ladder compares theories and meshes of films"), (LADDER,)),
+    Rule(_without_film("a linear machine has no limit cycles"), EVERY_CYCLE),
     *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
@@ -76,19 +80,21 @@ RULES = (
     Rule(_of_films(runs.changing_supply_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
     Rule(dampers.sheet_faults, SHEETS),
+    Rule(dampers.loaded_faults, (LOADED,)),
     Rule(static.loaded_heat_faults, (LOADED,)),
     Rule(static.chart_heat_faults, (CHART,)),
     Rule(static.missing_heat_faults, (HEAT,)),
     Rule(static.still_ring_faults, (BEARING, LOADED, STABILITY, *EVERY_CYCLE)),
-    Rule(dampers.rest_faults, (STABILITY, *EVERY_CYCLE)),
+    Rule(dampers.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
     Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
     Rule(cycles.coefficient_faults, (SPEED_CYCLES,)),
-    Rule(lambda case: speed_dependent(case, cycles.CONSTANT), (CYCLES, WHIRLS)),
+    Rule(lambda case: speed_dependent(case, cycles.CONSTANT), (CYCLES,)),
     Rule(cycles.cycle_heat_faults, (SPEED_CYCLES,)),
-    Rule(cycles.other_cycle_heat_faults, (CYCLES, WHIRLS)),
-    Rule(lambda case: load_faults(case, OWN_PERIOD, "Remove it, or take a run-up."), EVERY_CYCLE),
+    Rule(partial(cycles.other_cycle_heat_faults, but=cycles.TWO_FREQUENCIES), (WHIRLS,)),
+    Rule(partial(cycles.other_cycle_heat_faults, but="cycles with heat are followed over the speed alone"), (CYCLES,)),
+    Rule(stray_load_faults, EVERY_CYCLE),
     Rule(cycles.smooth_faults, (CYCLES,)),
     Rule(cycles.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
     Rule(cycles.unbalance_faults, (WHIRLS,)),

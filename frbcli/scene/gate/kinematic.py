@@ -58,19 +58,19 @@ def no_film_faults(case: Case) -> Iterator[Fault]:
 def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
     """What no test can be made of: several bearings, several films, openings that turn away under the journal."""
     if len(case.bearings) > 1:
-        problem = "are too many: a kinematic test is of one bearing."
+        problem = "is more than one bearing, and a kinematic test moves the journal of one."
         yield Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")
     if len(case.bearings) != 1:
         return
     bearing = case.bearings[0]
     if isinstance(bearing, FloatingRingBearing):
-        problem = "has two films in series: a kinematic test moves the journal of one."
+        problem = "has a ring, whose place follows from the forces of two films; a kinematic test is of one film."
         remedy = 'Write kind = "single-film", with the dimensions of one of its films.'
         yield Fault("bearing.kind", bearing.kind, None, problem, remedy)
         return
     turns = test == ROTATION and case.motion is not None and case.motion.speed
     if bearing.supply.surface == "journal" and turns:
-        problem = "turn with the journal: no film is steady in which the journal keeps its place."
+        problem = "lets the openings turn with the journal; while it keeps its place, no film is steady."
         yield Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')
 
 
@@ -132,6 +132,6 @@ def misalignment_faults(case: Case) -> Iterator[Fault]:
     for index, bearing in enumerate(case.bearings):
         if isinstance(bearing, SingleFilmBearing) and any(bearing.misalignment or ()):
             assert bearing.misalignment is not None
-            problem = "is followed by frb rotation, and with film.tilt at rest: else journal and shell are parallel."
+            problem = "tilts the shell: frb rotation follows it, and with film.tilt analyses at rest; others do not."
             key = f"{bearing_key(case, index)}.misalignment"
             yield Fault(key, as_text(bearing.misalignment), None, problem, "Leave it out here.")

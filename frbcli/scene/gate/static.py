@@ -18,7 +18,7 @@ from frbcli.scene.tilt import as_text
 def sheet_faults(case: Case) -> Iterator[Fault]:
     """Films whose loads are not known."""
     if case.given_rotor is None and len(film_places(case)) != 1:
-        problem = "has more than one film: their loads follow from a rotor, which is missing."
+        problem = "has more than one film; the loads of several films follow from a rotor, which is missing."
         yield Fault("bearing", f"{len(film_places(case))} films", None, problem, "Add [rotor] and [speed].")
 
 
@@ -52,7 +52,7 @@ def _memory_faults(case: Case) -> Iterator[Fault]:
             )
             yield Fault(key, name, None, problem, "Take a law that does not clip.")
         elif law.keeps_oil and any(_opens_in_turning(place) for place in film_places(case)):
-            problem = "is mass-conserving, and has openings that turn: its oil is never at rest."
+            problem = "conserves the mass of the oil in a film whose openings turn, so that the oil is never at rest."
             remedy = "Supply it by a circumferential groove or by openings in the shell, or take half-sommerfeld."
             yield Fault(key, name, None, problem, remedy)
 
@@ -64,7 +64,7 @@ def _opens_in_turning(place: FilmPlace) -> bool:
 
 def still_ring_faults(case: Case) -> Iterator[Fault]:
     """Rings that do not turn and are loaded rest nowhere: between them and the housing nothing turns that carries."""
-    problem = "leaves the outer film still, which then carries no weight: the ring rests on its shell."
+    problem = "keeps the ring from turning; its outer film then carries no weight, and the ring rests on its shell."
     remedy = 'Write spin = "free".'
     if case.given_rotor is None or case.rotor.gravity <= 0.0:
         return

@@ -62,13 +62,14 @@ def harmonics_of(case: Case) -> tuple[Harmonic, ...]:
     return tuple(load for _, load in element_parts(case).loads if isinstance(load, Harmonic))
 
 
-def load_faults(case: Case, what: str, remedy: str) -> Iterator[Fault]:
-    """The faults of loads that change with the angle of the rotor or with time, where `what` has none."""
+def stray_load_faults(case: Case) -> Iterator[Fault]:
+    """The faults of loads that do not repeat with the revolutions of the rotor."""
     site = site_of(case)
     for element in elements_of(case):
         for node, load in element.parts(site).loads:
-            problem = f"changes with {load.changes_with}, and {what}."
-            yield Fault(element.key, node.replace("_", " ") or load.name, None, problem, remedy)
+            if load.strays:
+                value = node.replace("_", " ") or load.name
+                yield Fault(element.key, value, None, f"{load.strays}.", "Remove it, or take a run-up.")
 
 
 def table_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
@@ -137,7 +138,7 @@ def without_bearing(case: Case) -> list[Fault]:
     """The fault of a case of thrust bearings alone, which has no lateral motion."""
     if case.given_bearings:
         return []
-    problem = "is missing: the case is of thrust bearings alone."
+    problem = "is missing: the case has thrust bearings alone, which do not act on the lateral motion."
     return [Fault("bearing", "", None, problem, "Call `frb thrust`, or add [rotor], [speed] and [bearing].")]
 
 

@@ -11,8 +11,10 @@ import numpy as np
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.over_time import OverTime, largest
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
+from frbcli.elements.damper import DamperElement
 from frbcli.film.grid import Array
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import SOLIDS
@@ -76,6 +78,8 @@ class _Builder:
         self._expansions: list[tuple[int, int, float]] = []  # film, node, m/K
         self._base = np.array([place.geometry.clearance for place in self._places])
         self._growth = np.zeros((films, 1 + len(turning_rings(case))))
+        dampers = tuple(DamperElement.of(case))
+        self._dampers = {each.bearing: films - len(dampers) + i for i, each in enumerate(dampers)}  # their films
 
     def heat(self) -> Heat:
         film = 0
@@ -86,13 +90,18 @@ class _Builder:
             else:
                 self._floating(bearing, film)
                 film += 2
+        for name, damper in self._dampers.items():
+            if all(bearing.name != name for bearing in self._case.bearings):  # around given coefficients
+                self._shell(name, damper, self._thermal.housing)
         count = len(self._capacity)
         expansion = np.zeros((len(self._places), count))
         for f, node, rate in self._expansions:
             expansion[f, node] += rate
         thermal, law = self._thermal, self._case.oil.law
         assert law is not None  # the checks of a case see to it
-        supplies = tuple(bearing.supply_temperature or thermal.supply_temperature for bearing in self._bearings())
+        own = {bearing.name: bearing.supply_temperature for bearing in self._case.bearings}
+        feeding = [*self._bearings(), *self._dampers]
+        supplies = tuple(own.get(name) or thermal.supply_temperature for name in feeding)
         model = HeatModel(
             capacity=np.array(self._capacity),
             links=np.array([link[:2] for link in self._links], dtype=np.int64).reshape(-1, 2),
@@ -114,9 +123,9 @@ class _Builder:
         nodes, rings, walls = tuple(self._names), tuple(self._rings), tuple(self._walls)
         return Heat(model, nodes, rings, np.array(self._start), concentric, supplies, walls)
 
-    def _bearings(self) -> list[FilmBearing]:
-        """The bearing of each film."""
-        return [b for b in self._case.bearings for _ in b.films]
+    def _bearings(self) -> list[str]:
+        """The name of the bearing of each film between turning surfaces."""
+        return [bearing.name for bearing in self._case.bearings for _ in bearing.films]
 
     def _inlets(self) -> list[int]:
         """The film that feeds each film: an outer film that coupled channels join to the inner one, unless they open to
@@ -128,11 +137,11 @@ class _Builder:
                 found += [len(found) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
             else:
                 found.append(FROM_SUPPLY)
-        return found
+        return found + [FROM_SUPPLY] * len(self._dampers)
 
     def _single(self, bearing: SingleFilmBearing, film: int) -> None:
         shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())
-        housing = self._wall(film, bearing.housing or self._thermal.housing, f"{bearing.name} housing".lstrip())
+        housing = self._housing(film, bearing)
         self._follow(film, bearing, (shaft,), (housing,), self._shaft_expansion, self._housing_expansion)
         self._grow_shaft(film, bearing)
 
@@ -147,7 +156,7 @@ class _Builder:
         turning = self._places[film + 1].inside
         self._rings.append(RingNodes(bearing.name, inside, outside, turning))
         shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())
-        housing = self._wall(film + 1, bearing.housing or self._thermal.housing, f"{bearing.name} housing".lstrip())
+        housing = self._housing(film + 1, bearing)
         both = (inside, outside)
         self._follow(film, inner, (shaft,), both, self._shaft_expansion, solid.expansion)
         self._follow(film + 1, outer, both, (housing,), solid.expansion, self._housing_expansion)
@@ -157,6 +166,27 @@ class _Builder:
             strains = ring_rotation_strains(solid, 1.0, *radii)
             self._growth[film, 1 + turning] += radii[0] * strains[0]
             self._growth[film + 1, 1 + turning] -= radii[1] * strains[1]
+
+    def _housing(self, film: int, bearing: FilmBearing) -> int:
+        """The node outside of the last film of a bearing: its housing, or its shell in a damper."""
+        wall = bearing.housing or self._thermal.housing
+        if bearing.name not in self._dampers:
+            return self._wall(film, wall, f"{bearing.name} housing".lstrip())
+        shell = self._shell(bearing.name, self._dampers[bearing.name], wall)
+        self._to_film(film, shell)
+        return shell
+
+    def _shell(self, name: str, damper: int, wall: str | float | OverTime | WallNode) -> int:
+        """The node of a shell in a damper, which stores heat and passes it on to the film of the damper."""
+        place = self._places[damper].geometry
+        assert isinstance(place, Damper)
+        heat_capacity = SOLIDS[self._thermal.housing_material].heat_capacity
+        shell = self._node(f"{name} shell".lstrip(), place.mass * heat_capacity)
+        self._to_film(damper, shell)
+        housing = self._wall(damper, wall, f"{name} housing".lstrip())
+        expansion = self._housing_expansion
+        self._follow(damper, place, (shell,), (housing,), expansion, expansion)
+        return shell
 
     def _grow_shaft(self, film: int, geometry: FilmGeometry) -> None:
         if self._thermal.centrifugal_growth == "follows":

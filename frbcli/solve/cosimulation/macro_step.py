@@ -17,6 +17,7 @@ from frbcli.compiled import Indices, compiled
 from frbcli.dense import solve_dense
 from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
 from frbcli.solve.films.steps import make_work, write_oil
+from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.ring_spin import Rings, make_rings, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
@@ -34,6 +35,7 @@ from frbcli.solve.stage.equations import (
     start_stage,
 )
 from frbcli.solve.stage.inverse import LAG_SWEEPS, outdated, prepare
+from frbcli.solve.stage.loads import add_loads, prepare_loads
 from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.step import (
     SMALLEST_STEP,
@@ -49,6 +51,7 @@ from frbcli.solve.step import (
     write_outputs,
 )
 from frbcli.solve.tableau import Tableau
+from frbcli.thermal.exchange import SCALE
 
 GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
@@ -56,13 +59,14 @@ SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what 
 
 class Exchange(NamedTuple):
     """The quantities that rotor and films exchange: responses (n, m + rings), see below; given (m + rings,) forces of
-    the films and torques on the rings; what the films are told; the rings; and a Scratch to ask the films for torques
-    alone."""
+    the films and torques on the rings; what the films are told; the rings; the scratch of the stages, and another one
+    to ask the films for torques alone."""
 
     responses: Array
     given: Array
     told: Told
     rings: Rings
+    scratch: Scratch
     aside: Scratch
 
 
@@ -75,6 +79,7 @@ def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
         np.zeros(m + rings),
         Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
         make_rings(rings),
+        scratch,
         scratch._replace(at=np.zeros((STAGE_ROWS, n)), stage_v=unused, stage_a=unused),
     )
 
@@ -176,37 +181,59 @@ def _turn_rings(
 
 
 @compiled()
+def _stand(motion: Array, journal: Array) -> None:
+    """X_0 and U of the journals where they are now and how they move, see _tell; with g = 0."""
+    m = journal.shape[1]
+    for k in range(m):
+        journal[X_0, k], journal[U, k] = motion[k], motion[m + k]
+
+
+@compiled()
+def _warm_up(
+    heat: Any, films: Any, work: Any, rotor: RotorData, control: Control, state: State, step: float, exchange: Exchange
+) -> int:
+    """carry_heat over a macro step, with the journals where they are now, which rows of equations.py then say."""
+    journal, bodies, wet = exchange.scratch.journal, exchange.rings.bodies, state.wet
+    _stand(exchange.told.motions[2], journal)
+    taken = Taken(step, 0.0, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
+    turning, clearances, drag = rotor.turning, rotor.clearances, rotor.drag
+    return carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag)
+
+
+@compiled()
 def _ask_for_torques(
-    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, motion: Array, rings: Rings
+    films: Any, work: Any, rotor: RotorData, control: Control, aside: Scratch, rings: Rings
 ) -> None:
-    """The torques on the rings with the journals where they are now, see _tell for the motion."""
+    """The torques on the rings with the journals where _warm_up has them."""
     if rotor.spins.shape[0] > 0:
-        for k in range(aside.journal.shape[1]):
-            aside.journal[X_0, k], aside.journal[U, k] = motion[k], 0.0
         spin_up(films, work, rotor, 0, 0.0, control, aside, rings)
 
 
 def advance_in_turn(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput
-) -> tuple[int, int]:
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, budget: int, output: LoopOutput,
+    heat: Any = NO_HEAT,
+) -> tuple[int, int]:  # fmt: skip
     """Advance rotor and films that are solved apart, see advance of time_loop.py; the state comes from in_turn of
     runs/cosimulation.py.
 
-    control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times:
-    time; the journals' displacements and velocities; the rings' angles and speeds; the films' forces, the rings'
-    torques.
+    Temperatures move on once in a macro step, by the power and the flow at its end: viscosities and clearances are
+    those of the macro step before. control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3
+    rings) at the last macro times: time; the journals' displacements and velocities; the rings' angles and speeds; the
+    films' forces, the rings' torques.
     """
     stages = tableau.times.shape[0]
-    scratch, work = make_scratch(rotor, state.numbers, stages), make_work(films, state.wet, stages)
-    exchange = make_exchange(rotor, scratch)
-    status, rows = _advance(rotor, films, tableau, control, state, scratch, work, exchange, budget, output)
+    begin_heat(heat, films, rotor, state.wet)
+    scales = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None
+    work = make_work(films, state.wet, stages, scales)
+    exchange = make_exchange(rotor, make_scratch(rotor, state.numbers, stages))
+    status, rows = _advance(rotor, films, tableau, control, state, work, exchange, budget, output, heat)
     return int(status), int(rows)
 
 
 @compiled(makes_arrays=True)
 def _advance(
-    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, scratch: Scratch, work: Any,
-    exchange: Exchange, budget: int, output: LoopOutput,
+    rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, work: Any, exchange: Exchange,
+    budget: int, output: LoopOutput, heat: Any,
 ) -> tuple[int, int]:  # fmt: skip
     """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
@@ -216,7 +243,7 @@ def _advance(
     tolerance, stiffness = control.tolerance, control.contact_stiffness
     stages = moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
+    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = exchange.scratch
     responses, given, told = exchange.responses, exchange.given, exchange.told
     turning, aside = exchange.rings, exchange.aside
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
@@ -233,8 +260,10 @@ def _advance(
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
             if outdated(numbers, g, speed, gyroscopic, rotor.follows_speed):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
+                prepare_loads(rotor.loads, rotor, g, speed)
             predict(weights, s, step, q, v, stage_v, stage_a, at)
             start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, journal)
+            add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
             _extrapolate(past, t_s, lagrange, given, journal)
             lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
             for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
@@ -255,17 +284,19 @@ def _advance(
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
         if not films_follow(films, work, rotor, tableau, control, state, piece, told, journal, turning):
             return STUCK, written
-        _ask_for_torques(films, work, rotor, control, aside, told.motions[2], turning)
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
+        hot = _warm_up(heat, films, work, rotor, control, state, step, exchange)
+        write_heat(heat, output.heat, before, written)
+        _ask_for_torques(films, work, rotor, control, aside, turning)
         move_on(q, v, a, q_new, stage_v, stage_a)
         _remember(past, t_new, told.motions[2], journal, turning.torque, given)
         off = _amend(responses, compliance, clearances, given, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)
-        if status != RUNNING:
-            return status, written
+        if status != RUNNING or hot != RUNNING:
+            return status if status != RUNNING else hot, written
         error += off / (abs(speed) + SLOWEST) / tolerance
         choose_next(numbers, h, error, order, GROWTH * h)
         if numbers[STEP] < SMALLEST_STEP:

@@ -374,7 +374,7 @@ def test_a_wrong_key_of_a_model_is_told(settings: list[str], told: str) -> None:
         (["film.solution=cells"], "film.solution = cells: has no effect"),
         (["film.coupling=monolithic"], "Write dynamic-static or auto"),
         (["film.grid=half-speed"], "film.grid = half-speed: has no effect"),
-        (["bearing.lobes={ count = 3, preload = 0.5 }"], "lobes = 3 lobes: are a shape"),
+        (["bearing.lobes={ count = 3, preload = 0.5 }"], "lobes = 3 lobes: is a shape"),
         (["bearing.supply={ kind = 'pocket', position = '0 deg', opening_angle = '20 deg', width = '5 mm', "
           "pressure = '2 bar' }"], "is a supply that a bearing model cannot represent"),
     ],
@@ -532,8 +532,6 @@ def test_models_are_compared_with_those_of_the_program(tmp_path: Path) -> None:
     found = frbcli.compare(case, theories=["short", "short-pi"], keep=tmp_path)
     assert [result.variant.name for result in found.results] == ["half-sommerfeld short", "short-pi"]
     assert found.results[1].deviation.largest < 1e-8
-    with pytest.raises(InputError, match="has no theories and meshes to compare"):
-        frbcli.accuracy(frbcli.load_case("rigid", RUN))
     with pytest.raises(InputError, match="do not have the bearing model short-pi"):
         frbcli.sweep(frbcli.load_case("rigid", RUN), {"rotor.mass": ["5 kg", "6 kg"]}, directory=tmp_path / "sweep")
 
@@ -574,3 +572,43 @@ def test_a_run_with_a_model_takes_about_twice_the_time_of_the_film_of_the_progra
     ratio = min(spent[1]) / min(spent[0])
     sys.stdout.write(f"a bearing model takes {ratio:.2f} of the time of the program's short film\n")
     assert ratio < 2.5
+
+
+# --- its sheet and its ladder ---
+
+
+def test_the_sheet_of_a_model_is_that_of_the_program(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    built_in, own = (frbcli.load_case("rigid", (f"film.theory={name}", "speed.to=120 Hz")) for name in
+                     ("short", "short-pi"))  # fmt: skip
+    for make in (lambda case: frbcli.bearing_sheet(case, [110.0]), lambda case: frbcli.sommerfeld_chart(case, [0.4])):
+        (known,), (found,) = make(built_in).points, make(own).points
+        for name in ("displacement", "film_thickness_min", "sommerfeld_number"):
+            assert getattr(found, name) == pytest.approx(getattr(known, name), rel=1e-9)
+        for name in ("stiffness", "damping"):
+            expected = getattr(known, name)
+            assert getattr(found, name) == pytest.approx(expected, abs=2e-9 * float(np.max(np.abs(expected))))
+        assert known.power > 0.0
+        assert all(math.isnan(getattr(found, name)) for name in ("torque", "power", "side_flow", "p_max"))
+    picture = tmp_path / "sheet.png"
+    settings = ["--set", "film.theory=short-pi", "--speed", "30 Hz", "--speed", "110 Hz"]
+    assert frb(["bearing", "rigid", *settings, "-o", str(picture)]) == 0
+    assert picture.stat().st_size > 0
+    assert "short, pi film" in capsys.readouterr().out
+
+
+def test_the_ladder_of_a_model_is_of_tolerances() -> None:
+    case = frbcli.load_case("rigid", ("film.theory=short-pi", "speed.to=120 Hz"))
+    found = frbcli.accuracy(case, until=0.02)
+    assert {(item.rung.theory, item.rung.mesh) for item in found.ladder} == {("short-pi", None)}
+    by_tolerance = sorted(found.ladder, key=lambda item: item.rung.tolerance)
+    assert len(by_tolerance) == 4
+    assert by_tolerance[0].error.eccentricity_largest < by_tolerance[-1].error.eccentricity_largest
+    assert found.reference.rung.tolerance < by_tolerance[0].rung.tolerance
+    with pytest.raises(InputError, match="--theory = finite: is not known"):
+        frbcli.accuracy(case, until=0.02, theories=["finite"])
+
+
+def test_a_sheet_asks_what_a_run_asks_of_a_model() -> None:
+    bores = 'bearing.supply={kind="bores", count=6, diameter="2 mm", pressure="2 bar"}'
+    with pytest.raises(InputError, match="a supply that a bearing model cannot represent"):
+        frbcli.bearing_sheet(damper_case(bores, "motion={ load = '30 N', speed = '20 Hz' }"), [20.0])
