@@ -175,7 +175,8 @@ def _none_rests(
             return ()
         found[point.speed_Hz] = point
     why = f"Sought at {TRIED} speeds from {speeds[-1]:.4g} to {speeds[0]:.4g} Hz only, since there is none at these."
-    left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), why)) for speed in speeds)
+    reason = f"{fastest.problem} {why}"
+    left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
     slowest, *others = tuple(left)[::-1]
     return replace(slowest, problem=f"{slowest.problem} {why}"), *others
 

@@ -578,11 +578,6 @@ def test_limit_cycles_of_a_film_beside_an_element() -> None:
     threshold, found = stability(growing).threshold, frbcli.limit_cycles(growing)
     assert threshold is not None
     assert [point.speed_Hz for point in found.of("hopf")] == pytest.approx([threshold.speed_Hz], rel=1e-6)
-    with pytest.raises(InputError) as caught:
-        frbcli.limit_cycles(growing, with_unbalance=True)
-    (fault,) = [fault for fault in caught.value.faults if "over_speed" in fault.key]
-    assert fault.key == "bearing.1.over_speed"
-    assert "depends on the speed" in fault.problem
 
 
 def test_coefficients_can_be_swept(tmp_path: Path) -> None:
