@@ -16,6 +16,7 @@ from scipy.linalg import eigh
 from series_rotors import assert_eigenvalues, in_series
 
 import frbcli
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.errors import InputError
 from frbcli.linear.critical_map import critical_map
@@ -306,6 +307,19 @@ FAULTS: dict[str, tuple[dict[str, Any], str, str]] = {
         {"mass": None, "inertia": None, "position": None, "mounts": None, "modes": [MODE | {"frequency": "0 Hz"}]},
         "housing.modes.0.frequency", "than 0",
     ),
+    "a mass that is a table": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None, "modes": [MODE],
+         "masses": {"left": {"mass": "3 kg"}}}, "housing.masses.left.mass", "not a quantity",
+    ),
+    "a mass in metres": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None, "modes": [MODE], "masses": {"left": "3 m"}},
+        "housing.masses.left", "cannot be turned into kg",
+    ),
+    "a place with three displacements": (
+        {"mass": None, "inertia": None, "position": None, "mounts": None,
+         "modes": [MODE | {"at": MODE["at"] | {"left": [1.0, 0.0, 0.0]}}]},
+        "housing.modes.0.at.left", "too many entries",
+    ),
     "masses of a rigid housing": ({"masses": {"left": "3 kg"}}, "housing.masses", "without modes"),
 }  # fmt: skip
 
@@ -320,6 +334,12 @@ def test_bad_housings_are_refused(given: tuple[dict[str, Any], str, str]) -> Non
     assert problem in fault.problem
     assert fault.remedy
     assert sum(each.key == key for each in caught.value.faults) == 1
+
+
+def test_masses_and_displacements_are_listed_by_their_places() -> None:
+    keys = [value.key for value in values(load_case("turbocharger-engine"))]
+    assert "housing.masses.right" in keys
+    assert "housing.modes.0.at.left.1" in keys
 
 
 def test_a_symmetric_rotor_does_not_tilt_its_housing() -> None:

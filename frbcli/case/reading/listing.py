@@ -49,6 +49,8 @@ def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value
         return
     if isinstance(found, Model):
         yield from _values(f"{key}.", found, written)
+    elif isinstance(found, tuple) and isinstance(written, dict) and hasattr(found[0], "place"):
+        yield from _by_place(key, found, written)
     elif isinstance(found, tuple):
         if len(found) > MOST_LISTED and isinstance(found[0], float):
             yield Value(key, len(found), "", f"{len(found)} values")
@@ -63,6 +65,14 @@ def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value
         yield Value(key, found, si, display(found, unit), bool(si) and isinstance(written, int | float))
     else:
         yield Value(key, found, "", str(found))
+
+
+def _by_place(key: str, found: tuple[Any, ...], written: dict[str, Any]) -> Iterator[Value]:
+    """Values of a list of models that is written as a table by their places."""
+    for item in found:
+        fields = type(item).model_fields
+        (name,) = fields.keys() - {"place"}
+        yield from _one(f"{key}.{item.place}", getattr(item, name), fields[name], written.get(item.place))
 
 
 def _is_idle(key: str, case: Case) -> bool:

@@ -32,6 +32,8 @@ _FORMS = {
 # Keys that take names which are added from Python, and the functions that add them.
 OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
 
+BY_PLACE: tuple[Path, ...] = (("masses",), ("at",))  # tables by places, which are lists in the case
+
 
 @dataclass(frozen=True)
 class _Place:
@@ -43,10 +45,10 @@ class _Place:
 
 def objections(error: ValidationError, data: dict[str, Any]) -> Iterator[Breach]:
     """Each error of the models in `data`, with the path of its key in the file."""
-    for detail in error.errors(include_url=False):
-        path = _path(detail["loc"], data)
-        if detail["type"] != "missing" and not is_present(path, data):
-            continue  # a value that was taken over from another key, which has the same fault
+    details = [(_path(detail["loc"], data), detail) for detail in error.errors(include_url=False)]
+    # a value that was taken over from another key is not present, and that key has the same fault
+    own = [(path, detail) for path, detail in details if detail["type"] == "missing" or is_present(path, data)]
+    for path, detail in own or details:
         yield _breach(path, detail["loc"], detail["type"], {"input": detail["input"], **detail.get("ctx", {})})
 
 
@@ -84,11 +86,17 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
         if isinstance(element, str) and element.startswith("("):
             continue
         if isinstance(data, dict):
+            if isinstance(element, int) and path[-1:] in BY_PLACE and element < len(data):
+                path = (*path, list(data)[element])
+                data = data[path[-1]]
+                continue
             if isinstance(element, int):
                 continue
             if not kind_seen and element == data.get("kind"):
                 kind_seen = True
                 continue
+        if path[-2:-1] in BY_PLACE and isinstance(element, str) and not isinstance(data, dict):
+            continue  # the value itself, which a table by places has without its name
         if isinstance(element, int) and isinstance(data, str | int | float):
             continue  # one quantity that stands for a matrix
         path = (*path, element)
