@@ -254,7 +254,7 @@ def test_displacement_without_a_disk_is_that_of_the_journal(run: Run) -> None:
 
 def test_summary_marks_the_events_found(run: Run) -> None:
     written = texts(summary_figure(run))
-    for text in ("critical speed\n145.4 Hz", "onset of whirl\n193.6 Hz, 0.46 ω", "eccentricity", "speed in Hz"):
+    for text in ("critical speed\n145.4 Hz", "onset of whirl\n193.6 Hz, 0.47 ω", "eccentricity", "speed in Hz"):
         assert text in written
     contact = {"kind": "contact", "film": None, "t_s": 2.0, "speed_Hz": 60.0, "frequency_ratio": None}
     told = texts(summary_figure(replace(run, events=[contact], status="contact")))
