@@ -205,7 +205,7 @@ def orders(
 
 def _label_line(axes: Axes, across: Values, frequency: Values, label: str, limits: tuple[float, float]) -> None:
     """Write the name of a line beside it, on the left of where it is highest yet well inside the picture; of a level
-    line on the right of where that begins, away from the names of rising ones, and small, since such lines lie close."""
+    line on the right of where that begins, away from rising ones, and small, since such lines lie close."""
     span = abs(across[-1] - across[0])
     middle = np.abs(across - 0.5 * (across[0] + across[-1]))
     inside = (middle < 0.43 * span) & (frequency > limits[0]) & (frequency < limits[1])
