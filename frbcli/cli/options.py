@@ -36,6 +36,15 @@ class QuantityOption(click.ParamType[float]):
         return found
 
 
+@dataclass(frozen=True)
+class UnitOption(QuantityOption):
+    """A unit, alone, such as "um", or as a multiple of one, such as "125 um"."""
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        text = str(value).strip()
+        return super().convert(f"1 {text}" if text[:1].isalpha() else value, param, ctx)
+
+
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
 TIME_OPTION = QuantityOption("time", "s", "0.2 s", positive=False)
 LENGTH_OPTION = QuantityOption("length", "m", "35 um")

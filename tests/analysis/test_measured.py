@@ -118,7 +118,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Path]:
 
 
 def columns_of(point: str) -> list[str]:
-    axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m", "--unit", "1 m"]
+    axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m", "--unit", "m"]
     return [*axes, "--time", "time_s", "--speed", "speed_Hz", "--clearance", "35 um"]
 
 

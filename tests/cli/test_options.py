@@ -9,6 +9,7 @@ import pytest
 from click.testing import CliRunner
 
 from frbcli.cli.main import COMMANDS, GROUPS, command_named, frb
+from frbcli.cli.options import UnitOption
 
 SHARED = ("--set", "--json", "--quiet", "--csv", "--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm",
           "--signal", "--cavitation", "--theory", "--coupling", "--format")  # fmt: skip
@@ -46,3 +47,14 @@ def test_the_help_shows_every_command_in_one_group() -> None:
     assert places == sorted(places)
     assert max(map(len, told.splitlines())) <= 80
     assert [told.index(f"\n  {name} ") for name in named] == sorted(told.index(f"\n  {name} ") for name in named)
+
+
+@pytest.mark.parametrize(("given", "metres"), [("um", 1e-6), ("m", 1.0), ("1 mm", 1e-3), ("125 um", 125e-6), (" in ", 0.0254)])
+def test_a_unit_is_given_alone_or_as_a_multiple(given: str, metres: float) -> None:
+    assert UnitOption("length", "m", "um")(given) == pytest.approx(metres, rel=1e-12)
+
+
+@pytest.mark.parametrize("given", ["s", "nan", "inf", "parsnip", "", "-1 um"])
+def test_what_is_no_unit_of_the_kind_is_refused(given: str) -> None:
+    with pytest.raises(click.BadParameter):
+        UnitOption("length", "m", "um")(given)

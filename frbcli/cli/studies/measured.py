@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
-from frbcli.cli.options import LENGTH_OPTION, SPEED_OPTION, QuantityOption
+from frbcli.cli.options import LENGTH_OPTION, SPEED_OPTION, UnitOption
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
 _GIVEN = "frbcli.measurement"  # in the context of a command
 EITHER = (("time", "rate"), ("speed", "speed_at", "tacho"))  # options of which one is enough
-_TIME_UNIT, _SPEED_UNIT = QuantityOption("time", "s", "1 ms"), QuantityOption("speed", "Hz", "1 rpm")
+_UNITS = {kind: UnitOption(kind, unit, example) for kind, unit, example in
+          (("length", "m", "um"), ("time", "s", "ms"), ("speed", "Hz", "rpm"))}  # fmt: skip
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
@@ -47,9 +48,9 @@ def measured_options(function: Function) -> Function:
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
         "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
-        "unit": ({"type": LENGTH_OPTION}, "Unit of the displacements. [of the file, or 1 um]"),
-        "time-unit": ({"type": _TIME_UNIT}, "Unit of the times. [of the file, or 1 s]"),
-        "speed-unit": ({"type": _SPEED_UNIT}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
+        "unit": ({"type": _UNITS["length"]}, "Unit of the displacements. [of the file, or 1 um]"),
+        "time-unit": ({"type": _UNITS["time"]}, "Unit of the times. [of the file, or 1 s]"),
+        "speed-unit": ({"type": _UNITS["speed"]}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
     }
     told: Any = function
     told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
