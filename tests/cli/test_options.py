@@ -49,7 +49,9 @@ def test_the_help_shows_every_command_in_one_group() -> None:
     assert [told.index(f"\n  {name} ") for name in named] == sorted(told.index(f"\n  {name} ") for name in named)
 
 
-@pytest.mark.parametrize(("given", "metres"), [("um", 1e-6), ("m", 1.0), ("1 mm", 1e-3), ("125 um", 125e-6), (" in ", 0.0254)])
+@pytest.mark.parametrize(
+    ("given", "metres"), [("um", 1e-6), ("m", 1.0), ("1 mm", 1e-3), ("125 um", 125e-6), (" in ", 0.0254)]
+)
 def test_a_unit_is_given_alone_or_as_a_multiple(given: str, metres: float) -> None:
     assert UnitOption("length", "m", "um")(given) == pytest.approx(metres, rel=1e-12)
 
