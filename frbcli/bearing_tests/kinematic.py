@@ -23,6 +23,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
 from frbcli.film.published.solution import NodeState
 from frbcli.html import Tabular
+from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.remedies import advised, film_advice
 from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
@@ -199,6 +200,7 @@ def _test(
     solve: Callable[[Case, KinematicPlan, Tell | None], KinematicResult], observe: Observer | None,
 ) -> KinematicTest:  # fmt: skip
     plans = [kinematic_plan(case, name, test) for name in dict.fromkeys(cavitations or (None,))]
+    case = tested_case(case)
     results: list[KinematicResult] = []
     try:
         for number, plan in enumerate(plans):

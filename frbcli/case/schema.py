@@ -158,6 +158,11 @@ class SpeedRamp(Model):
 class KinematicMotion(Model):
     """A kinematic test of a bearing: the motion of the journal is given."""
 
+    film: Label = Field(
+        default="",
+        description="the film that is tested, by its name in results; must be given where there are several. What is "
+        "outside of it is at rest",
+    )
     eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
     load: Force | None = Field(default=None, description="in place of the displacement: a resting position")

@@ -13,8 +13,10 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
+from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.analysis import (
     BEARING,
+    KINEMATIC,
     LADDER,
     ROTATION,
     RUN,
@@ -150,52 +152,61 @@ HEAD = """# What goes with what
 
 Every analysis against every film and feature. The table is made by the program: each cell asks the gate that the
 analysis itself passes, with a case that has the film or feature. `cd tests && python -m pages.analysis_matrix` writes
-this page, and a test checks that it is up to date. "run" stands for run-up, run-down, sweep, fit and compare.
+this page, and a test checks that it is up to date. "run" stands for run-up, run-down, sweep, fit and compare. Of
+several films, rotation, squeeze and whirl test the one that `motion.film` names.
 """
+
+
+Reason = tuple[str, str, str]  # key, problem and remedy
 
 
 def page() -> str:
     """The page in Markdown."""
     frbcli.add_bearing(BearingModel(MODEL, "one's own", _force))
     try:
-        reasons: list[str] = []
+        reasons: dict[Reason, list[str]] = {}  # with the values of the key
         names = list(ANALYSES)
         rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
         for name, (case, settings) in FILMS.items():
-            asked = ((case, [*settings, *_motion(analysis)], analysis) for analysis in ANALYSES.values())
+            asked = ((case, settings, analysis) for analysis in ANALYSES.values())
             rows.append(f"| {name} | " + " | ".join(_cell(reasons, refused(*each)) for each in asked) + " |")
         rows += ["", "Two features together in a run:", "", "| | run |", "| --- | --- |"]
         for name, (case, settings) in PAIRS.items():
             rows.append(f"| {name} | {_cell(reasons, refused(case, settings, RUN))} |")
     finally:
         frbcli.remove_bearing(MODEL)
-    notes = [f"{number}. {told}" for number, told in enumerate(reasons, start=1)]
-    return "\n".join([HEAD, *rows, "", "Why not:", "", *notes, ""])
+    notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
+    return "\n".join([HEAD, *rows, "", "Why not, and what to do:", "", *notes, ""])
 
 
-def _cell(reasons: list[str], faults: Sequence[Fault]) -> str:
+def _cell(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:
     """Yes, or no with the numbers of the reasons, which are added to them."""
-    told = list(dict.fromkeys(reason(fault) for fault in faults))
-    reasons += [each for each in told if each not in reasons]
-    return f"no ({', '.join(str(reasons.index(each) + 1) for each in told)})" if told else "yes"
+    told = list(dict.fromkeys((fault.key, fault.problem, fault.remedy) for fault in faults))
+    for fault in faults:
+        values = reasons.setdefault((fault.key, fault.problem, fault.remedy), [])
+        if fault.value and fault.value not in values:
+            values.append(fault.value)
+    return f"no ({', '.join(str(list(reasons).index(each) + 1) for each in told)})" if told else "yes"
+
+
+def _sentence(reason: Reason, values: Sequence[str]) -> str:
+    """Why, with the values of the key."""
+    key, problem, remedy = reason
+    first = f"`{key} = {values[0]}`" if values else f"`{key}`"
+    return " ".join([", ".join([first, *(f"`{each}`" for each in values[1:])]), problem, remedy])
 
 
 def refused(name: str, settings: Sequence[str], analysis: str) -> tuple[Fault, ...]:
     """The faults of a case in an analysis; empty if it can be computed."""
     try:
-        require(load_case(name, settings), analysis)
+        case = load_case(name, [*settings, MOTION] if analysis in KINEMATIC else settings)
+        films = [place.name for place in bearing_films(case)]
+        if analysis in KINEMATIC and len(films) > 1:
+            case = load_case(name, [*settings, MOTION, f"motion.film={films[0]}"])
+        require(case, analysis)
     except InputError as error:
         return error.faults
     return ()
-
-
-def reason(fault: Fault) -> str:
-    """Why, with the value of the key."""
-    return f"`{fault.key} = {fault.value}` {fault.problem}"
-
-
-def _motion(analysis: str) -> tuple[str, ...]:
-    return (MOTION,) if analysis in ("rotation", "squeeze", "whirl") else ()
 
 
 def _force(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001

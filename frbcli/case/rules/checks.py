@@ -32,7 +32,8 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     yield from implausible(data)
     bearings = tables(data, "bearing")
     if "bearing" not in data and not thrust_alone(data):
-        yield Breach(("bearing",), "is missing.", "Add the table [bearing].")
+        needed = "the motion of a journal is one in a bearing" if "motion" in data else "it carries the rotor"
+        yield Breach(("bearing",), f"is missing; {needed}.", "Add the table [bearing].")
     if data.get("bearing") == []:
         yield Breach(("bearing",), "is empty.", "Add the table [bearing].")
     yield from _oil(data)

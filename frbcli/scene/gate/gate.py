@@ -8,6 +8,7 @@ or a coupling is not made for stands in its own row, see `rules` in scene/forms/
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from functools import partial
 
 from frbcli.case.schema import Case
@@ -37,6 +38,7 @@ from frbcli.scene.gate.analysis import (
     WHIRLS,
 )
 from frbcli.scene.gate.rule import Faults, Rule
+from frbcli.scene.gate.tested import choice_faults, key_in, tested_case
 from frbcli.scene.machine.elements import (
     element_faults,
     speed_dependent,
@@ -69,7 +71,7 @@ RULES = (
     Rule(_without_film("a comparison is one of models of films"), (COMPARISON,)),
     Rule(_without_film("the ladder compares theories and meshes of films"), (LADDER,)),
     Rule(_without_film("a linear machine has no limit cycles"), EVERY_CYCLE),
-    *(Rule(partial(kinematic.bearing_faults, test=test), (test,)) for test in KINEMATIC),
+    *(Rule(partial(kinematic.turning_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *FOLLOWED))),
@@ -111,9 +113,13 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
     if alone := without_bearing(case):  # no other rule has a subject
         return alone
     found: list[Fault] = []
+    whole = case
+    if analysis in KINEMATIC:
+        found += choice_faults(case, analysis)
+        case = tested_case(case)
     for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
         if analysis in rule.analyses and not (rule.last and found):
-            found += rule.of(case)
+            found += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
     return found
 
 

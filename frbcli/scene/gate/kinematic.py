@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.analysis import ROTATION
 from frbcli.scene.keys import bearing_key
 from frbcli.scene.section import film_section
@@ -55,21 +56,12 @@ def no_film_faults(case: Case) -> Iterator[Fault]:
         yield Fault(f"{key}.kind", bearing.kind, None, problem, remedy)
 
 
-def bearing_faults(case: Case, test: str) -> Iterator[Fault]:
-    """What no test can be made of: several bearings, several films, openings that turn away under the journal."""
-    if len(case.bearings) > 1:
-        problem = "is more than one bearing, and a kinematic test moves the journal of one."
-        yield Fault("bearing", f"{len(case.bearings)} bearings", None, problem, "Keep one [bearing].")
-    if len(case.bearings) != 1:
-        return
-    bearing = case.bearings[0]
-    if isinstance(bearing, FloatingRingBearing):
-        problem = "has a ring, whose place follows from the forces of two films; a kinematic test is of one film."
-        remedy = 'Write kind = "single-film", with the dimensions of one of its films.'
-        yield Fault("bearing.kind", bearing.kind, None, problem, remedy)
+def turning_faults(case: Case, test: str) -> Iterator[Fault]:
+    """Openings that turn away under the journal."""
+    if len(bearing_films(case)) != 1:
         return
     turns = test == ROTATION and case.motion is not None and case.motion.speed
-    if bearing.supply.surface == "journal" and turns:
+    if case.bearings[0].films[0].supply.surface == "journal" and turns:
         problem = "lets the openings turn with the journal; while it keeps its place, no film is steady."
         yield Fault("bearing.supply.on", "journal", None, problem, 'Write on = "shell", or speed = "0 Hz".')
 

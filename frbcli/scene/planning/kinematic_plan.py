@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
@@ -23,6 +23,7 @@ from frbcli.scene.forms.tables import MODAL, SHORT
 from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import motion_omega
+from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.cell_choice import FEWEST, given_cells
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
@@ -99,9 +100,10 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """
     model = case.film.bearing_model
-    asked = cavitation or ("" if model else case.film.cavitation)
+    asked = cavitation or ("" if model else tested_case(case).film.cavitation)
     case = with_model(case, asked) if asked in names() and not model else case
     require(case, test, _name_faults(case, asked))
+    case = tested_case(case)
     bearing, motion = case.bearings[0], case.motion
     assert motion is not None
     film = bearing.films[0]
@@ -128,8 +130,9 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
 
 
 def with_model(case: Case, cavitation: str) -> Case:
-    """The case with a cavitation model for its film."""
-    return altered(case, {"film": altered(case.film, {"cavitation": cavitation})})
+    """The case with a cavitation model for its film, which then has none of its own."""
+    films = [altered(each, {"cavitation": None}) if isinstance(each, RingFilm) else each for each in case.films]
+    return altered(case.with_films(films), {"film": altered(case.film, {"cavitation": cavitation})})
 
 
 def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
