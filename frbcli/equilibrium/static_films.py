@@ -20,6 +20,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
+from frbcli.film.kinds.fields import EvenFilm, FieldFilm
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import point_mass
 from frbcli.rotor.linear import LinearRotor
@@ -53,12 +54,12 @@ class MeshFilms:
 
 
 @dataclass(frozen=True)
-class FieldFilm:
+class FieldFilms:
     """A film on finite volumes, for the fields of pressure and flow, and on fewer cells for their error; share: of the
     difference between both that is the error of the former."""
 
-    own: VolumeFilm
-    coarser: VolumeFilm
+    own: FieldFilm
+    coarser: FieldFilm
     share: float
 
 
@@ -101,13 +102,18 @@ class StaticFilms:
         case = warm_case(self.case, viscosities, clearances)
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
-    def with_fields(self) -> tuple[FieldFilm | None, ...]:
+    def with_fields(self) -> tuple[FieldFilms | None, ...]:
         """The films on CELLS and on fewer, for the fields of pressure and flow; None for bearing models, which have
         none."""
         if not self.own.plan.form.solved:
             return (None,) * len(film_places(self.case))
+        if uneven := self.system.films.fields:
+            other = self.others[0]
+            both = zip(uneven, other.system.films.fields, strict=True)
+            return tuple(FieldFilms(*films, other.share) for films in both)
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
-        return tuple(FieldFilm(*films, _share(fewer, CELLS)) for films in zip(own, self._on(fewer), strict=True))
+        pairs = zip(map(EvenFilm, own), map(EvenFilm, self._on(fewer)), strict=True)
+        return tuple(FieldFilms(*films, _share(fewer, CELLS)) for films in pairs)
 
     def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
         return tuple(volume_film(self.case, each, cells, self.top_Hz) for each in film_places(self.case))

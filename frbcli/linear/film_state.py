@@ -11,14 +11,12 @@ from numpy.typing import NDArray
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import LEAST, RestingFilm, force_error, settled_force
-from frbcli.equilibrium.static_films import FieldFilm, StaticFilms
+from frbcli.equilibrium.static_films import FieldFilms, StaticFilms
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import CavitationFactor, loads
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.steady_force import film_at, steady_solution
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import gap_height
+from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.films import film_places
@@ -127,20 +125,23 @@ class Fields:
     side_flow: float
 
     @classmethod
-    def of(cls, volume: VolumeFilm, d: Array, speeds: tuple[float, float], factor: CavitationFactor) -> Fields:
+    def of(cls, volume: FieldFilm, d: Array, speeds: tuple[float, float], factor: CavitationFactor) -> Fields:
         """Those of a steady film. d: (2,) displacement over the clearance; speeds: of journal and shell in rad/s;
         factor: see loads. Raises NotConverged."""
         journal, shell = speeds
-        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), journal + shell)
-        solution, at = steady_solution(volume, motion), film_at(volume, math.hypot(*motion.d), motion.omega)
-        found = loads(at, motion, solution, journal - shell, factor)
-        power = -found.torque.journal * journal + found.torque.shell * shell
-        flow = outflow(at, motion.d, at.pressure(solution.state))
-        return cls(found.p_max, found.torque.journal, power, flow)
+        p_max, torques, flow = -math.inf, np.zeros(2), 0.0
+        for film, motion in volume.parts(d, journal + shell):
+            solution = FilmSolver(film).steady(motion)
+            found = loads(film, motion, solution, journal - shell, factor)
+            p_max = max(p_max, found.p_max)
+            torques += (found.torque.journal, found.torque.shell)
+            flow += volume.outflow(film, motion, solution)
+        on_journal, on_shell = torques.tolist()
+        return cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow)
 
 
 def _field_errors(
-    film: FieldFilm, found: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
+    film: FieldFilms, found: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
 ) -> Fields:
     """Expected errors by the mesh: of the fields in this place, and by the error of the place, as if it were further
     out; NaN if the film is not solved on fewer cells."""
@@ -161,7 +162,7 @@ def _field_errors(
 
 def film_state(
     static: StaticFilms,
-    volume: FieldFilm | None,
+    volume: FieldFilms | None,
     i: int,
     bodies: Array,
     at_rest: RestingFilm,
@@ -175,6 +176,7 @@ def film_state(
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
+    ends = d[None] if volume is None else volume.own.ends(d)
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
     state = FilmState(
@@ -185,7 +187,7 @@ def film_state(
         load=np.array(at_rest.load),
         displacement=d,
         attitude_deg=at_rest.attitude_deg,
-        film_thickness_min=c * float(gap_height(section, (float(d[0]), float(d[1])), phi).min()),
+        film_thickness_min=c * min(float(gap_height(section, (x, y), phi).min()) for x, y in ends.tolist()),
         stiffness=at_rest.stiffness,
         damping=at_rest.damping,
         error=at_rest.error,
@@ -201,7 +203,7 @@ def film_state(
 
 
 def _with_fields(
-    case: Case, volume: FieldFilm, state: FilmState, at_rest: RestingFilm, speeds: tuple[float, float]
+    case: Case, volume: FieldFilms, state: FilmState, at_rest: RestingFilm, speeds: tuple[float, float]
 ) -> FilmState:
     """A state with torque, loss, flow and pressure. speeds: of journal and shell, rad/s. Raises NotConverged."""
     radius, factor = volume.own.section.radius, case.film.cavitation_factor

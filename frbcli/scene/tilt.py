@@ -7,6 +7,7 @@ lies at (x + z t_y, y - z t_x).
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
@@ -71,6 +72,13 @@ def tilt_key(case: Case) -> tuple[str, str]:
             return f"motion.{key}", as_text(given)
     tilt = tilt_of(case)
     return f"{bearing_key(case, 0)}.misalignment", as_text((-tilt[0], -tilt[1]))
+
+
+def misaligned(case: Case) -> Iterator[tuple[str, str]]:
+    """The key and the value of each shell that is not in line."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, SingleFilmBearing) and bearing.misalignment is not None and any(bearing.misalignment):
+            yield f"{bearing_key(case, index)}.misalignment", as_text(bearing.misalignment)
 
 
 def as_text(given: Pair) -> str:

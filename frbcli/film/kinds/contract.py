@@ -19,6 +19,7 @@ from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Array
+from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
@@ -163,6 +164,12 @@ class Films(ABC):
         """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
         outside of each film over its total, 0 without one that turns."""
         raise NotImplementedError
+
+    @property
+    def fields(self) -> tuple[FieldFilm, ...]:
+        """The films with steady fields of pressure and flow whose gaps are not even along the axis; empty where they
+        are."""
+        return ()
 
     @property
     def with_fields(self) -> tuple[VolumeFilm, ...]:

@@ -58,6 +58,7 @@ class FilmForm:
     )
     table_of_solutions: ClassVar[bool] = False  # whether it is tabulated from solutions on cells before a run
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
+    inclines: ClassVar[bool] = False  # whether its gaps may have a tilt, in machines at rest
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
     same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films

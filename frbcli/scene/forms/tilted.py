@@ -47,24 +47,24 @@ def _machine_faults(case: Case) -> Iterator[Fault]:
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
 
 
-def _film_faults(case: Case) -> Iterator[Fault]:
-    """Films that do not follow a tilt."""
+def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+    """Films that do not follow a tilt. without: the remedy that leaves the tilt out."""
     if case.film.theory not in ("auto", "finite"):
         problem = "has a gap that is the same along the axis."
-        yield Fault("film.theory", case.film.theory, None, problem, f'Write theory = "finite". {WITHOUT}')
+        yield Fault("film.theory", case.film.theory, None, problem, f'Write theory = "finite". {without}')
     for key, name in dict(cavitation_keys(case)).items():
         if law_named(name).keeps_oil:
             problem = "keeps its oil, whose motion in a film that tilts is not linearised."
-            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {WITHOUT}")
+            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
         elif law_named(name).follow is not Law.follow:
             problem = "changes with the eccentricity, which in a film that tilts differs along the axis."
-            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {WITHOUT}")
+            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
     if case.heat is not None:
         problem = "has temperatures of films with a gap that is even along the axis."
-        yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {WITHOUT}')
+        yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
 
 
-def _misalignment_faults(case: Case) -> Iterator[Fault]:
+def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells so far out of line that a journal in the middle touches their ends."""
     for index, bearing in enumerate(case.bearings):
         if isinstance(bearing, SingleFilmBearing) and bearing.misalignment is not None:
@@ -80,6 +80,7 @@ def _misalignment_faults(case: Case) -> Iterator[Fault]:
 class TiltedForm(CellForm):
     """Finite volumes over the whole width, finer at the ends."""
 
+    inclines: ClassVar[bool] = True
     chosen_by_target: ClassVar[bool] = False
     fine_when_static: ClassVar[bool] = False
     turns_cells: ClassVar[bool] = False
@@ -87,8 +88,8 @@ class TiltedForm(CellForm):
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(_analysis_faults, OTHERS),
         Rule(_machine_faults, FOLLOWED),
-        Rule(_film_faults, FOLLOWED),
-        Rule(_misalignment_faults, FOLLOWED),
+        Rule(film_faults, FOLLOWED),
+        Rule(misalignment_faults, FOLLOWED),
     )
 
 

@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.analysis import ROTATION
-from frbcli.scene.keys import bearing_key
 from frbcli.scene.section import film_section
-from frbcli.scene.tilt import as_text, displacement_of, gaps_at_ends, slope_of, tilt_key, tilt_of, tilts
+from frbcli.scene.tilt import as_text, displacement_of, gaps_at_ends, misaligned, slope_of, tilt_key, tilt_of, tilts
 
 SPARE = 0.1  # share of the least gap without tilt that a remedy leaves
 
@@ -121,9 +119,6 @@ def end_faults(case: Case) -> Iterator[Fault]:
 
 def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells that are not in line, where journal and shell are taken to be parallel."""
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, SingleFilmBearing) and any(bearing.misalignment or ()):
-            assert bearing.misalignment is not None
-            problem = "tilts the shell: frb rotation follows it, and with film.tilt analyses at rest; others do not."
-            key = f"{bearing_key(case, index)}.misalignment"
-            yield Fault(key, as_text(bearing.misalignment), None, problem, "Leave it out here.")
+    for key, value in misaligned(case):
+        problem = "tilts the shell, which rotations and machines at rest follow in films of the program; others do not."
+        yield Fault(key, value, None, problem, "Leave it out here.")

@@ -20,6 +20,7 @@ from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.elements import ElementFilms
+from frbcli.film.kinds.inclined import InclinedFilms
 from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
 from frbcli.film.kinds.tilted import TiltedFilms
@@ -30,6 +31,7 @@ from frbcli.film.rectangles.film import make_film
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
 from frbcli.scene.forms.cells import CELLS, cells_of
+from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED
@@ -50,7 +52,7 @@ def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
     default that of the run."""
     makers = {NO_FILM: _none, CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
-    makers[TILTED] = _tilted
+    makers |= {TILTED: _tilted, INCLINED: _inclined}
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
 
 
@@ -122,11 +124,15 @@ def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
     return SourceFilm(section, law, mesh)
 
 
-def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> Films:
+def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> TiltedFilms:
     places = film_places(case)
     misalignments = np.array([getattr(place.geometry, "misalignment", None) or (0.0, 0.0) for place in places])
     own = tuple(_tilted_film(case, place, cells_of(plan), top_Hz) for place in places)
     return TiltedFilms(_clearances(case), own, misalignments)
+
+
+def _inclined(case: Case, plan: Plan, top_Hz: float | None) -> Films:
+    return InclinedFilms(_clearances(case), _tilted(case, plan, top_Hz))
 
 
 def _tilted_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None) -> TiltedFilm:

@@ -16,6 +16,7 @@ from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.models import GIVEN, WHY
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
@@ -25,6 +26,7 @@ from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.planning.cell_choice import FEWEST, WorstFilm, fewest_cells, given_cells, worst_film
 from frbcli.scene.planning.eccentricity import expected_eccentricity
 from frbcli.scene.planning.short_bearing import short_error, slenderness_of
+from frbcli.scene.tilt import misaligned
 
 # Eccentricity up to which films hold the target. A finer table costs little more; a film that is solved at every film
 # call would cost much more for eccentricities close to 1.
@@ -71,6 +73,8 @@ def form_of(case: Case) -> FilmForm:
         return GIVEN
     if TwoPhase.name in case.cavitations and case.film.two_phase.form == "published":
         return PUBLISHED
+    if any(misaligned(case)):
+        return INCLINED
     if _on_volumes(case):
         return CELLS
     return TABLE if all_clipped(case) else SOLUTIONS

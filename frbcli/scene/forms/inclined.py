@@ -1,0 +1,42 @@
+"""Films in shells that are not in line, around journals that keep their direction: the tilt of the gap is given."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import ClassVar
+
+from frbcli.case.schema import Case
+from frbcli.errors import Fault
+from frbcli.scene.forms.form import SolveCounts
+from frbcli.scene.forms.tilted import FOLLOWED, TiltedForm, film_faults, misalignment_faults
+from frbcli.scene.gate.analysis import SHEETS
+from frbcli.scene.gate.rule import Rule
+from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.tilt import misaligned
+
+AT_REST = (*FOLLOWED, *SHEETS)
+WITHOUT = "Leave bearing.misalignment out."
+
+
+def _shaft_faults(case: Case) -> Iterator[Fault]:
+    """Rotors whose journals tilt as well."""
+    if case.given_rotor is not None and shaft_of(case).tilts:
+        for key, value in misaligned(case):
+            problem = "tilts the shell, and the journal of this rotor tilts as well."
+            remedy = f'Write film.tilt = "follows" for stability, damped modes and response. {WITHOUT}'
+            yield Fault(key, value, None, problem, remedy)
+
+
+@dataclass(frozen=True)
+class InclinedForm(TiltedForm):
+    """The cells of films that follow a tilt, with one that is given."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(_shaft_faults, AT_REST),
+        Rule(lambda case: film_faults(case, WITHOUT), AT_REST),
+        Rule(misalignment_faults, AT_REST),
+    )
+
+
+INCLINED = InclinedForm("cells with the tilt of their shells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 40.0)
