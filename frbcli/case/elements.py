@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
 from pydantic_core import CoreSchema
 
 from frbcli.case.film_geometry import FilmGeometry
@@ -23,14 +23,18 @@ from frbcli.case.quantities import (
     Position,
     Quantity,
     SignedSpeed,
+    TopSpeed,
 )
 from frbcli.case.surroundings.damper import Damper
+from frbcli.case.surroundings.over_time import Input, OverTime, is_over_time
 from frbcli.case.surroundings.support import Support
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]
 MassEntry = Annotated[float, Quantity("kg", "0.1 kg")]
 AXES = ("xx", "xy", "yx", "yy")
+AXIAL = Quantity("N", "40 N")
+AxialForce = Annotated[float, AXIAL]
 
 
 def _both_directions(given: object) -> object:
@@ -152,3 +156,34 @@ def _numbered(given: object) -> object:
 
 
 ThrustBearings = Annotated[tuple[ThrustBearing, ...], BeforeValidator(_numbered)]
+
+
+class LoadAtSpeed(Model):
+    """An axial load that grows with the square of the speed."""
+
+    at: TopSpeed = Field(description="speed at which the rotor has this load")
+    load: AxialForce = Field(description="towards larger positions; below 0 the other way")
+
+    def over(self, speed: float) -> float:
+        """The load in N at a speed in Hz."""
+        return self.load * (speed / self.at) ** 2
+
+
+def _load_form(given: object) -> str:
+    squared = isinstance(given, LoadAtSpeed) or (isinstance(given, dict) and not is_over_time(given))
+    return "(squared)" if squared else "(load)"
+
+
+AnyLoad = Annotated[
+    Annotated[float | OverTime, AXIAL, Input(AXIAL), Tag("(load)")] | Annotated[LoadAtSpeed, Tag("(squared)")],
+    Discriminator(_load_form),
+]
+
+
+class Axial(Model):
+    """The load along the axis, with which the thrust bearing acts on the machine."""
+
+    load: AnyLoad = Field(
+        description="on the rotor, towards larger positions, below 0 the other way; or `{ at, load }`, with the square "
+        "of the speed; or over time"
+    )

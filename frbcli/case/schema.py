@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, PrivateAttr, model_validator
 
 from frbcli.case.bearing import Bearings, FilmBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.elements import CoefficientsBearing, Element, ThrustBearings
+from frbcli.case.elements import Axial, CoefficientsBearing, Element, ThrustBearings
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.laws import Cavitation, adopt, attribute
 from frbcli.case.model import Model, altered, with_default
@@ -278,6 +278,9 @@ class Case(Model):
     )
     thrust_bearings: ThrustBearings = Field(
         default=(), alias="thrust_bearing", description="pads beside a collar; must be given without a bearing"
+    )
+    axial: Axial | None = Field(
+        default=None, description="load along the axis; without it thrust bearings are left out of the motion"
     )
     housing: Housing | None = Field(
         default=None, description="what all bearings stand in; they are fixed to the ground if not given"

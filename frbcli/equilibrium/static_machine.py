@@ -65,6 +65,7 @@ class StaticMachines:
         memory: bool = False,
         coarse: bool = False,
     ) -> None:
+        self._case = case
         films, self._heat = static_films(case, load, top_Hz), None
         self._static = films.coarse if coarse else films
         self._memory = memory and self._static.system.remembers
@@ -82,9 +83,18 @@ class StaticMachines:
         """The machine, without heat."""
         return self._static.system
 
+    def _check_axis(self, omega: float) -> None:
+        """Raises NotConverged where an axial load is carried by no film."""
+        if self._case.axial is not None:
+            from frbcli.elements.collar.collar import collar_at_rest, collar_of  # films on pads take long to import
+
+            if (collar := collar_of(self._case)) is not None:
+                collar_at_rest(collar, omega)
+
     def at(self, omega: float, near: MachineAtRest | None = None, with_error: bool = True) -> MachineAtRest:
         """The machine at omega rad/s, sought from one near it; with_error: whether errors of the coefficients are
         wanted, else they are NaN. Raises NotConverged."""
+        self._check_axis(omega)
         warm, static = None, self._static
         start = None if near is None else near.at_rest.position.displacements
         if self._heat is not None:

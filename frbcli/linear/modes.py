@@ -137,7 +137,7 @@ def natural_modes(
     omega = 2 * math.pi * np.asarray(speeds, dtype=np.float64)
     return Modes(
         case,
-        tuple(on(float(np.max(omega))).tolist()),
+        tuple(on(float(np.max(omega)))[: len(free.journals)].tolist()),
         modes.positions,
         tuple((journal.name, journal.position) for journal in free.journals),
         tuple((wheel.name, wheel.position) for wheel in free.wheels),

@@ -13,17 +13,19 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from operator import attrgetter
 
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, named, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, find_threshold
+from frbcli.linear.thrust.columns import AXIAL
 from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import System
@@ -51,7 +53,8 @@ class Stability(Tabular):
         """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
         films = max((point.films for point in self.points), key=len, default=())
         names = [film.name for film in films]
-        return table_of(point_columns(names, film_columns(films)), self.points)
+        axial = named(AXIAL, "collar", attrgetter("axial")) if self.case.axial is not None else ()
+        return table_of((*point_columns(names, film_columns(films)), *axial), self.points)
 
 
 def stability(
@@ -194,6 +197,10 @@ def _point(
         with advised(case):
             machine = machines.at(2 * math.pi * speed, near, with_error)
             point = point_at_rest(machine, speed, frequency and frequency(machine.omega))
+            if case.axial is not None:
+                from frbcli.linear.thrust.axial import axial_state  # films on pads take long to import
+
+                point = replace(point, axial=axial_state(case, machine.omega))
             return with_errors(point, machine) if with_error else point, machine
     except NotConverged as error:
         return StabilityPoint(speed, (), np.zeros(0, dtype=complex), str(error)), near

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +19,9 @@ from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.order import fastest_first, ranks
+
+if TYPE_CHECKING:  # films on pads take long to import
+    from frbcli.linear.thrust.axial import AxialState
 
 Array = NDArray[np.float64]
 Eigenvalues = NDArray[np.complex128]
@@ -45,8 +48,8 @@ class StabilityPoint:
     their speeds stand while the rotor moves. warm: the machine with its heat, of a case that has it; its temperatures
     stand, too. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the films, empty where they
     were not asked for; others: stiffness and damping (films, 2, 2) on other meshes, with the
-    share of the difference that is the error. All are empty where no resting position was found; problem then says why,
-    and is empty otherwise.
+    share of the difference that is the error; axial: the collar under an axial load, None without one. All are empty
+    where no resting position was found; problem then says why, and is empty otherwise.
     """
 
     speed_Hz: float
@@ -57,6 +60,7 @@ class StabilityPoint:
     warm: WarmMachine | None = None
     errors: Array = field(default_factory=lambda: np.zeros(0))
     others: tuple[tuple[Array, Array, float], ...] = ()
+    axial: AxialState | None = None
 
     @property
     def value(self) -> float:

@@ -66,6 +66,7 @@ PART_SIGNALS = (
     Column("oil_fraction", "", "mean oil fraction of a film"),
     Column("journal", "m", "displacement of a journal", shape=(2,)),
     Column("disk", "m", "displacement of a disk", shape=(2,)),
+    Column("collar", "m", "displacement of the shaft at the collar of a thrust bearing", shape=(2,)),
     Column("shell", "m", "displacement of the shell of a bearing in its damper", shape=(2,)),
     Column("support", "m", "displacement of the shell of a bearing on its support", shape=(2,)),
     Column("housing", "m", "displacement of the housing, at its centre of mass or at a bearing", shape=(2,)),

@@ -60,11 +60,13 @@ def turbocharger_rotor(
     modal_damping: float,
     external_damping: float,
     gravity: float,
+    collars: Sequence[Journal] = (),
 ) -> Body:
     """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
 
-    journals: the places of all bearings, with a film or without one. modal_damping: ratio to the critical damping of
-    every elastic mode; external_damping: of each wheel against the ground, N s/m; gravity in m/s^2.
+    journals: the places of all bearings, with a film or without one; collars: those of thrust bearings. modal_damping:
+    ratio to the critical damping of every elastic mode; external_damping: of each wheel against the ground, N s/m;
+    gravity in m/s^2.
     """
     n = len(modes.frequencies)
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
@@ -76,12 +78,11 @@ def turbocharger_rotor(
         cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
         unbalance_cos += np.outer([cos, sin], shape)
         unbalance_sin += np.outer([-sin, cos], shape)
+    tilting = [(f"journal_{each.name}", each.position) for each in journals]
+    tilting += [(each.name, each.position) for each in collars]
     nodes = [
-        (
-            f"journal_{journal.name}",
-            np.vstack([_of(both, modes.at(journal.position)), _of(-turned, modes.slope_at(journal.position))]),
-        )
-        for journal in journals
+        (name, np.vstack([_of(both, modes.at(position)), _of(-turned, modes.slope_at(position))]))
+        for name, position in tilting
     ]
     nodes += [(f"disk_{wheel.name}", _of(both, modes.at(wheel.position))) for wheel in wheels]
     return Body(

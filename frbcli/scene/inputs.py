@@ -10,6 +10,8 @@ from frbcli.errors import Fault
 from frbcli.scene.machine.elements import span_faults
 from frbcli.units import display
 
+AXIAL_LOAD = "axial.load"
+
 
 def input_times(case: Case) -> Sequence[float]:
     """The times in s of all rows of the inputs of a case."""
@@ -25,6 +27,8 @@ def input_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
 def input_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
     """What the plan says of inputs over time: choice, value, reason."""
     for each in inputs_of(case):
+        if each.key == AXIAL_LOAD:  # the line of the thrust bearing tells it
+            continue
         x, time = each.values.x, each.values.time
         value = f"{each.key}: {display(min(x), each.unit)} to {display(max(x), each.unit)}"
         span = f"{each.values.told}, {time[0]:g} to {time[-1]:g} s"

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from frbcli.compiled import Array
 
 FROM_SUPPLY = -1
+OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear
 AT_ZERO, SLOPE = range(2)  # volumetric heat capacity AT_ZERO + SLOPE T, J/(m^3 K), T in K
 
 

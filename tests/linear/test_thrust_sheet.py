@@ -59,9 +59,11 @@ def test_a_load_is_that_of_the_gap_found_for_it() -> None:
     assert state.power == pytest.approx(state.torque * 2.0 * np.pi * 2000.0)
 
 
-@pytest.mark.parametrize("load", [1e9, 1e-9])
-def test_a_load_no_film_can_carry_is_refused(load: float) -> None:
-    with pytest.raises(InputError, match=r"is carried at no gap from 0\.1 um to 2 mm"):
+@pytest.mark.parametrize(
+    ("load", "said"), [(1e9, "the most is .* at a gap of 1 um"), (1e-9, "below the .* at a gap of 2 mm")]
+)
+def test_a_load_no_film_can_carry_is_refused(load: float, said: str) -> None:
+    with pytest.raises(InputError, match=said):
         frbcli.thrust_sheet(frbcli.load_case("thrust"), speeds_Hz=SPEED, loads=[load])
 
 
@@ -120,7 +122,7 @@ def test_the_plan_of_a_rotor_says_that_its_thrust_bearing_is_left_out() -> None:
     plan = frbcli.make_plan(frbcli.load_case("jeffcott", [thrust]))
     (told,) = [decision for decision in plan.decisions if decision.choice == "thrust bearing"]
     assert told.value == "left out"
-    assert "neither their load nor the tilt" in told.reason
+    assert "the case has no axial.load" in told.reason
 
 
 KEYS = ("speed_Hz", "gap_m", "load_N", "torque_N_m", "power_W", "flow_inner_m3_s", "flow_outer_m3_s", "p_max_Pa",

@@ -51,6 +51,7 @@ THRUST = (
     'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
     'taper_angle="50 deg", taper="20 um"}]'
 )
+COLLAR = THRUST.replace("[{", '[{position="30 mm", ')
 OVER_SPEED = ", ".join([
     'speed=["0 Hz", "300 Hz"]',
     *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
@@ -104,7 +105,10 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, "film.tilt=follows")),
     "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
-    "thrust bearing, left out of the motion": ("jeffcott", (THRUST,)),
+    "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),
+    "thrust bearing under an axial load": (
+        "turbocharger-car", (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld")
+    ),
     "thrust bearings alone": ("thrust", ()),
 }
 

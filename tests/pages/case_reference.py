@@ -53,6 +53,8 @@ TABLES = {
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
     "[[thrust_bearing]]": "ThrustBearing",
+    "[axial]": "Axial",
+    "load = { ... } of [axial]": "LoadAtSpeed",
     "over_speed = { ... }": "CoefficientsOverSpeed",
     "[bearing.damper]": "Damper",
     "[bearing.support]": "Support",

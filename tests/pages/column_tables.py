@@ -39,7 +39,7 @@ from frbcli.linear.columns import (
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
-from frbcli.linear.thrust.columns import THRUST
+from frbcli.linear.thrust.columns import AXIAL, THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS
 from frbcli.scene.machine.operating import FILM_OPERATION
@@ -66,6 +66,7 @@ def of_json(columns: Columns) -> Columns:
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "thrust sheet": THRUST,
+    "collar": tuple(column for column in AXIAL if column.quantity.startswith("axial")),
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
     "tilting films": TILTING,
     "modes": of_json(MODES),

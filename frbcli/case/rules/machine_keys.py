@@ -6,7 +6,9 @@ import re
 
 from frbcli.errors import Fault
 
-TABLES = ("rotor", "shaft", "disk", "bearing", "housing", "magnetic_pull", "oil", "film", "thermal")
+TABLES = (
+    "rotor", "shaft", "disk", "bearing", "housing", "magnetic_pull", "thrust_bearing", "axial", "oil", "film", "thermal"
+)  # fmt: skip
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
 # course and the end of a run. And the one number of the machine in another table.
 OTHERS = re.compile(r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|thermal\.hottest_film")

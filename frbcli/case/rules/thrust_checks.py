@@ -9,9 +9,12 @@ from typing import Any
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
 from frbcli.case.rotor import OF_SECTIONS
-from frbcli.units import ANGLE, display
+from frbcli.case.surroundings.over_time import values_of
+from frbcli.units import ANGLE, SPEED, display
 
 ROUND = 1e-9
+FEWEST = 3  # pads of a collar under load
+ONE_SIDE = ("left", "right")
 
 
 def thrust_alone(data: Mapping[str, Any]) -> bool:
@@ -29,6 +32,8 @@ def thrust_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield Breach((*path, "end_play"), problem, remedy)
         if table(data, "rotor").get("kind") in OF_SECTIONS and "position" not in bearing:
             yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm", where the collar stands.')
+    if "axial" in data:
+        yield from _loaded(data)
 
 
 def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
@@ -46,3 +51,40 @@ def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if angle and taper_angle and taper_angle > angle * (1.0 + ROUND):
         problem = f"is {math.degrees(taper_angle):.5g} deg, longer than the pad of {math.degrees(angle):.5g} deg."
         yield Breach((*path, "taper_angle"), problem, "Make it shorter, at most as long as pad_angle.")
+
+
+def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of a collar under an axial load."""
+    bearings, key = tables(data, "thrust_bearing"), ("axial", "load")
+    if not bearings:
+        remedy = "Add [[thrust_bearing]], or remove the table; see docs/thrust.md."
+        yield Breach(("axial",), "has no thrust bearing that carries its load.", remedy)
+        return
+    if len(bearings) > 1:
+        problem = f"is given beside {len(bearings)} thrust bearings, and one collar carries it."
+        yield Breach(key, problem, 'Keep one, with side = "both" where pads stand on both sides.')
+    if "oil" not in data:
+        yield Breach(("oil",), "is missing.", "Add the table [oil].")
+    first = number(table(data, "speed"), "from", SPEED)
+    if first is not None and first < 0.0:
+        problem = "turns the collar the other way, in which its pads carry nothing."
+        yield Breach(("speed", "from"), problem, 'Write from = "0 Hz" or more, or remove [axial].')
+    path, bearing = bearings[0]
+    pads = bearing.get("pads")
+    if isinstance(pads, int) and not isinstance(pads, bool) and 0 < pads < FEWEST:
+        problem = f"is {pads}: fewer than three pads do not hold a collar alike in all directions."
+        yield Breach((*path, "pads"), problem, "Write pads = 3 or more, or remove [axial].")
+    yield from _side(key, table(data, "axial").get("load"), bearing.get("side", "both"))
+
+
+def _side(key: Path, given: Any, side: object) -> Iterator[Breach]:
+    """A load towards the side without pads."""
+    values = values_of(given.get("load") if isinstance(given, dict) and "load" in given else given, "N")
+    if side not in ONE_SIDE or not values:
+        return
+    towards = min(values) if side == "right" else -max(values)
+    if towards > 0.0 or (towards == 0.0 < max(values, key=abs)):
+        return
+    away = "is 0: the film pushes the collar off" if not any(values) else "pulls the collar off its pads, which stand"
+    problem = f"{away}{' its pads, which stand' if not any(values) else ''} on its {side} side alone."
+    yield Breach(key, problem, 'A load above 0 acts towards larger positions, to the right. Or write side = "both".')

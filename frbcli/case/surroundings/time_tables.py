@@ -46,6 +46,7 @@ FORCE = TableKind("N", ("x", "fx", "force_x", "1"), ("y", "fy", "force_y", "2"))
 ACCELERATION = TableKind("m/s^2", ("x", "ax", "acceleration_x", "1"), ("y", "ay", "acceleration_y", "2"))
 PRESSURE = TableKind("Pa", ("pressure", "supply_pressure", "p"), ())
 TEMPERATURE = TableKind("K", ("temperature", "supply_temperature"), ())
+LOAD = TableKind("N", ("load", "axial_load", "force"), ())
 WALLS = ("shaft", "housing")
 IN_A_BEARING = ("inner", "outer", "damper")  # tables of films
 KINDS = {"force": FORCE, "base": ACCELERATION}  # tables of the case file that can have `file`
@@ -264,6 +265,7 @@ def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 def _places(data: Mapping[str, Any]) -> Iterator[tuple[Key, TableKind]]:
     """The paths of all keys that can be inputs over time, with what their files hold."""
     bearings = tables(data, "bearing")
+    yield ("axial", "load"), LOAD
     for path, holder in ((("thermal",), table(data, "thermal")), *bearings):
         yield (*path, "supply_temperature"), TEMPERATURE
         for wall in WALLS:

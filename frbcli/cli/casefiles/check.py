@@ -8,7 +8,7 @@ import click
 
 from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.columns import documents, table_of
+from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -83,6 +83,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         _document(case, listed, bare, decisions)
         | {"findings": _told_findings(found), "films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
+        | ({} if kinematic or case.axial is None else {"axial": _axial(case)})
     )
 
 
@@ -98,6 +99,15 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
     plan = thrust_plan(case)
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
     terminal.emit(_document(case, listed, bare, plan))
+
+
+def _axial(case: Case) -> dict[str, object]:
+    """The collar under its axial load at the top speed; the plan tells it to people."""
+    from frbcli.linear.thrust.axial import axial_state
+    from frbcli.linear.thrust.columns import AXIAL
+    from frbcli.scene.gate.rule import run_omega
+
+    return document(AXIAL, axial_state(case, run_omega(case)))
 
 
 def _document(

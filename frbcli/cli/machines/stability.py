@@ -11,7 +11,7 @@ from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, tell_modes
-from frbcli.cli.machines.stability_table import tell_coefficient_error, tell_points
+from frbcli.cli.machines.stability_table import tell_coefficient_error, tell_collar, tell_points
 from frbcli.cli.options import SPEED_OPTION, STIFFNESS_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
@@ -102,6 +102,7 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
     tell_points(terminal, found, every_speed)
     tell_coefficient_error(terminal, found.points)
     terminal.result(_sentence(found))
+    tell_collar(terminal, found)
     warmest = found.points[-1]
     if warmest.warm is not None:
         tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
@@ -170,6 +171,7 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
     from frbcli.columns import document, documents, keys
     from frbcli.linear.columns import FILM, MODES, POINT, film_columns
+    from frbcli.linear.thrust.columns import AXIAL
 
     told, films = document(POINT, point), documents(film_columns(point.films), point.films)
     errors = told.pop("error") | (films[0]["error"] if films else {})
@@ -181,6 +183,8 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
         told["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
     if point.warm is not None:
         told["thermal"] = heat_document(point.warm)
+    if point.axial is not None:
+        told["axial"] = document(AXIAL, point.axial)
     if point.problem:
         told["problem"] = point.problem
     told["modes"] = documents(MODES, point.modes_with_errors)

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from frbcli.columns import heads, table_of
 from frbcli.linear.columns import FILM, MODES, SPEED, STABILITY
+from frbcli.linear.thrust.columns import AXIAL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -90,6 +91,15 @@ def _speed(point: StabilityPoint) -> str:
 def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
     """The largest error of the coefficients of some points."""
     tell_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
+
+
+def tell_collar(terminal: Terminal, found: Stability) -> None:
+    """Where the collar of the thrust bearing rests at the fastest speed, and what its films are there."""
+    at_rest = [point for point in found.points if point.axial is not None]
+    for point in at_rest[-1:]:
+        cells = dict(zip(heads(AXIAL, STABILITY), table_of(AXIAL, [point.axial]).cells(STABILITY)[0], strict=True))
+        told = ", ".join(f"{head} {cell}" for head, cell in cells.items())
+        terminal.sentence(f"Collar of the thrust bearing at {_speed(point)} Hz: {told}.")
 
 
 def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]) -> None:

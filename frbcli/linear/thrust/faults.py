@@ -34,12 +34,7 @@ def _beyond_play(case: Case, gaps: Sequence[float]) -> Iterator[Fault]:
                 yield Fault("--gap", display(gap, "m"), None, problem, "Give a gap below it, up to half for a load.")
 
 
-def no_gap(case: Case, load: float, least: tuple[float, float], most: tuple[float, float]) -> InputError:
-    """The error of a load in N that no gap carries; least, most: gaps in m that were searched, with their loads."""
-    (thin, high), (wide, low) = least, most
-    problem = (
-        f"is carried at no gap from {display(thin, 'm')} to {display(wide, 'm')}: the film carries "
-        f"{high:.4g} N there at most and {low:.4g} N at least."
-    )
-    remedy = "Give a load between the two, or change the pads, the oil or the speed."
-    return InputError(case.name or "case", (Fault("--load", f"{load:.6g} N", None, problem, remedy),))
+def no_gap(load: float, problem: str) -> InputError:
+    """The error of a load in N that no gap carries."""
+    remedy = "Give another load, or change the pads, the oil or the speed."
+    return InputError("case", (Fault("--load", f"{load:.6g} N", None, problem, remedy),))

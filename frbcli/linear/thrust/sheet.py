@@ -4,24 +4,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import brentq
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.elements.collar.collar import BOTH, Collar, NotCarried, collar_of, collar_under
+from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.thrust.columns import THRUST
 from frbcli.linear.thrust.faults import no_gap, require_sheet
-from frbcli.linear.thrust.state import BOTH, ThrustFilms, ThrustState, thrust_films
+from frbcli.linear.thrust.state import ThrustFilms, ThrustState, thrust_films
+from frbcli.units import display
 
 Observer = Callable[[int, int], None]
-
-LEAST_GAP = 1e-7  # m, of a load that is searched: thinner films lie below the roughness of any pad
-WIDER = 1.2  # than a gap whose film becomes too hot
-WIDEST = 100.0  # gap over the taper
 POINTS = 10
 
 
@@ -56,8 +53,9 @@ def thrust_sheet(
     case : Case
         The machine, see `load_case`; [[thrust_bearing]] and [oil] will do.
     gaps : sequence of float, optional
-        Gaps in m over the lands, of a runner without tilt; by default, without `loads`, ten over the range of the
-        bearing: up to 2.5 times the taper, or to half of the end play of pads on both sides.
+        Gaps in m over the lands, of a runner without tilt; by default, without `loads`, that at which the axial load
+        of the case is carried, or ten over the range of the bearing: up to 2.5 times the taper, or to half of the end
+        play of pads on both sides.
     speeds_Hz : sequence of float, optional
         Rotor speeds in Hz, above 0; by default the highest of the case.
     loads : sequence of float, optional
@@ -91,43 +89,29 @@ def thrust_sheet(
     found: list[ThrustState] = []
     for bearing in case.thrust_bearings:
         films = thrust_films(case, bearing)
-        asked = _gaps(films) if gaps is None and not loads else sorted(gaps or ())
-        count = len(case.thrust_bearings) * len(speeds) * (len(asked) + len(loads))
+        collar = collar_of(case) or collar_under(case, bearing, 0.0)
+        acts = case.axial is not None and gaps is None and not loads
+        asked = _gaps(films) if gaps is None and not (loads or acts) else sorted(gaps or ())
+        count = len(case.thrust_bearings) * len(speeds) * (len(asked) + len(loads) + acts)
         for speed in speeds:
             omega = 2.0 * math.pi * speed
-            for gap in (*asked, *(_gap_of(case, films, load, omega) for load in sorted(loads, reverse=True))):
+            at_rest = [collar.rest(omega).gap] if acts else []
+            for gap in (*at_rest, *asked, *(_gap_of(collar, load, omega) for load in sorted(loads, reverse=True))):
                 found.append(films.state(gap, omega))
                 if observe is not None:
                     observe(len(found), count)
     return ThrustSheet(case, tuple(bearing.name for bearing in case.thrust_bearings), tuple(found))
 
 
-def _gap_of(case: Case, films: ThrustFilms, load: float, omega: float) -> float:
+def _gap_of(collar: Collar, load: float, omega: float) -> float:
     """The gap in m that carries a load in N. Raises InputError if there is none."""
-    play = films.bearing.end_play
-    wide = 0.5 * play if films.bearing.side == BOTH and play is not None else WIDEST * films.bearing.taper
-    thin = min(LEAST_GAP, 0.01 * wide)
-    thin, high = _thinnest(films, thin, wide, omega)
-    low = films.load(wide, omega)
-    if not low <= load <= high:
-        raise no_gap(case, load, (thin, high), (wide, low))
-
-    def missing(logarithm: float) -> float:
-        return films.load(math.exp(logarithm), omega) / load - 1.0
-
-    return math.exp(float(brentq(missing, math.log(thin), math.log(wide), xtol=1e-12, rtol=1e-12)))
-
-
-def _thinnest(films: ThrustFilms, thin: float, wide: float, omega: float) -> tuple[float, float]:
-    """The thinnest gap in m from `thin` on whose film does not become too hot, and its load in N."""
-    while thin < wide:
-        try:
-            return thin, films.load(thin, omega)
-        except NotConverged:
-            if films.heat is None:
-                raise
-        thin *= WIDER
-    return wide, films.load(wide, omega)
+    low = collar.carried(collar.wide, omega)
+    if load < low:
+        raise no_gap(load, f"is below the {low:.4g} N that the film carries at a gap of {display(collar.wide, 'm')}.")
+    try:
+        return replace(collar, load=load).rest(omega).gap
+    except NotCarried as error:
+        raise no_gap(load, f"is not carried. {error}") from None
 
 
 def _gaps(films: ThrustFilms) -> list[float]:

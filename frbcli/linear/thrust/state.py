@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.elements import ThrustBearing
 from frbcli.case.schema import Case
+from frbcli.elements.collar.collar import BOTH, pad_of
+from frbcli.elements.collar.heat import PadHeat
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import COARSE, MESH, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
-from frbcli.linear.thrust.heat import PadHeat
 
 Floats = NDArray[np.float64]
 
-BOTH = "both"
 COEFFICIENTS = "stiffness", "damping"
 OilAt = tuple[PadOil, float | None]  # of a film, and its temperature in K
 
@@ -121,7 +121,13 @@ class ThrustFilms:
             return self.oil, self.temperature
         mesh = self.mesh
         inverse = self.bearing.pads * float(mesh.weights @ (mesh.r / (gap + self.pad.depth(mesh.theta))))
-        return self.heat.warm(self.oil, lambda oil: self._film(mesh, gap, oil, omega), omega, gap, inverse)
+
+        def loss_and_flow(viscosity: float) -> tuple[float, float]:
+            film = self._film(mesh, gap, replace(self.oil, viscosity=viscosity), omega)
+            return omega * film.torque, film.inner_flow + film.outer_flow
+
+        viscosity, temperature = self.heat.warm(loss_and_flow, omega, gap, inverse)
+        return replace(self.oil, viscosity=viscosity), temperature
 
 
 def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
@@ -130,14 +136,8 @@ def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
     pressure = oil.cavitation_pressure - oil.ambient_pressure
     film_oil = PadOil(case.oil_viscosity, case.film.cavitation, pressure)
     meshes = pad_mesh(pad, *MESH), pad_mesh(pad, *COARSE)
-    heat = None if case.heat is None else PadHeat(case, case.heat)
+    heat = None if case.heat is None else PadHeat(case.oil, case.heat)
     return ThrustFilms(bearing, pad, *meshes, film_oil, oil.ambient_pressure, oil.temperature, heat)
-
-
-def pad_of(bearing: ThrustBearing) -> Pad:
-    """One pad of a thrust bearing."""
-    return Pad(bearing.inner_radius, bearing.outer_radius, bearing.pad_angle,
-               min(bearing.taper_angle, bearing.pad_angle), bearing.taper, bearing.profile)  # fmt: skip
 
 
 def _sum(films: tuple[PadFilm, ...], read: Callable[[PadFilm], float], opposed: bool = False) -> float:

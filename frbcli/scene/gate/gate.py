@@ -101,6 +101,7 @@ RULES = (
     Rule(cycles.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
     Rule(cycles.unbalance_faults, (WHIRLS,)),
     Rule(cycles.speed_range_faults, EVERY_CYCLE, last=True),
+    Rule(runs.axial_faults, (RUN, *EVERY_CYCLE), last=True),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(runs.speed_faults, (RUN,), last=True),
     Rule(kinematic.end_faults, (ROTATION,), last=True),

@@ -57,6 +57,15 @@ def changing_supply_faults(case: Case) -> Iterator[Fault]:
         yield Fault(f"{key}.supply.pressure", "over time", None, problem, remedy)
 
 
+def axial_faults(case: Case) -> Iterable[Fault]:
+    """A collar does not lie on its pads at the speeds of a case."""
+    if case.axial is None:
+        return ()
+    from frbcli.elements.collar.collar import uncarried_faults  # films on pads take a second to import
+
+    return uncarried_faults(case)
+
+
 def speed_faults(case: Case) -> Iterable[Fault]:
     """A run has speeds. Raises InputError for a case of kinematic tests, which has none."""
     run_omega(case)

@@ -15,6 +15,7 @@ from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
+from frbcli.elements.thrust import ThrustElement
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
@@ -128,9 +129,11 @@ def element_faults(case: Case) -> list[Fault]:
 
 
 def element_springs(case: Case, omega: float) -> Array:
-    """(e,) N/m of each bearing without a film at omega rad/s: the mean of the direct stiffness of both directions, as
-    far as it holds the shaft; cross-coupling, damping and mass are left out."""
-    stiffness = (element.linear.at(omega)[0] for element in GivenCoefficients.of(case))
+    """(e,) N/m of each bearing without a film at omega rad/s, then N m of a collar that is held in tilt: the mean of
+    the direct stiffness of both directions, as far as it holds the shaft; cross-coupling, damping and mass are left
+    out."""
+    parts = (each.linear for kind in (GivenCoefficients, ThrustElement) for each in kind.of(case))
+    stiffness = (part.at(omega)[0] for part in parts if part is not None)
     return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
 
 

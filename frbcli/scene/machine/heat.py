@@ -20,9 +20,7 @@ from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import SOLIDS
 from frbcli.scene.channels import coupled, opens_to_groove
 from frbcli.scene.films import film_places, turning_rings
-from frbcli.thermal.model import FROM_SUPPLY, HeatModel
-
-OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear
+from frbcli.thermal.model import FROM_SUPPLY, OIL_AT, HeatModel
 
 
 @dataclass(frozen=True)

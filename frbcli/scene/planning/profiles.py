@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime
 from frbcli.errors import Fault, InputError
 from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
 from frbcli.scene.inputs import input_faults, input_times
@@ -20,11 +21,15 @@ def run_up_profile(case: Case) -> SpeedProfile:
 
 def run_down_profile(case: Case) -> SpeedProfile:
     """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which tell the way down
-    themselves, and for a table over time that ends before."""
+    themselves, for an axial load over time, and for a table over time that ends before."""
     speed = case.speed
     if speed.times:
         problem = "say how the speed goes down, too."
         fault = Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`.")
+        raise InputError(case.name or "case", (fault,))
+    if case.axial is not None and isinstance(case.axial.load, OverTime):
+        problem = "changes over time, and a run-down has each speed twice: a speed has more than one load."
+        fault = Fault("axial.load", "over time", None, problem, "Give one load, or one with the square of the speed.")
         raise InputError(case.name or "case", (fault,))
     times, speeds = [0.0, speed.duration], [speed.start, speed.end]
     if speed.hold > 0.0:

@@ -10,6 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from frbcli.case.rotor import TurbochargerRotor
+from frbcli.elements.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.body import Body
@@ -24,20 +25,22 @@ FREQUENCIES = 3  # bending modes that are shown
 @dataclass(frozen=True)
 class FreeShaft:
     """A shaft in its free modes. modes: all of each plane; kept: how many of them its body has; journals: places of all
-    bearings, those with a film first; wheels: its disks."""
+    bearings, those with a film first; wheels: its disks; collars: places that are held in tilt."""
 
     modes: FreeModes
     kept: int
     journals: tuple[Journal, ...]
     wheels: tuple[Wheel, ...]
+    collars: tuple[Journal, ...] = ()
 
     @property
     def held(self) -> Array:
-        """(b, n) displacements of the modes at the bearings."""
-        return np.stack([self.modes.at(journal.position) for journal in self.journals])
+        """(b, n) displacements of the modes at the bearings, then their slopes at the collars."""
+        slopes = [self.modes.slope_at(collar.position) for collar in self.collars]
+        return np.stack([*(self.modes.at(journal.position) for journal in self.journals), *slopes])
 
     def reduction_error(self, springs: Array, omega: float) -> ReductionError:
-        """What the modes leave out that are not kept, on springs (b,) in N/m, at omega rad/s."""
+        """What the modes leave out that are not kept, on springs (b,) in N/m, or N m of collars, at omega rad/s."""
         return reduction_error(self.modes, self.kept, self.held, springs, omega)
 
 
@@ -64,13 +67,19 @@ class TurbochargerShaft(Shaft):
         rotor, free = self.rotor, self.free()
         modes = free.modes.lowest(free.kept)
         return turbocharger_rotor(
-            modes, free.wheels, free.journals, rotor.modal_damping, rotor.external_damping, rotor.gravity
+            modes,
+            free.wheels,
+            free.journals,
+            rotor.modal_damping,
+            rotor.external_damping,
+            rotor.gravity,
+            free.collars,
         )
 
     def undamped_body(self) -> Body:
         """See Shaft."""
         free = self.free()
-        return turbocharger_rotor(free.modes, free.wheels, free.journals, 0.0, 0.0, 0.0)
+        return turbocharger_rotor(free.modes, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
 
     def free(self) -> FreeShaft:
         """See Shaft. Raises InputError where masses and stiffnesses differ by too many powers of ten for its modes."""
@@ -92,8 +101,10 @@ class TurbochargerShaft(Shaft):
         ]
         bearings = (*case.bearings, *case.elements)
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
+        acting = case.thrust_bearings if case.axial is not None else ()
+        collars = tuple(Journal(COLLAR, each.position or 0.0) for each in acting)
         try:
-            modes = free_modes(wheels_on_shaft(sections, self._wheels, journals))
+            modes = free_modes(wheels_on_shaft(sections, self._wheels, (*journals, *collars)))
         except NotConverged as error:
             problem = f"is no shaft whose motion can be computed. {error}"
             remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
@@ -101,7 +112,7 @@ class TurbochargerShaft(Shaft):
             raise InputError(case.name or "case", (fault,)) from None
         cutoff = self.rotor.cutoff
         count = self.rotor.modes if cutoff is None else modes.below(2 * math.pi * cutoff)
-        return FreeShaft(modes, min(max(count, RIGID), len(modes.frequencies)), journals, self._wheels)
+        return FreeShaft(modes, min(max(count, RIGID), len(modes.frequencies)), journals, self._wheels, collars)
 
     @property
     def _wheels(self) -> tuple[Wheel, ...]:

@@ -9,49 +9,47 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.schema import Case
+from frbcli.case.oil import Oil
 from frbcli.case.surroundings.over_time import largest
 from frbcli.case.thermal import Thermal, WallNode
-from frbcli.film.pads.film import PadFilm, PadOil
-from frbcli.scene.machine.heat import OIL_AT
-from frbcli.thermal.model import FROM_SUPPLY, HeatModel
+from frbcli.thermal.model import FROM_SUPPLY, OIL_AT, HeatModel
 from frbcli.thermal.steady import FilmHeat, steady_heat
 
 NAME = "thrust bearing"
+
+
+LossAndFlow = Callable[[float], tuple[float, float]]  # W and m^3/s of all pads of a side, by the viscosity in Pa s
 
 
 @dataclass(frozen=True)
 class PadHeat:
     """The heat of a case, as far as it is that of thrust bearings."""
 
-    case: Case
+    oil: Oil
     thermal: Thermal
 
-    def warm(
-        self, oil: PadOil, film: Callable[[PadOil], PadFilm], omega: float, gap: float, inverse_gap: float
-    ) -> tuple[PadOil, float]:
-        """The oil with the viscosity at which the heat of a film balances, and its temperature in K.
+    def warm(self, film: LossAndFlow, omega: float, gap: float, inverse_gap: float) -> tuple[float, float]:
+        """The viscosity in Pa s and the temperature in K at which the heat of a film balances.
 
-        film: all pads of a side with an oil; omega: rad/s; gap: over the lands in m; inverse_gap: integral of 1/h over
-        their area, m. Raises NotConverged if the film becomes hotter than thermal.hottest_film.
+        omega: rad/s; gap: over the lands in m; inverse_gap: integral of 1/h over the pads of a side, m. Raises
+        NotConverged if the film becomes hotter than thermal.hottest_film.
         """
 
         def solve(viscosities: np.ndarray, _: np.ndarray) -> FilmHeat:
-            found = film(replace(oil, viscosity=float(viscosities[0])))
-            flow = found.inner_flow + found.outer_flow
-            return FilmHeat(np.array([omega * found.torque]), np.array([flow]), np.array([omega]))
+            loss, flow = film(float(viscosities[0]))
+            return FilmHeat(np.array([loss]), np.array([flow]), np.array([omega]))
 
         model, start = self._model(gap, inverse_gap)
         steady = steady_heat(model, (NAME,), solve, start, np.array([omega]))
-        return replace(oil, viscosity=float(steady.viscosities[0])), float(steady.temperatures[0])
+        return float(steady.viscosities[0]), float(steady.temperatures[0])
 
     def _model(self, gap: float, inverse_gap: float) -> tuple[HeatModel, np.ndarray]:
         """Nodes, the film first, and the temperatures in K to begin from."""
-        oil, thermal = self.case.oil, self.thermal
+        oil, thermal = self.oil, self.thermal
         transfer = thermal.nusselt * oil.thermal_conductivity * inverse_gap
         nodes = [(1.0, thermal.start_temperature or largest(thermal.supply_temperature))]  # heat capacity, temperature
         links: list[tuple[int, int, float]] = []

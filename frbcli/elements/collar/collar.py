@@ -1,0 +1,278 @@
+"""A collar under an axial load: the gap at which its films carry the load, and what they then do to its motions.
+
+With the load F towards the pads of one side and the other side, where there are pads, at the end play less the gap,
+
+    W(h) - W(e - h) = F.
+
+Stiffness, damping and torque of both sides add up: a displacement changes both gaps by opposite amounts, and the forces
+are opposed.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import brentq
+
+from frbcli.case.elements import AnyLoad, LoadAtSpeed, ThrustBearing
+from frbcli.case.oil import Oil
+from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime, largest
+from frbcli.case.thermal import Thermal
+from frbcli.elements.collar.heat import PadHeat
+from frbcli.errors import Fault, NotConverged
+from frbcli.film.pads.geometry import Pad
+from frbcli.film.pads.table import GapTable, ScaledPads, gap_table
+from frbcli.rotor.over_speed import LinearPart
+from frbcli.units import display
+
+Floats = NDArray[np.float64]
+
+BOTH, LEFT, RIGHT = "both", "left", "right"
+LEAST_GAP = 1e-6  # m, of a load that is carried: thinner films lie below the roughness of surfaces
+WIDEST = 100.0  # gap over the taper
+CLOSER = 1.25  # than a gap whose load is too small
+# Of coefficients over the speed: slowest and fastest over the top speed of the case, and their number. Between them
+# they are linear, with an error below 1e-4, and with heat, whose balance takes longer, below 1e-3.
+SLOWEST, FASTEST, SPEEDS, WARM_SPEEDS = 0.01, 4.0, 128, 48
+
+
+class NotCarried(NotConverged):
+    """No film carries the axial load. most: what the films carry at most, N."""
+
+    def __init__(self, load: float, most: float, gap: float, omega: float, why: str) -> None:
+        self.most = most
+        super().__init__(
+            f"The axial load of {abs(load):.4g} N is carried by no film at {omega / (2.0 * math.pi):.4g} Hz: the most "
+            f"is {most:.4g} N, at a gap of {display(gap, 'm')}, {why}."
+        )
+
+
+@dataclass(frozen=True)
+class CollarRest:
+    """A collar at rest at one speed. omega: rad/s; load: on the rotor, towards larger positions, N; gap: over the lands
+    on the side that it presses on, m; torque: that resists the rotation, N m; stiffness in N/m, damping in N s/m:
+    axial; tilt_stiffness, tilt_damping: (2, 2) over x and y, in N m and N m s per rad; viscosity in Pa s and
+    temperature in K of the loaded side."""
+
+    omega: float
+    load: float
+    gap: float
+    torque: float
+    stiffness: float
+    damping: float
+    tilt_stiffness: Floats
+    tilt_damping: Floats
+    viscosity: float
+    temperature: float | None
+
+
+@dataclass(frozen=True)
+class _Side:
+    """The pads of one side at a gap: films, viscosity in Pa s, temperature in K."""
+
+    films: ScaledPads
+    viscosity: float
+    temperature: float | None
+
+
+@dataclass(frozen=True)
+class Collar:
+    """A collar with its pads, oil and load. course: times in s and speeds in Hz of the case, () without; viscosity in
+    Pa s and temperature in K without heat."""
+
+    bearing: ThrustBearing
+    load: AnyLoad
+    course: tuple[tuple[float, ...], ...]
+    oil: Oil
+    viscosity: float
+    thermal: Thermal | None
+
+    @property
+    def top(self) -> float:
+        """Top speed in rad/s, 0 of a case without speeds."""
+        return 2.0 * math.pi * max(map(abs, self.course[1]), default=0.0) if self.course else 0.0
+
+    @property
+    def is_ambiguous(self) -> bool:
+        """Whether its load changes over time in a course that has a speed more than once."""
+        return isinstance(self.load, OverTime) and bool(self.course) and not np.all(np.diff(self.course[1]) > 0.0)
+
+    @property
+    def wide(self) -> float:
+        """The widest gap in m on the loaded side."""
+        play = self.bearing.end_play
+        return 0.5 * play if self.bearing.side == BOTH and play is not None else WIDEST * self.bearing.taper
+
+    @property
+    def thin(self) -> float:
+        """The thinnest gap in m."""
+        return min(LEAST_GAP, 0.1 * self.wide)
+
+    @cached_property
+    def _table(self) -> GapTable:
+        play = self.bearing.end_play
+        wide = play if self.bearing.side == BOTH and play is not None else self.wide
+        return gap_table(pad_of(self.bearing), self.bearing.pads, self.thin, wide)
+
+    def load_at(self, omega: float) -> float:
+        """The load in N at a speed in rad/s; of a table over time that at the time at which the run has the speed."""
+        speed = omega / (2.0 * math.pi)
+        if isinstance(self.load, LoadAtSpeed):
+            return self.load.over(speed)
+        if isinstance(self.load, OverTime) and self.course:
+            times, speeds = self.course
+            return float(np.interp(np.interp(speed, speeds, times), self.load.time, self.load.x))
+        return largest(self.load)
+
+    def rest(self, omega: float) -> CollarRest:
+        """Where the collar rests at a speed in rad/s. Raises NotCarried if no film carries its load."""
+        load = self.load_at(omega)
+        gap = self._gap(abs(load), omega)
+        sides = self._sides(gap, omega)
+        drag = [side.viscosity * omega for side in sides]
+        pairs = list(zip(sides, drag, strict=True))
+        return CollarRest(
+            omega=omega,
+            load=load,
+            gap=gap,
+            torque=sum(each * side.films.torque for side, each in pairs),
+            stiffness=sum(each * side.films.stiffness for side, each in pairs),
+            damping=sum(side.viscosity * side.films.damping for side in sides),
+            tilt_stiffness=np.sum([each * side.films.tilt_stiffness for side, each in pairs], axis=0),
+            tilt_damping=np.sum([side.viscosity * side.films.tilt_damping for side in sides], axis=0),
+            viscosity=sides[0].viscosity,
+            temperature=sides[0].temperature,
+        )
+
+    def position(self, rest: CollarRest) -> float:
+        """Axial position of the collar in m: from the middle of the end play, or from the pads of its only side."""
+        side = self.bearing.side
+        if side == BOTH:
+            return math.copysign(self.wide - rest.gap, rest.load)
+        return rest.gap if side == LEFT else -rest.gap
+
+    def carried(self, gap: float, omega: float) -> float:
+        """The load in N that both sides carry at a gap in m. Raises NotConverged where, with heat, a film becomes too
+        hot."""
+        first, *others = (side.viscosity * omega * side.films.load for side in self._sides(gap, omega))
+        return first - sum(others)
+
+    def _gap(self, load: float, omega: float) -> float:
+        """The gap in m that carries a load in N. From the widest one on: thin films may become too hot."""
+        above, most = self.wide, self.carried(self.wide, omega)
+        if load <= most:
+            return above
+        while True:
+            below = max(above / CLOSER, self.thin)
+            try:
+                carried = self.carried(below, omega)
+            except NotConverged:
+                if self.thermal is None:
+                    raise
+                raise NotCarried(load, most, above, omega, "and thinner films become too hot") from None
+            if carried >= load:
+                break
+            above, most = below, carried
+            if below <= self.thin:
+                raise NotCarried(load, most, below, omega, "below which lies the roughness of surfaces")
+        logs = math.log(below), math.log(above)
+        return math.exp(float(brentq(lambda each: self.carried(math.exp(each), omega) / load - 1.0, *logs, xtol=1e-13)))
+
+    def _sides(self, gap: float, omega: float) -> list[_Side]:
+        play = self.bearing.end_play
+        gaps = [gap, play - gap] if self.bearing.side == BOTH and play is not None else [gap]
+        return [self._side(each, omega) for each in gaps]
+
+    def _side(self, gap: float, omega: float) -> _Side:
+        films = self._table.at(gap)
+        if self.thermal is None or omega == 0.0:
+            return _Side(films, self.viscosity, self.oil.temperature)
+
+        def loss_and_flow(viscosity: float) -> tuple[float, float]:
+            return viscosity * omega**2 * films.torque, omega * films.side_flow
+
+        heat = PadHeat(self.oil, self.thermal)
+        return _Side(films, *heat.warm(loss_and_flow, omega, gap, films.inverse_gap))
+
+
+def pad_of(bearing: ThrustBearing) -> Pad:
+    """One pad of a thrust bearing."""
+    return Pad(bearing.inner_radius, bearing.outer_radius, bearing.pad_angle,
+               min(bearing.taper_angle, bearing.pad_angle), bearing.taper, bearing.profile)  # fmt: skip
+
+
+def collar_of(case: Case) -> Collar | None:
+    """The collar of a case whose thrust bearing carries its axial load, None without such a load."""
+    if case.axial is None or len(case.thrust_bearings) != 1:
+        return None
+    return collar_under(case, case.thrust_bearings[0], case.axial.load)
+
+
+def collar_under(case: Case, bearing: ThrustBearing, load: AnyLoad) -> Collar:
+    """The collar of a thrust bearing of a case under a load."""
+    course = () if case.given_speed is None else case.speed.course
+    return Collar(bearing, load, course, case.oil, case.oil_viscosity, case.heat)
+
+
+@lru_cache(maxsize=8)
+def rests_over_speed(collar: Collar) -> tuple[CollarRest, ...]:
+    """Where a collar rests, by ascending speed, at all speeds of its table at which its load is carried."""
+    found = []
+    count = SPEEDS if collar.thermal is None else WARM_SPEEDS
+    below, above = np.geomspace(SLOWEST, 1.0, 3 * count // 4), np.geomspace(1.0, FASTEST, count // 4)
+    for share in (*below.tolist(), *above[1:].tolist()):
+        try:
+            found.append(collar.rest(share * collar.top))
+        except NotCarried:
+            if found:
+                break
+    return tuple(found)
+
+
+def tilt_part(collar: Collar) -> LinearPart:
+    """Stiffness and damping in tilt over the speed, on the two tilts of the collar; none where nothing is carried."""
+    rests = rests_over_speed(collar)
+    nothing = np.zeros((max(len(rests), 1), 2, 2))
+    if not rests:
+        return LinearPart(np.zeros(1), nothing, nothing, nothing)
+    return LinearPart(
+        np.array([rest.omega for rest in rests]),
+        np.array([rest.tilt_stiffness for rest in rests]),
+        np.array([rest.tilt_damping for rest in rests]),
+        nothing,
+    )
+
+
+def collar_at_rest(collar: Collar, omega: float) -> CollarRest:
+    """Where a collar rests at a speed in rad/s at which the machine knows its coefficients. Raises NotConverged."""
+    rest = collar.rest(omega)
+    rests = rests_over_speed(collar)
+    known = (rests[0].omega, rests[-1].omega) if rests else (math.inf, 0.0)
+    if not known[0] * (1.0 - 1e-9) <= omega <= known[1] * (1.0 + 1e-9):
+        low, high = (each / (2.0 * math.pi) for each in known)
+        raise NotConverged(
+            f"The collar's stiffness in tilt is known from {low:.4g} to {high:.4g} Hz, and not at "
+            f"{omega / (2.0 * math.pi):.4g} Hz. Give the case another speed.to."
+        )
+    return rest
+
+
+def uncarried_faults(case: Case) -> list[Fault]:
+    """The fault of an axial load that no film carries at the slowest speed of a case."""
+    collar = collar_of(case)
+    if collar is None or not collar.top:
+        return []
+    slowest = 2.0 * math.pi * min(map(abs, collar.course[1]))
+    try:
+        collar.rest(slowest)
+    except NotCarried as error:
+        rests = rests_over_speed(collar)
+        lifted = f'Begin at speed.from = "{1.01 * rests[0].omega / (2.0 * math.pi):.4g} Hz", or let' if rests else "Let"
+        remedy = f'{lifted} it grow with the square of the speed, load = {{ at = "1000 Hz", load = "40 N" }}.'
+        return [Fault("axial.load", "", None, f"presses the collar onto its pads. {error}", remedy)]
+    return []
