@@ -69,6 +69,8 @@ MORE = [
      "A rotor on squeeze film dampers passes its critical speed."),
     (["runup", "turbocharger-engine", "-o", "engine.h5"], "engine-summary.png",
      "A turbocharger in an elastic housing, shaken by orders 2, 4 and 6 of its engine."),
+    (["runup", "cold-start", "-o", "cold.h5"], "cold-summary.png",
+     "A cold start: the rotor idles while its oil warms up, and runs up on warm oil."),
     (["bearing", "bearing", "--over", "eccentricity"], "bearing-bearing.png", "A bearing over its eccentricity."),
 ]  # fmt: skip
 LONGEST = 40  # lines of output on a page

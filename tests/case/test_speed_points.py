@@ -12,6 +12,7 @@ import pytest
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case_text
 from frbcli.errors import InputError
 from frbcli.runs.run import rundown, runup
@@ -40,6 +41,7 @@ def test_the_speed_goes_through_its_points() -> None:
     np.testing.assert_allclose(between, [15.0, 30.0, 20.0])
     assert profile.angles[-1] == pytest.approx(2.0 * math.pi * (1.5 + 3.0 + 2.0), rel=1e-12)
     assert load_case_text(case.source_text, name="points") == case
+    assert not [value.key for value in values(case) if value.bare and value.key.startswith("speed")]
     assert case.with_settings("rotor.unbalance=1 g*mm").speed == case.speed
     assert default_speeds(case)[-1] == 30.0
     moment = moment_of_run(case)

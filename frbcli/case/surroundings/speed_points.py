@@ -31,14 +31,17 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
     if len(given) > 1:
         return data, [Breach(("speed", given[0]), f"is given beside {given[1]}.", "Keep one of them.")]
     try:
-        times, speeds = _numbers(speed, folder)
+        written = _written(speed, folder)
+        times, speeds = (_column(each, unit) for each, unit in zip(written, ("s", SPEED), strict=True))
+        _check(times, speeds)
     except Unfit as fault:
         return data, [Breach(("speed", *given), *fault.args)]
     follows = {"from": speeds[0], "to": max(speeds, key=abs), "duration": times[-1]}
     found = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
     kept = {key: value for key, value in speed.items() if key not in ("points", "file", "tacho", "pulses", *RAMP)}
     ramp = {key: f"{value!r} {RAMP[key]}" for key, value in follows.items()}
-    return data | {"speed": {**kept, **ramp, TIMES: times, SPEEDS: speeds}}, [breach for breach in found if breach]
+    columns = dict(zip((TIMES, SPEEDS), written, strict=True))
+    return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in found if breach]
 
 
 def _differs(key: str, given: object, follows: float) -> Breach | None:
@@ -51,22 +54,19 @@ def _differs(key: str, given: object, follows: float) -> Breach | None:
     return Breach(("speed", key), problem, "Leave it out, or set the whole table: speed = { from, to, duration }.")
 
 
-def _numbers(speed: dict[str, Any], folder: Path) -> tuple[list[float], list[float]]:
-    """Times in s and speeds in Hz."""
+def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
+    """Times and speeds as they were written, perhaps with units; of a file as numbers in s and Hz."""
     if isinstance(speed.get("file"), str):
         tacho = speed.get("tacho")
         path = folder / str(speed["file"])
         found = read_tacho(path, str(tacho), speed.get("pulses", 1)) if tacho else read_table(path, MEASURED)
-        times, speeds = found["time"], found["x"]
-    elif TIMES in speed or SPEEDS in speed:
-        times, speeds = (_column(speed.get(key), unit) for key, unit in ((TIMES, "s"), (SPEEDS, SPEED)))
-    else:
-        points = speed.get("points")
-        if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
-            raise Unfit("is no list of times with speeds, nor the name of a file.", REMEDY)
-        times, speeds = (_column([each[place] for each in points], unit) for place, unit in ((0, "s"), (1, SPEED)))
-    _check(times, speeds)
-    return times, speeds
+        return found["time"], found["x"]
+    if TIMES in speed or SPEEDS in speed:
+        return speed.get(TIMES), speed.get(SPEEDS)
+    points = speed.get("points")
+    if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
+        raise Unfit("is no list of times with speeds, nor the name of a file.", REMEDY)
+    return [time for time, _ in points], [value for _, value in points]
 
 
 def _column(given: object, unit: str) -> list[float]:
