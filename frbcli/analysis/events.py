@@ -1,5 +1,5 @@
 """Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
-contact; and when a clearance changed.
+contact, touch and lift-off of rough surfaces; and when a clearance changed.
 
 The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -30,7 +30,8 @@ from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, poi
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.windows import hann
 
-Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "clearance-step"]
+Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
+               "clearance-step"]  # fmt: skip
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -45,6 +46,7 @@ SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies
 
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
 CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
+TOUCHES, LIFTED = 0.01, 0.001  # share of the force from which asperities count as touching, and below which as apart
 
 
 @dataclass(frozen=True)
@@ -91,7 +93,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     Returns
     -------
     tuple of Event
-        Critical speeds, self-excited vibrations, onsets and offsets of whirl, lock-in, contact, in the order of time.
+        Critical speeds, self-excited vibrations, onsets and offsets of whirl, lock-in, contact, touch and lift-off of
+        rough surfaces, in the order of time.
 
     Examples
     --------
@@ -129,6 +132,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     touching = max(named, key=lambda film: float(last[film]), default="")
     for film in named:
         events += _contacts(run, film, run.status == "contact" and film == touching)
+        events += _touches(run, film)
     changes = _clearance_steps(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
 
@@ -268,3 +272,26 @@ def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
         for first in np.flatnonzero(np.diff(times, prepend=touched) > CONTACT_PAUSE_s):
             yield Event("contact", film or None, float(times[first]), float(speeds[first]), None, None)
         touched = float(times[-1])
+
+
+def _touches(run: RunLike, film: str) -> Iterator[Event]:
+    """When rough surfaces touch, and when they have come apart for longer than a pause; a run may begin touching."""
+    name, together, parted, last = joined("asperity_share", film), False, None, (0.0, 0.0)
+    if name not in run.signals:
+        return
+    for start, stop in pieces(len(run)):
+        shares, times, speeds = (signals.piece(run, each, start, stop) for each in (name, "time_s", "speed_Hz"))
+        for share, t, speed in zip(shares.tolist(), times.tolist(), speeds.tolist(), strict=True):
+            last = t, speed
+            if not together and share >= TOUCHES:
+                together = True
+                yield Event("touch", film or None, t, speed, None, None)
+            elif together and share >= LIFTED:
+                parted = None
+            elif together and parted is None:
+                parted = t, speed
+            if parted is not None and t - parted[0] > CONTACT_PAUSE_s:
+                yield Event("lift-off", film or None, *parted, None, None)
+                together, parted = False, None
+    if parted is not None and last[0] > parted[0]:  # the run has ended within the pause
+        yield Event("lift-off", film or None, *parted, None, None)

@@ -23,6 +23,7 @@ from frbcli.case.model import Model, altered, with_default
 from frbcli.case.oil import Oil
 from frbcli.case.quantities import (
     Angle,
+    BoundaryFriction,
     Count,
     Displacement,
     Duration,
@@ -31,11 +32,15 @@ from frbcli.case.quantities import (
     Force,
     Hold,
     Label,
+    Length,
+    Modulus,
     Quantity,
     Rate,
+    Roughness,
     SignedSpeed,
     Speed,
     Stiffness,
+    SummitDensity,
     Tilt,
     TiltRate,
     Velocity,
@@ -62,6 +67,7 @@ from frbcli.units import NUMBER
 
 DEFAULT_HOLD = 0.5
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
+COMPOSITE_MODULUS, BOUNDARY_FRICTION = 115e9, 0.1  # steel on steel, with a boundary layer of oil
 CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of the films
 STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
@@ -199,15 +205,41 @@ class Start(Model):
 
 
 class Contact(Model):
-    """Contact of journal and shell."""
+    """Contact of journal and shell: smooth surfaces on an elastic shell, or rough ones, whose summits touch."""
 
+    model: Literal["spring", "asperities"] = Field(
+        default="spring", description="smooth surfaces, or mixed friction of rough ones, in all films"
+    )
     policy: Literal["stop", "elastic"] = Field(
-        default="stop", description="a run ends there, or an elastic shell pushes back"
+        default="stop", description="of a spring: a run ends where the surfaces touch, or an elastic shell pushes back"
     )
     eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = Field(
-        default=CONTACT_BEGINS, description="at which the surfaces touch"
+        default=CONTACT_BEGINS, description="at which smooth surfaces touch; films keep a gap beyond it"
     )
     stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
+    roughness: Roughness | None = Field(
+        default=None, description="of both surfaces of asperities, the root of the sum of their squares"
+    )
+    summit_radius: Length | None = Field(default=None, description="of asperities, mean one of curvature")
+    summit_density: SummitDensity | None = Field(default=None, description="of asperities, number over the area")
+    modulus: Modulus = Field(
+        default=COMPOSITE_MODULUS,
+        description="of asperities, composite: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; steel on steel",
+    )
+    hardness: Modulus | None = Field(
+        default=None, description="of the softer asperities, which yield there; elastic if not given"
+    )
+    friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
+
+    @property
+    def rough(self) -> bool:
+        """Whether summits of rough surfaces touch."""
+        return self.model == "asperities"
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether a run goes on through contact."""
+        return self.rough or self.policy == "elastic"
 
 
 class Accuracy(Model):

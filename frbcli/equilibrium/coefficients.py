@@ -83,7 +83,7 @@ def stacked(matrices: Sequence[Array]) -> Array:
 def settled_force(system: System, i: int, place: Array, total: float, near: FilmForce | None = None) -> FilmForce:
     """Force and derivatives of film i with its journal at rest at `place` (c,) in m, of a film that keeps oil when this
     has settled in each of two neighbouring motions. total: omega_J + omega_S. Raises NotConverged."""
-    found = system.films.force(i, place, np.zeros_like(place), total, near)
+    found = system.force(i, place, np.zeros_like(place), total, near)
     if not system.remembering[i]:
         return found
     step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*place)))
@@ -91,10 +91,10 @@ def settled_force(system: System, i: int, place: Array, total: float, near: Film
     by_displacement, by_velocity = np.empty((2, 2)), np.empty((2, 2))
     for column, unit in enumerate(np.eye(2)):
         ahead, behind = (
-            system.films.force(i, place + side * step * unit, np.zeros(2), total).force for side in (1.0, -1.0)
+            system.force(i, place + side * step * unit, np.zeros(2), total).force for side in (1.0, -1.0)
         )
         by_displacement[:, column] = (ahead - behind) / (2.0 * step)
-        ahead, behind = (system.films.force(i, place, side * pace * unit, total).force for side in (1.0, -1.0))
+        ahead, behind = (system.force(i, place, side * pace * unit, total).force for side in (1.0, -1.0))
         by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
     return FilmForce(found.force, by_displacement, by_velocity, found.field)
 
@@ -150,7 +150,7 @@ def force_error(static: StaticFilms, i: int, place: Array, total: float) -> floa
     if not static.others:
         return math.nan
     other = static.others[0]
-    mine, force = (films.system.films.force(i, place, np.zeros(2), total).force for films in (static.own, other))
+    mine, force = (films.system.force(i, place, np.zeros(2), total).force for films in (static.own, other))
     size = float(np.hypot(*mine))
     return other.share * float(np.hypot(*(force - mine))) / size if size > 0.0 else 0.0
 

@@ -61,6 +61,9 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
     if not system.names:
         return _position(system, held, omega, held.shape, ())
     starts = [np.zeros_like(loads), OUTER_START * clearances * along]
+    if system.asperities is not None:
+        carried = size[:, 0] / system.rotor.multiplicity
+        starts.append(along * [[system.standing(i, load)] for i, load in enumerate(carried.tolist())])
     if system.films.coordinates > 2:
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
@@ -135,7 +138,7 @@ def _balance(
     for i, many in enumerate(system.rotor.multiplicity):
         near = before.films[i] if before else None
         place = places[i]
-        force = system.films.force(i, place, np.zeros_like(place), float(omegas[i]), near)
+        force = system.force(i, place, np.zeros_like(place), float(omegas[i]), near)
         own = slice(len(place) * i, len(place) * (i + 1))
         on_films[own] += many * force.force
         by_places[own, own] += many * force.by_displacement

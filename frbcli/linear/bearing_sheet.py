@@ -25,7 +25,7 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import label_of
 from frbcli.film.cavitation.table import law_named
 from frbcli.html import Tabular
-from frbcli.linear.columns import SHEET
+from frbcli.linear.columns import sheet_columns
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.held import held_rotor
 from frbcli.scene.films import bearing_films
@@ -36,6 +36,7 @@ from frbcli.scene.remedies import advised
 Observer = Callable[[int, int], None]
 
 SPEEDS = 20
+MIXED_SPEEDS, MIXED_RANGE = 28, 3000.0  # of rough surfaces: from boundary friction on
 ECCENTRICITIES = tuple(0.05 * i for i in range(1, 20))
 SPEED, ECCENTRICITY = "speed", "eccentricity"
 
@@ -63,7 +64,7 @@ class BearingSheet(Tabular):
 
     def table(self) -> Table:
         """One row per film and state."""
-        return table_of(SHEET, self.points)
+        return table_of(sheet_columns(self.case.contact.rough), self.points)
 
 
 def bearing_sheet(
@@ -206,6 +207,8 @@ def _speeds(case: Case) -> tuple[float, ...]:
     """Default speeds in Hz, all positive."""
     if case.given_speed is not None:
         low, high = sorted((abs(case.speed.start), abs(case.speed.end)))
+        if case.contact.rough:
+            return tuple(np.geomspace(max(low, high / MIXED_RANGE), high, MIXED_SPEEDS).tolist())
         return tuple(np.linspace(max(low, high / SPEEDS), high, SPEEDS).tolist())
     if case.motion is not None and case.motion.speed:
         return (abs(case.motion.speed),)

@@ -13,18 +13,19 @@ import numpy as np
 from frbcli.columns import ENTRIES, Column, Shown, named, with_uncertainty
 
 # Tables of the terminal
-FILMS, WARM, MATRICES = "films", "warm", ("stiffness", "damping")
+FILMS, WARM, MIXED, MATRICES = "films", "warm", "mixed", ("stiffness", "damping")
 STABILITY, RESPONSE = "stability", "response"
 
 SPEED = Column("speed", "Hz", "rotor speed", shown=(
-    *(Shown("Hz", ".3g", table=table) for table in (FILMS, WARM)),
+    *(Shown("Hz", ".3g", table=table) for table in (FILMS, WARM, MIXED)),
     *(Shown("Hz", ".4g", table=table) for table in (*MATRICES, STABILITY, RESPONSE)),
 ))  # fmt: skip
 NAME = Column("film", "", "name of the film, empty of one alone")
 STATUS = Column("status", "", "`resting` or `not-converged`")
 DISPLACEMENT = Column("displacement", "", "displacement of the journal over the clearance", shape=(2,))
 ECCENTRICITY = Column("eccentricity", "", "relative eccentricity of the journal", shown=(
-    *(Shown("eps", ".3f", table=table) for table in (FILMS, WARM, *MATRICES)), Shown("eps", ".4f", table=STABILITY),
+    *(Shown("eps", ".3f", table=table) for table in (FILMS, WARM, MIXED, *MATRICES)),
+    Shown("eps", ".4f", table=STABILITY),
 ))  # fmt: skip
 ATTITUDE = Column(
     "attitude", "deg", "attitude angle", more="from the load line to the displacement, positive counter-clockwise",
@@ -77,7 +78,8 @@ SHEET = (
     Column("film_thickness_min", "m", "smallest film thickness", shown=(Shown("h", ".3g", "um", FILMS),)),
     Column("p_max", "Pa", "largest absolute pressure", shown=(Shown("p", ".3g", "bar", FILMS),)),
     Column("torque", "N m", "torque on the journal"),
-    Column("friction_coefficient", "", "coefficient of friction of the journal", more="`mu = |T| / (R F)`"),
+    Column("friction_coefficient", "", "coefficient of friction of the journal", more="`mu = |T| / (R F)`",
+           shown=(Shown("mu", ".3g", table=MIXED),)),
     Column("friction_variable", "", "`mu R / C`", more="`pi / So` of a journal in the middle of a shell at rest"),
     Column("power", "W", "power that journal and shell put into the film", shown=(Shown("loss", ".4g", table=FILMS),),
            more="their torques times their speeds"),
@@ -105,6 +107,28 @@ SHEET = (
     Column("power_error", "W", "expected error of the power", more="likewise", key="error.power_W"),
     Column("side_flow_error", "m^3/s", "expected error of the flow", more="likewise", key="error.side_flow_m3_s"),
 )  # fmt: skip
+
+
+
+def _mixed(name: str) -> Callable[[Any], Any]:
+    return lambda state: math.nan if state.mixed is None else getattr(state.mixed, name)
+
+
+# Of a FilmState between rough surfaces
+MIXED_FRICTION = (
+    Column("film_parameter", "", "smallest film thickness over the roughness", _mixed("film_parameter"),
+           shown=(Shown("h/rough.", ".3g", table=MIXED),)),
+    Column("asperity_share", "", "share of the load that asperities carry", _mixed("share"),
+           shown=(Shown("share", ".3g", table=MIXED),)),
+    Column("contact_torque", "N m", "part of the torque that is friction of asperities", _mixed("torque")),
+    Column("contact_power", "W", "part of the power that is friction of asperities", _mixed("power"),
+           shown=(Shown("contact", ".3g", table=MIXED),)),
+)  # fmt: skip
+
+def sheet_columns(rough: bool) -> tuple[Column, ...]:
+    """Of the FilmStates of a case with rough surfaces, or without."""
+    return (*SHEET, *MIXED_FRICTION) if rough else SHEET
+
 
 GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",
                 shown=(Shown("growth", ".3g", table=RESPONSE),))  # fmt: skip

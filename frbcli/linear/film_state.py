@@ -19,6 +19,7 @@ from frbcli.film.gap import gap_height
 from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.roughness.asperities import rub
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.system import System
 from frbcli.scene.section import film_section
@@ -31,13 +32,36 @@ SAMPLES = 720  # angles at which the smallest gap is looked for
 
 
 @dataclass(frozen=True)
+class MixedFriction:
+    """What the summits of rough surfaces do in a film. share: of the load that they carry; torque: on the journal, N m;
+    power: W; film_parameter: smallest gap over the roughness."""
+
+    share: float
+    torque: float
+    power: float
+    film_parameter: float
+
+    @classmethod
+    def of(cls, system: System, i: int, at_rest: RestingFilm, slip: float, shell: float) -> MixedFriction | None:
+        """That of film i at rest, slip and speed of the shell in rad/s; None between smooth surfaces."""
+        rough, c = system.asperities, system.clearances[i]
+        if rough is None:
+            return None
+        (e_x, e_y), load = (c * at_rest.displacement).tolist(), np.array(at_rest.load)
+        found = rub(rough, i, c, e_x, e_y, 0.0, 0.0, slip, shell)
+        size = float(load @ load)
+        share = 0.0 - float(load @ found[:2]) / size if size > 0.0 else math.nan
+        return cls(share, found.torque, found.power, c * (1.0 - at_rest.eccentricity) / rough.roughness)
+
+
+@dataclass(frozen=True)
 class FilmState:
     """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
     which tells what they are.
 
     error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
     p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the
-    numbers are NaN.
+    numbers are NaN; mixed: between rough surfaces, whose friction is part of torque and power.
     """
 
     film: str
@@ -69,6 +93,7 @@ class FilmState:
     power_error: float = math.nan
     side_flow_error: float = math.nan
     problem: str = ""
+    mixed: MixedFriction | None = None
 
     @property
     def eccentricity(self) -> float:
@@ -103,7 +128,7 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
     near: FilmForce | None = None
     for _ in range(TURNS):
         place = eccentricity * system.clearances[i] * np.array([math.cos(angle), math.sin(angle)])
-        near = system.films.force(i, place, np.zeros(2), omega, near)
+        near = system.force(i, place, np.zeros(2), omega, near)
         f_x, f_y = near.force.tolist()
         if f_x == 0.0 and f_y == 0.0:
             raise NotConverged(f"The film carries nothing at an eccentricity of {eccentricity:g}.")
@@ -198,6 +223,7 @@ def film_state(
         clearance=c,
         temperature=temperature,
         film_thickness_error=c * at_rest.place_error,
+        mixed=MixedFriction.of(system, i, at_rest, slip, shell),
     )
     return state if volume is None else _with_fields(case, volume, state, at_rest, speeds)
 
@@ -209,16 +235,19 @@ def _with_fields(
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
     found = Fields.of(volume.own, state.displacement, speeds, factor)
     errors = _field_errors(volume, found, at_rest, speeds, factor)
-    friction, flow = friction_coefficient(found.torque, math.hypot(*state.load), radius), found.side_flow
+    torque, power, flow = found.torque, found.power, found.side_flow
+    if state.mixed is not None:
+        torque, power = torque + state.mixed.torque, power + state.mixed.power
+    friction = friction_coefficient(torque, math.hypot(*state.load), radius)
     return replace(
         state,
-        torque=found.torque,
+        torque=torque,
         friction_coefficient=friction,
         friction_variable=friction * radius / state.clearance,
-        power=found.power,
+        power=power,
         side_flow=flow,
         p_max=found.p_max,
-        temperature_rise=found.power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
+        temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         p_max_error=errors.p_max,
         power_error=errors.power,
         side_flow_error=errors.side_flow,

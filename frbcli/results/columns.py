@@ -38,7 +38,8 @@ def told_amplitude(event: Mapping[str, Any]) -> str:
 EVENTS = (
     Column("event", "", "", event_name, shown=(Shown("event"),),
            key="", flat=False),
-    Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `clearance-step`"),
+    Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
+           "`lift-off`, `clearance-step`"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),
@@ -80,6 +81,8 @@ PART_SIGNALS = (
     Column("flow", "m^3/s", "oil that leaves a warm film at its open ends"),
     Column("film_force", "N", "force of a film on its journal", shape=(2,)),
     Column("film_thickness", "m", "smallest film thickness"),
+    Column("asperity_share", "", "share of the asperities in the force of a film with rough surfaces"),
+    Column("contact_power", "W", "power that boundary friction of asperities turns into heat"),
     Column("power", "W", "power that journal and shell put into a film"),
     Column("torque", "N m", "torque on a journal"),
     Column("oil_flow", "m^3/s", "oil that leaves a film at its open ends"),

@@ -139,7 +139,7 @@ def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:
         return (closed,)
     limit = f"contact.eccentricity = {case.contact.eccentricity:g}"
     touched = f"The {end.journal} reached the shell at {end.speed_Hz:.4g} Hz ({limit})"
-    through = () if case.contact.policy == "elastic" else (_through_contact(case),)
+    through = () if case.contact.gives_way else (_through_contact(case),)
     return (f"{touched}{_before(end)}.", *_missing_oil(case), *through)
 
 

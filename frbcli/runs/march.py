@@ -21,7 +21,7 @@ from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals
-from frbcli.runs.record.header import FLOW, named, ring_names
+from frbcli.runs.record.header import FLOW, named, recorded, ring_names
 from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.costs.cost import expected_cost
@@ -93,7 +93,7 @@ class March:
         self._take_up(0)
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
-        self._control = control_of(case, plan)
+        self._control = control_of(case, plan, system.asperities)
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
@@ -105,7 +105,7 @@ class March:
         self._oil = np.zeros((rows, len(system.remembering)))
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
-        self._watches = any(kind in OF_THE_STEPS for kind in case.output.signals)
+        self._watches = any(kind in OF_THE_STEPS for kind in recorded(case))
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
@@ -244,7 +244,7 @@ class March:
         for name, spin in zip(ring_names(system), system.spins, strict=True):
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
-        kinds, warm = self._case.output.signals, self._numbers(times)
+        kinds, warm = recorded(self._case), self._numbers(times)
         signals |= self._inputs.signals(times)
         return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 

@@ -107,7 +107,7 @@ def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
     forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
     for i, selection in enumerate(system.rotor.journals):
         with contextlib.suppress(NotConverged):
-            forces[i] = system.films.force(i, selection @ q, selection @ v, float(omegas[i])).force
+            forces[i] = system.force(i, selection @ q, selection @ v, float(omegas[i])).force
     return forces
 
 

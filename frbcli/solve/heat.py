@@ -30,6 +30,7 @@ from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
+from frbcli.solve.stage.rough_contact import rubbing
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,
@@ -94,14 +95,15 @@ def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
 
 
 class Taken(NamedTuple):
-    """The step that was taken: its length, g of its stages, the cavitation factor of Couette's torque, and where
-    contact begins."""
+    """The step that was taken: its length, g of its stages, the cavitation factor of Couette's torque, where contact
+    begins, and Control.rough."""
 
     step: float
     g: float
     factor: int
     contact_at: float
     contact_stiffness: float
+    rough: Any
 
 
 def carry_heat(
@@ -147,7 +149,7 @@ def _carry(
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
     capacity, links, made, numbers, _ = heat.model
     ends, state, now, gain = heat.ends, heat.state, heat.now, heat.gain
-    step, g, factor, contact_at, contact_stiffness = taken
+    step, g, factor, contact_at, contact_stiffness, rough = taken
     count = clearances.shape[0]
     for b in range(bodies.shape[0]):
         state[BOOKS + b] = bodies[b]
@@ -159,9 +161,11 @@ def _carry(
         for b in range(bodies.shape[0]):
             slip += turning[f, SLIP, b] * bodies[b]
         d_x, d_y, r_x, r_y, _, _, _, _, _, _ = feel(e_x / c, e_y / c, v_x / c, v_y / c, contact_at, contact_stiffness)
-        moved = e_x * journal[FORCE, y] - e_y * journal[FORCE, x]
+        summits = rubbing(rough, f, c, g, journal)
+        f_x, f_y = journal[FORCE, x] - summits.f_x, journal[FORCE, y] - summits.f_y
+        moved = e_x * f_y - e_y * f_x
         now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, factor) * slip * slip
-        now[POWER, f] += 0.5 * moved * total - journal[FORCE, x] * v_x - journal[FORCE, y] * v_y
+        now[POWER, f] += 0.5 * moved * total - f_x * v_x - f_y * v_y + summits.power
         if numbers[BY_FORMULA] != 0.0:
             now[FLOW, f] = now[SHARE_OF_SUPPLY, f] * made[FORMULA, f] * c * c * c / now[ETA, f]
         else:

@@ -12,6 +12,7 @@ from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.scratch import Scratch
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, Q, U, V
+from frbcli.solve.stage.rough_contact import rubbing
 from frbcli.solve.state import GRID, SLIP, SUM, Control, RotorData
 
 
@@ -85,15 +86,16 @@ def spin_up(
             e_x / c, e_y / c, 0.0, 0.0, control.contact_eccentricity, control.contact_stiffness
         )
         resistance = rotor.drag[f] * drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
-        couette = -resistance * slip
-        poiseuille = -0.5 * (e_x * journal[FORCE, y] - e_y * journal[FORCE, x]) if rotor.torque_terms[0] == 1 else 0.0
+        couette, summits = -resistance * slip, rubbing(control.rough, f, c, g, journal)
+        f_x, f_y = journal[FORCE, x] - summits.f_x, journal[FORCE, y] - summits.f_y
+        poiseuille = -0.5 * (e_x * f_y - e_y * f_x) if rotor.torque_terms[0] == 1 else 0.0
         inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
         if inside >= 0:
-            torque[inside] += couette + poiseuille
-            held[inside] += resistance
+            torque[inside] += couette + poiseuille + summits.torque
+            held[inside] += resistance + summits.grip
         if outside >= 0:
-            torque[outside] += poiseuille - couette
-            held[outside] += resistance
+            torque[outside] += poiseuille - couette + summits.shell_torque
+            held[outside] += resistance + summits.grip
     off = 0.0
     for r in range(count):
         i = rotor.spins[r]

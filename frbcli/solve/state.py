@@ -49,7 +49,8 @@ class RotorData(NamedTuple):
 class Control(NamedTuple):
     """Limits of the time loop. tolerance: local error of a displacement over the clearance; longest_step in s;
     steps_per_revolution: at least; output_step in s; contact_eccentricity; contact_stiffness in N/m, 0: stop there;
-    linearised: a film is solved once in a stage, at its guess, and its force then followed by its derivatives (5.1)."""
+    linearised: a film is solved once in a stage, at its guess, and its force then followed by its derivatives (5.1);
+    rough: () or a RoughContact, see stage/rough_contact.py."""
 
     tolerance: float
     steps_per_revolution: float
@@ -58,6 +59,7 @@ class Control(NamedTuple):
     contact_eccentricity: float
     contact_stiffness: float
     linearised: bool = False
+    rough: Any = ()
 
 
 # Positions in the state's array of numbers; what a run must keep to go on as if it had not stopped.

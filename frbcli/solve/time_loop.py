@@ -23,6 +23,7 @@ from frbcli.solve.stage.equations import U, accelerate, begin_lag, guess, limit_
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
+from frbcli.solve.stage.rough_contact import set_sliding
 from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.step import (
     UNSOLVED,
@@ -138,6 +139,7 @@ def _solve_stage(
     guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
     set_speeds(turning, rings.bodies, rings.angles, journal, grids)
+    set_sliding(control.rough, turning, rings.bodies)
     begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
                 moments[s] / moments[s - 1] if s > 1 else 1.0)
     lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
@@ -154,6 +156,7 @@ def _solve_stage(
             if spins.shape[0] > 0:
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
+                set_sliding(control.rough, turning, rings.bodies)
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):
@@ -203,7 +206,8 @@ def _advance(
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
-        taken = Taken(step, g, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
+        contact = control.contact_eccentricity, control.contact_stiffness, control.rough
+        taken = Taken(step, g, rotor.torque_terms[1], *contact)
         bodies = own.rings.bodies
         hot = carry_heat(heat, films, work, rotor.turning, journal, bodies, wet, taken, clearances, rotor.drag)
         write_heat(heat, out_heat, before, written)

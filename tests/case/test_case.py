@@ -107,6 +107,9 @@ displacement = [0.1, -0.2]
 """
 
 
+ASPERITIES = "[contact]\nmodel = 'asperities'\nsummit_radius = '20 um'\nsummit_density = '1e10 1/m^2'"
+
+
 def faults_of(text: str, *settings: str) -> dict[str, Fault]:
     """The faults of a case by their keys."""
     with pytest.raises(InputError) as caught:
@@ -340,6 +343,12 @@ mesh = [1, 2.5]
         ('kind = "single-film"', "", "bearing.kind", "missing"),
         ("[bearing]", "[contact]\npolicy = 'elastic'\n[bearing]", "contact.stiffness", "missing"),
         ("[bearing]", "[contact]\neccentricity = 1\n[bearing]", "contact.eccentricity", "at most 0.9999"),
+        ("[bearing]", "[contact]\nroughness = '1 um'\n[bearing]", "contact.roughness", "of rough surfaces"),
+        ("[bearing]", "[contact]\nmodel = 'asperities'\n[bearing]", "contact.summit_radius", "is missing"),
+        ("[bearing]", "[contact]\nmodel = 'asperities'\npolicy = 'stop'\n[bearing]", "contact.policy", "of a spring"),
+        ("[bearing]", f"{ASPERITIES}\nroughness = '-1 um'\n[bearing]", "contact.roughness", "greater than"),
+        ("[bearing]", f"{ASPERITIES}\nroughness = '9 um'\n[bearing]", "contact.roughness", "summits are flat"),
+        ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nfriction = 1.1\n[bearing]", "contact.friction", "at most 1"),
         ("[bearing]", "[start]\ndisplacement = [0.8, 0.8]\n[bearing]", "start.displacement", "outside"),
         ("[bearing]", "[start]\ndisplacement = [0, 0]\nposition = 'centre'\n[bearing]", "start.position", "beside"),
         ("[bearing]", "[accuracy]\ntarget = 0.2\n[bearing]", "accuracy.target", "at most"),

@@ -42,6 +42,9 @@ HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
 TABLE = 'force=[{at="disk", over_time={time=[0, 1000], x=[0, 1]}}]'
 GROUND = 'base={acceleration=["2 m/s^2", "0 m/s^2"], order=2, speed="50 Hz"}'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
+ROUGH = (
+    'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
+)
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
     'cavitation="sommerfeld"}'
@@ -89,6 +92,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat": ("jeffcott", (OIL, HEAT)),
     "clearance steps": ("jeffcott", (STEP,)),
     "elastic contact": ("jeffcott", ("contact={policy='elastic', stiffness='1e8 N/m'}",)),
+    "rough surfaces": ("jeffcott", (ROUGH,)),
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),

@@ -27,6 +27,7 @@ from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 from frbcli.linear.columns import (
     DAMPED_MODES,
     FILM,
+    MIXED_FRICTION,
     MODES,
     NATURAL_MODES,
     POINT,
@@ -65,6 +66,7 @@ def of_json(columns: Columns) -> Columns:
 
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
+    "mixed friction": MIXED_FRICTION,
     "thrust sheet": THRUST,
     "collar": tuple(column for column in AXIAL if column.quantity.startswith("axial")),
     "stability": (*POINT[:2], *FILM, *POINT[2:]),

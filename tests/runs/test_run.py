@@ -146,7 +146,7 @@ def test_elastic_contact_lets_the_run_finish(tmp_path: Path) -> None:
 
 def test_a_tolerance_that_cannot_be_met_ends_the_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     control_of = march.control_of  # no case may ask for so much
-    monkeypatch.setattr(march, "control_of", lambda case, plan: control_of(case, plan)._replace(tolerance=1e-60))
+    monkeypatch.setattr(march, "control_of", lambda *given: control_of(*given)._replace(tolerance=1e-60))
     run = runup(short_case(), tmp_path / "run.h5")
     assert run.status == "not-converged"
     assert run.t_end_s < 0.4

@@ -14,6 +14,7 @@ from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
+from frbcli.case.rules.contact_checks import contact_breaches
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible
@@ -50,6 +51,7 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     yield from _names("thrust bearing", tables(data, "thrust_bearing"))
     yield from _names("disk", tables(data, "disk"))
     yield from _rotor(data, bearings)
+    yield from contact_breaches(data)
     yield from _run(data)
     yield from _motion(table(data, "motion"))
     yield from thrust_breaches(data)
@@ -152,9 +154,7 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
 
 
 def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
-    contact, start, speed = table(data, "contact"), table(data, "start"), table(data, "speed")
-    if contact.get("policy") == "elastic" and "stiffness" not in contact:
-        yield Breach(("contact", "stiffness"), "is missing; elastic contact needs it.", 'Add stiffness = "1e8 N/m".')
+    start, speed = table(data, "start"), table(data, "speed")
     displacement = start.get("displacement")
     if isinstance(displacement, list) and len(displacement) == 2:
         x, y = (number({"": item}, "", NUMBER) for item in displacement)

@@ -132,10 +132,10 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
     few of them."""
     from frbcli.columns import legend, table_of
     from frbcli.film.cavitation.table import law_named
-    from frbcli.linear.columns import FILMS, MATRICES, SHEET, WARM
+    from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM, sheet_columns
     from frbcli.linear.film_state import heat_capacity
 
-    points = len(found.of(films[0]))
+    columns, points = sheet_columns(found.case.contact.rough), len(found.of(films[0]))
     full = full or points <= FEW_POINTS
     rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
     for film, label in zip(found.films, found.labels, strict=True):
@@ -143,11 +143,14 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
             continue
         name = " ".join(filter(None, (found.case.heading, film)))
         warm = {} if found.case.heat is None else {WARM: "film when everything is warm"}
+        mixed = {MIXED: "mixed friction"} if found.case.contact.rough else {}
         matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
-        states = table_of(SHEET, _spread(found.of(film), rows))
-        for table, title in ({FILMS: f"{name}, {label}"} | (warm | matrices if full else {})).items():
+        states = table_of(columns, _spread(found.of(film), rows))
+        for table, title in ({FILMS: f"{name}, {label}"} | mixed | (warm | matrices if full else {})).items():
             terminal.show(title, states, table)
-    terminal.sentence(EXPLANATION.format(legend(SHEET, FILMS), found.case.oil.density, heat_capacity(found.case)))
+    terminal.sentence(EXPLANATION.format(legend(columns, FILMS), found.case.oil.density, heat_capacity(found.case)))
+    if found.case.contact.rough:
+        terminal.sentence(f"{legend(columns, MIXED)}.")
     if not full:
         one = f", --film {films[0]} those of one film" if len(films) > 1 else ""
         terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -20,13 +20,13 @@ AXES = ("xx", "xy", "yx", "yy")
 
 
 def bearing_figure(sheet: BearingSheet) -> Figure:
-    """Six panels over the rotor speed, or over the eccentricity, eight with heat; films by their dashes, quantities by
-    their colours."""
+    """Six panels over the rotor speed, or over the eccentricity, two more with heat, and two between rough surfaces,
+    one of which is the Stribeck curve; films by their dashes, quantities by their colours."""
     case, chart = sheet.case, sheet.over == ECCENTRICITY
     models = ", ".join(dict.fromkeys(sheet.labels))
     with styled():
-        rows, height = (3, 7.4) if case.heat is None else (4, 9.4)
-        figure = new_figure(case.heading, f"bearing sheet, {models}", width=9.6, height=height)
+        rows = 3 + (case.heat is not None) + case.contact.rough
+        figure = new_figure(case.heading, f"bearing sheet, {models}", width=9.6, height=1.4 + 2.0 * rows)
         panels = figure.subplots(rows, 2, sharex=True)
         first: Reading = (lambda s: s.sommerfeld_number) if chart else (lambda s: s.eccentricity)
         _curves(panels[0, 0], sheet, "Sommerfeld number" if chart else "eccentricity", [("", first)])
@@ -40,6 +40,8 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         if case.heat is not None:
             _curves(panels[3, 0], sheet, "film temperature in °C", [("", lambda s: s.temperature - ZERO_CELSIUS)])
             _curves(panels[3, 1], sheet, "viscosity in mPa s", [("", lambda s: 1e3 * s.viscosity)])
+        if case.contact.rough:
+            _draw_friction(panels[-1], sheet)
         for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
         for panel in panels[2]:
@@ -58,6 +60,22 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
             handles = [panels[0, 0].plot([], [], color="black", linestyle=dash)[0] for dash in _dashes(sheet)]
             figure.legend(handles, sheet.films, loc="outside lower center", ncols=len(handles))
     return figure
+
+
+def _draw_friction(panels: Sequence[Axes], sheet: BearingSheet) -> None:
+    """Stribeck curve and share of the asperities on two axes of a figure; speeds from boundary friction on are many
+    times apart."""
+    _curves(panels[0], sheet, "coefficient of friction", [("", lambda s: s.friction_coefficient)])
+    _curves(panels[1], sheet, "share of asperities in the load", [("", _asperity_share)])
+    panels[0].set_yscale("log")
+    plain_numbers(panels[0].yaxis)
+    if sheet.over != ECCENTRICITY:
+        panels[0].set_xscale("log")  # of all panels, which share it
+        plain_numbers(panels[0].xaxis)
+
+
+def _asperity_share(state: FilmState) -> float:
+    return math.nan if state.mixed is None else state.mixed.share
 
 
 def draw_coefficient(axes: Axes, sheet: BearingSheet, quantity: str) -> None:

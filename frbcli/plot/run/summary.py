@@ -42,6 +42,8 @@ NAMES = {
     "offset": "end of whirl",
     "lock-in": "lock-in",
     "contact": "contact",
+    "touch": "touch",
+    "lift-off": "lift-off",
     "clearance-step": "clearance step",
 }
 

@@ -148,7 +148,7 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
     q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
     omegas = system.omegas(omega, v[list(system.spins)])
     forces = (
-        system.films.force(i, selection @ q, selection @ v, float(omegas[i]))
+        system.force(i, selection @ q, selection @ v, float(omegas[i]))
         for i, selection in enumerate(system.rotor.journals)
     )
     return np.array(bearing_springs(case, (-0.5 * float(np.trace(force.by_displacement)) for force in forces)))

@@ -13,17 +13,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
+from frbcli.film.roughness.asperities import rub_along
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
-from frbcli.runs.record.header import FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+from frbcli.runs.record.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.contact import felt_motion, touches
 from frbcli.solve.state import SLIP, SUM, Array, Control
 from frbcli.solve.watched import DRAG, LEAVES, NOTES
 
-OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW)  # they ask for what is known at the ends of the steps alone
+OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW, SHARE)  # they ask for what is known at the ends of the steps alone
 
 
 @dataclass(frozen=True)
@@ -53,13 +54,17 @@ def film_signals(
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
-    the film through its open ends, m^3/s. ends: the flows of tabulated films (Films.end_flows), if
-    these are asked for their oil; warm: what heat has changed.
+    the film through its open ends, m^3/s. Between rough surfaces force, torque and power are those of film and summits;
+    asperity-share: of the summits in both forces; contact-power: of their friction, W. ends: the flows of tabulated
+    films (Films.end_flows), if these are asked for their oil; warm: what heat has changed.
     """
     found, films = dict[str, Array](), warm or unchanged(system)
     if any(kind in OF_THE_STEPS for kind in kinds):
         forces = film_forces(system.rotor, profile, samples)
-        torques, powers = _torques(system, films, profile, samples, forces)
+        summits = _summits(system, films, profile, samples)
+        torques, powers = _torques(system, films, profile, samples, forces - summits[..., :2])
+        torques, powers = torques + summits[..., 2], powers + summits[..., 3]
+        shares = _shares(forces, summits[..., :2])
         flows = _flows(system, films, samples)
         if ends:
             flows = _flows_of_motions(system, films, control, profile, samples, ends)
@@ -70,8 +75,31 @@ def film_signals(
             elif kind == THICKNESS:
                 found[signal_names(kind, name)[0]] = _thickness(system, films, control, i, samples.q)
             else:
-                found[signal_names(kind, name)[0]] = {POWER: powers, TORQUE: torques, FLOW: flows}[kind][:, i]
+                known = {POWER: powers, TORQUE: torques, FLOW: flows, SHARE: shares, FRICTION: summits[..., 3]}
+                found[signal_names(kind, name)[0]] = known[kind][:, i]
     return found
+
+
+def _summits(system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples) -> Array:
+    """(k, films, 4) of rub_along; 0 between smooth surfaces."""
+    found = np.zeros((len(samples.times), len(system.names), 4))
+    if system.asperities is None:
+        return found
+    total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
+    for i, selection in enumerate(system.rotor.journals):
+        turning = np.column_stack([slip[:, i], 0.5 * (total[:, i] - slip[:, i])])
+        motions = np.hstack([samples.q @ selection.T, samples.v @ selection.T, turning])
+        clearances = np.ascontiguousarray(np.broadcast_to(films.clearances[:, i], len(motions)))
+        own = np.zeros((len(motions), 4))
+        rub_along(system.asperities, i, clearances, motions, own)
+        found[:, i] = own
+    return found
+
+
+def _shares(forces: Array, summits: Array) -> Array:
+    """(k, films) size of the summits' force over the sum of its own and the film's; forces: of both together."""
+    own, film = (np.linalg.norm(each, axis=2) for each in (summits, forces - summits))
+    return np.asarray(np.divide(own, own + film, out=np.zeros_like(own), where=own > 0.0), dtype=np.float64)
 
 
 def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:

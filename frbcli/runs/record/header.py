@@ -18,12 +18,15 @@ PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
 # Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
 THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
+SHARE, FRICTION = "asperity-share", "contact-power"  # of rough surfaces, always
 FILM_SIGNALS = {
     FORCE: ("film_force", "N", "N"),
     THICKNESS: ("film_thickness", "m", "m"),
     POWER: ("power", "W", "W"),
     TORQUE: ("torque", "N_m", "N m"),
     FLOW: ("oil_flow", "m3_s", "m^3/s"),
+    SHARE: ("asperity_share", "", ""),
+    FRICTION: ("contact_power", "W", "W"),
 }
 
 
@@ -41,7 +44,14 @@ def ring_names(system: System) -> list[str]:
 def signal_names(kind: str, film: str) -> list[str]:
     """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force."""
     quantity, unit, _ = FILM_SIGNALS[kind]
-    return [f"{named(quantity, film)}_{end}" for end in ((f"x_{unit}", f"y_{unit}") if kind == FORCE else (unit,))]
+    ends = (f"_x_{unit}", f"_y_{unit}") if kind == FORCE else (f"_{unit}" if unit else "",)
+    return [f"{named(quantity, film)}{end}" for end in ends]
+
+
+def recorded(case: Case) -> tuple[str, ...]:
+    """Kinds of FILM_SIGNALS that a run of a case records."""
+    rough = (THICKNESS, SHARE, FRICTION) if case.contact.rough else ()
+    return tuple(dict.fromkeys((*case.output.signals, *rough)))
 
 
 def signal_units(system: System, kinds: Sequence[str]) -> dict[str, str]:
@@ -62,7 +72,7 @@ def header(
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
-    units |= signal_units(system, case.output.signals)
+    units |= signal_units(system, recorded(case))
     return Header(
         title=case.heading,
         command=command,

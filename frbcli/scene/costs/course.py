@@ -78,7 +78,7 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     rate = np.maximum(rate, 1.0 / np.diff(profile.times)[pieces])  # a step ends at each kink of the profile
     rate = np.maximum(rate, _resolving(case, plan, times, omega, whirls))
     pressed_steps, pressed_solves = plan.form.pressed(plan)
-    pressed_steps *= ELASTIC if case.contact.policy == "elastic" else 1.0
+    pressed_steps *= ELASTIC if case.contact.gives_way else 1.0
     rate = np.where(presses, pressed_steps * rate, rate)
     iterations = _solves_of_a_stage(case, plan, whirls, rate / np.maximum(turns, SLOWEST_Hz))
     iterations = np.where(presses, pressed_solves * iterations, iterations)

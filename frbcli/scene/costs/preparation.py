@@ -81,6 +81,7 @@ def signal_count(case: Case) -> int:
     found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
     found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
     found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
+    found += 3 * len(places) if case.contact.rough else 0
     if case.heat is not None:
         found += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
     return found

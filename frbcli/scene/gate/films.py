@@ -1,4 +1,4 @@
-"""Rules of films, whatever is asked of them: supplies, openings and ends."""
+"""Rules of films: supplies, openings and ends, whatever is asked of them; and rough surfaces."""
 
 from __future__ import annotations
 
@@ -10,13 +10,19 @@ from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.scene.films import film_places
+from frbcli.scene.coupling import coupling_of
+from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
+from frbcli.scene.gate.analysis import FILMS, RUN, SHEETS
 from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
+from frbcli.scene.tilt import misaligned
+from frbcli.units import display
 
+ROUGH = (*SHEETS, RUN, FILMS)  # analyses that asperities are modelled in
+SMOOTH = 'Write contact.model = "spring"'
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
 
 
@@ -71,3 +77,51 @@ def _enclosed(case: Case, key: str, film: FilmGeometry) -> Iterator[Fault]:
 
 def _told(film: FilmGeometry) -> str:
     return f"sealed = {film.sealed:g}"
+
+
+def rough_faults(case: Case) -> Iterator[Fault]:
+    """The gap between rough surfaces is that of plain cylinders."""
+    contact = case.contact
+    if contact.roughness is None:
+        return
+    from frbcli.film.roughness.summits import LAST  # with its compiler, which other cases do not need
+
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        film = place.geometry
+        if film.lobes is not None:
+            problem = "is not modelled with asperities, whose gap is that of a plain cylinder."
+            yield Fault(f"{key}.lobes", f"{film.lobes.count}", None, problem, f"{SMOOTH}, or leave them out.")
+        if LAST * contact.roughness >= film.clearance:
+            problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
+            remedy = f"Give less than {display(film.clearance / LAST, 'm')}."
+            yield Fault("contact.roughness", display(contact.roughness, "m"), None, problem, remedy)
+    for key, value in misaligned(case):
+        problem = "is not modelled with asperities, whose gap is the same along the axis."
+        yield Fault(key, value, None, problem, f"{SMOOTH}, or leave it out.")
+
+
+def unmodelled_rough_faults(case: Case) -> Iterator[Fault]:
+    """Analyses of motions that summits have no part in yet."""
+    if case.contact.rough:
+        problem = "is not modelled in this analysis."
+        yield Fault("contact.model", "asperities", None, problem, f"{SMOOTH}.")
+
+
+def rough_coupling_faults(case: Case) -> Iterator[Fault]:
+    """Summits are far stiffer than a film: they are solved with the rotor, until nothing is left over."""
+    coupling = coupling_of(case)
+    if case.contact.rough and (coupling.in_turn or coupling.once):
+        problem = "solves rotor and films once per step, and summits are too stiff for that."
+        yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
+
+
+def rough_sheet_faults(case: Case) -> Iterator[Fault]:
+    """Rings and heat at rest do not know of boundary friction."""
+    if not case.contact.rough:
+        return
+    if turning_rings(case):
+        problem = "drags a ring along by friction, and at rest a ring turns as its films drag it alone."
+        yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or bearing.ring.spin = "blocked".')
+    if case.heat is not None:
+        problem = "makes heat by friction, and at rest the heat is that of the films alone."
+        yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

@@ -11,6 +11,8 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.roughness.asperities import Asperities, make_asperities, rub, standing_eccentricity
 from frbcli.rotor.body import COORDINATES
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
@@ -26,7 +28,7 @@ class System:
     rotor: the linear system; films: see Films; names: of the films. bodies: (films, 2) what lies inside and outside of
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
-    torque: see FilmModel; own_length: see length, 0 of a machine with films.
+    torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces.
     """
 
     rotor: LinearRotor
@@ -39,6 +41,27 @@ class System:
     laws: tuple[str, ...] = ()
     torque: str = "all"
     own_length: float = 0.0
+    asperities: Asperities | None = None
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """Force and derivatives of film i, see Films, and of rough surfaces beside it. Their friction has the sense of
+        the total: a ring turns more slowly than its rotor, and a journal that stands still does not rub."""
+        film = self.films.force(i, place, rate, total, near)
+        if self.asperities is None:
+            return film
+        (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
+        rubbing = rub(self.asperities, i, self.clearances[i], e_x, e_y, v_x, v_y, total, 0.0)
+        by_place, by_rate = (np.array(rubbing[first : first + 4]).reshape(2, 2) for first in (2, 6))
+        return FilmForce(
+            film.force + rubbing[:2], film.by_displacement + by_place, film.by_velocity + by_rate, film.field
+        )
+
+    def standing(self, i: int, load: float) -> float:
+        """Eccentricity in m of a journal that stands still on the summits of its shell under a load in N; 0 between
+        smooth surfaces."""
+        if self.asperities is None:
+            return 0.0
+        return standing_eccentricity(self.asperities, i, self.clearances[i], load)
 
     @property
     def clearances(self) -> tuple[float, ...]:
@@ -87,7 +110,20 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         laws=case.cavitations,
         torque=case.film.torque,
         own_length=plan.length,
+        asperities=rough_surfaces(case),
     )
+
+
+def rough_surfaces(case: Case) -> Asperities | None:
+    """The asperities of a case in all of its films, None between smooth surfaces."""
+    contact = case.contact
+    if contact.roughness is None or contact.summit_radius is None or contact.summit_density is None:
+        return None
+    films = [place.geometry for place in film_places(case)]
+    return make_asperities(
+        contact.roughness, contact.summit_radius, contact.summit_density, contact.modulus, contact.hardness,
+        contact.friction, 0.5 * np.array([film.diameter for film in films]), np.array([film.width for film in films]),
+    )  # fmt: skip
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:

@@ -195,7 +195,7 @@ def _warm_up(
     """carry_heat over a macro step, with the journals where they are now, which rows of equations.py then say."""
     journal, bodies, wet = exchange.scratch.journal, exchange.rings.bodies, state.wet
     _stand(exchange.told.motions[2], journal)
-    taken = Taken(step, 0.0, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness)
+    taken = Taken(step, 0.0, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness, ())
     turning, clearances, drag = rotor.turning, rotor.clearances, rotor.drag
     return carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag)
 

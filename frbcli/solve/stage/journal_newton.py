@@ -26,6 +26,7 @@ from frbcli.solve.stage.equations import (
     U,
     norm,
 )
+from frbcli.solve.stage.rough_contact import press, sharpness
 from frbcli.solve.state import Control
 
 CLOSEST = 0.5  # share of the gap, see shell_ahead, that one Newton correction may close
@@ -95,6 +96,7 @@ def forces(
         at = FilmMotion(felt[0], felt[1], felt[2], felt[3], motion.omega)
         numbers = film_response(films, work, f, at, g, s, iteration)
         _store(numbers, felt, motion, g, turning, f, c, control, journal)
+        press(control.rough, f, c, g, journal)
     join_films(films, work, clearances, journal[FORCE], journal[FOLLOWS_X], journal[FOLLOWS_Y])
 
 
@@ -137,10 +139,11 @@ def correct(
         end = shell_ahead(here, control.contact_eccentricity, control.contact_stiffness)
         share = min(share, reach(at_x, at_y, c_x, c_y, end))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
-        # |w|, over the size of w.
+        # |w|, over the size of w; that of summits over their height.
         half = 0.5 * journal[OMEGA, x]
         film_speed = norm(journal[U, x] / c + half * at_y, journal[U, y] / c - half * at_x)
-        left = max(left, move * move * (1.0 / (end - here) + 1.0 / (g * film_speed + 1e-30)))
+        bend = 1.0 / (end - here) + 1.0 / (g * film_speed + 1e-30) + sharpness(control.rough, c)
+        left = max(left, move * move * bend)
     for i in range(m):
         journal[U, i] += share * journal[CORRECTION, i]
     for i in range(m):  # the forces at the corrected velocities, to first order: what Newton's equations have used

@@ -1,0 +1,36 @@
+"""Rules that tie the keys of [contact] together, and to the clearances. See checks.py."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from frbcli.case.reading.tables import Breach, number, table
+
+OF_SPRING = ("policy", "stiffness")
+OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
+WITH_DEFAULT = ("modulus", "hardness", "friction")  # of asperities, too
+STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
+
+
+def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Keys of the other model, keys that are missing, and summits that are no summits."""
+    contact = table(data, "contact")
+    if contact.get("model", "spring") == "spring":
+        if contact.get("policy") == "elastic" and "stiffness" not in contact:
+            problem = "is missing; elastic contact needs it."
+            yield Breach(("contact", "stiffness"), problem, 'Add stiffness = "1e8 N/m".')
+        for key in (*OF_ASPERITIES, *WITH_DEFAULT):
+            if key in contact:
+                yield Breach(("contact", key), "is of rough surfaces.", 'Add model = "asperities", or remove it.')
+        return
+    for key in OF_SPRING:
+        if key in contact:
+            yield Breach(("contact", key), "is of a spring between smooth surfaces.", "Remove it.")
+    for key, example in OF_ASPERITIES.items():
+        if key not in contact:
+            yield Breach(("contact", key), "is missing; asperities need it.", f"Add {key} = {example}.")
+    roughness, radius = number(contact, "roughness", "m"), number(contact, "summit_radius", "m")
+    if roughness and radius and roughness > STEEPEST * radius > 0.0:
+        problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."
+        yield Breach(("contact", "roughness"), problem, "Correct one of the two.")

@@ -1,0 +1,195 @@
+"""Force and friction of the summits between a rough journal and its rough shell, compiled.
+
+The mean planes of the surfaces have the distance of the smooth gap, h = c - e cos(theta), with theta from the line of
+centres: it is the same along the axis, so that the integrals over the bearing depend on the eccentricity alone. The
+trapezoidal rule over the arc where summits meet converges exponentially, as the pressure fades out at its ends.
+
+Source of pressure and area: Greenwood, Tripp 1970, see summits.py. Boundary friction is Coulomb's.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.roughness.summits import LAST, elastic_summits, touching_summits
+
+POINTS = 40  # of the trapezoidal rule over half of the arc
+HALVINGS = 60  # of the bracket of an eccentricity
+SLOW = 1e-3  # m/s: friction is fully developed at some times this sliding speed, and below it holds the surfaces
+
+
+class Asperities(NamedTuple):
+    """Rough surfaces of all films. roughness: combined, in m; elastic: Pa, pressure of elastic summits over F_5/2;
+    plastic: Pa, the same of summits that yield over F_2, infinite if they never do; friction: coefficient; radii,
+    widths: (films,) m of the bearings."""
+
+    roughness: float
+    elastic: float
+    plastic: float
+    friction: float
+    radii: Array
+    widths: Array
+
+
+def make_asperities(
+    roughness: float, summit_radius: float, summit_density: float, modulus: float, hardness: float | None,
+    friction: float, radii: Array, widths: Array,
+) -> Asperities:  # fmt: skip
+    """Asperities of Hertzian summits: pairs that meet by s - x touch with (32/15) pi E (radius/2)^(1/2) radius
+    (s - x)^(5/2) of force and pi^2 radius^2 (s - x)^2 of area, by the density of both surfaces. SI units."""
+    crowd = summit_density * summit_radius * roughness
+    elastic = 16.0 * math.sqrt(2.0) * math.pi / 15.0 * crowd**2 * math.sqrt(roughness / summit_radius) * modulus
+    plastic = math.inf if hardness is None else math.pi**2 * crowd**2 * hardness
+    return Asperities(roughness, elastic, plastic, friction, radii, widths)
+
+
+class Touch(NamedTuple):
+    """Integrals over a bearing, N, and their derivatives by the eccentricity in N/m. normal: of the pressure, which
+    friction turns with; radial: of its part along the line of centres, which carries."""
+
+    normal: float
+    radial: float
+    normal_slope: float
+    radial_slope: float
+
+
+class Rub(NamedTuple):
+    """What the summits do to a journal. Force (x, y) in N and its derivatives by displacement in N/m and velocity in
+    N s/m, row by row; torque: on the journal about its middle, N m; shell_torque: on the shell about its own; radial:
+    force that pushes the surfaces apart, N; power: that friction turns into heat, W; grip: what the torque falls by per
+    slip, N m s."""
+
+    f_x: float
+    f_y: float
+    k_xx: float
+    k_xy: float
+    k_yx: float
+    k_yy: float
+    d_xx: float
+    d_xy: float
+    d_yx: float
+    d_yy: float
+    torque: float
+    shell_torque: float
+    radial: float
+    power: float
+    grip: float
+
+
+APART = Rub(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@compiled()
+def summit_pressure(x: float, elastic: float, plastic: float) -> tuple[float, float]:
+    """Pressure in Pa at a distance x over the roughness, and its derivative: of elastic summits, but of no more than
+    their area carries at the hardness of the softer surface."""
+    value, slope = elastic_summits(x)
+    value, slope = elastic * value, elastic * slope
+    if plastic < math.inf:
+        area, area_slope = touching_summits(x)
+        if plastic * area < value:
+            return plastic * area, plastic * area_slope
+    return value, slope
+
+
+@compiled()
+def meets(asperities: Asperities, clearance: float, eccentricity: float) -> bool:
+    """Whether any summits meet; eccentricity in m."""
+    return clearance - eccentricity < LAST * asperities.roughness
+
+
+@compiled()
+def touch(asperities: Asperities, f: int, clearance: float, eccentricity: float) -> Touch:
+    """The integrals of film f at an eccentricity in m, where summits meet."""
+    roughness = asperities.roughness
+    end = (clearance - LAST * roughness) / eccentricity if eccentricity > 0.0 else -1.0
+    arc = math.acos(max(-1.0, min(1.0, end)))
+    normal = radial = normal_slope = radial_slope = 0.0
+    for k in range(POINTS + 1):
+        along = math.cos(k * arc / POINTS)
+        pressure, slope = summit_pressure(
+            (clearance - eccentricity * along) / roughness, asperities.elastic, asperities.plastic
+        )
+        weight = 0.5 if k in (0, POINTS) else 1.0
+        normal += weight * pressure
+        radial += weight * pressure * along
+        normal_slope -= weight * slope * along / roughness
+        radial_slope -= weight * slope * along * along / roughness
+    area = 2.0 * asperities.radii[f] * asperities.widths[f] * arc / POINTS
+    return Touch(area * normal, area * radial, area * normal_slope, area * radial_slope)
+
+
+@compiled()
+def rub(
+    asperities: Asperities, f: int, clearance: float, e_x: float, e_y: float, v_x: float, v_y: float, slip: float,
+    shell_speed: float,
+) -> Rub:  # fmt: skip
+    """What the summits of film f do: displacement e in m and velocity v in m/s of the journal in its shell; slip:
+    omega_J - omega_S, shell_speed: omega_S, rad/s.
+
+    Friction has one direction over the arc, that of the mean sliding speed, weighted with the pressure: then it does
+    nothing but dissipate.
+    """
+    eccentricity = math.sqrt(e_x * e_x + e_y * e_y)
+    if eccentricity == 0.0 or not meets(asperities, clearance, eccentricity):
+        return APART
+    normal, radial, normal_slope, radial_slope = touch(asperities, f, clearance, eccentricity)
+    if normal == 0.0:
+        return APART
+    radius, n_x, n_y = asperities.radii[f], e_x / eccentricity, e_y / eccentricity
+    v_r, v_t = n_x * v_x + n_y * v_y, n_x * v_y - n_y * v_x
+    share, across = radial / normal, v_t - shell_speed * eccentricity
+    sliding = radius * slip + share * across
+    held = math.tanh(sliding / SLOW)
+    bend = asperities.friction * (1.0 - held * held) / SLOW
+    coefficient = asperities.friction * held
+    # Derivatives of the sliding speed by the eccentricity and by a displacement across it
+    by_r = (radial_slope - share * normal_slope) / normal * across - share * shell_speed
+    by_t = -share * v_r / eccentricity
+    friction = coefficient * radial
+    rr, rt = -radial_slope, friction / eccentricity
+    tr, tt = -coefficient * radial_slope - bend * radial * by_r, -radial / eccentricity - bend * radial * by_t
+    damping = -bend * radial * share  # of a velocity across
+    torque = -coefficient * radius * normal
+    return Rub(
+        -radial * n_x + friction * n_y,
+        -radial * n_y - friction * n_x,
+        rr * n_x * n_x - (rt + tr) * n_x * n_y + tt * n_y * n_y,
+        (rr - tt) * n_x * n_y + rt * n_x * n_x - tr * n_y * n_y,
+        (rr - tt) * n_x * n_y + tr * n_x * n_x - rt * n_y * n_y,
+        rr * n_y * n_y + (rt + tr) * n_x * n_y + tt * n_x * n_x,
+        damping * n_y * n_y,
+        -damping * n_x * n_y,
+        -damping * n_x * n_y,
+        damping * n_x * n_x,
+        torque,
+        eccentricity * friction - torque,
+        radial,
+        coefficient * normal * sliding,
+        bend * radius * radius * normal,
+    )
+
+
+def standing_eccentricity(asperities: Asperities, f: int, clearance: float, load: float) -> float:
+    """Eccentricity in m at which the summits of film f carry a load in N alone, without sliding."""
+    if load <= 0.0:
+        return 0.0
+    low, high = clearance - LAST * asperities.roughness, clearance
+    while touch(asperities, f, clearance, high).radial < load:
+        high += clearance
+    for _ in range(HALVINGS):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if touch(asperities, f, clearance, middle).radial < load else (low, middle)
+    return 0.5 * (low + high)
+
+
+@compiled()
+def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array, found: Array) -> None:
+    """Force (x, y) on the journal in N, torque on it in N m and power of friction in W of film f: found (k, 4), by
+    clearances (k,) and motions (k, 6), the arguments of `rub` from e_x on."""
+    for k in range(motions.shape[0]):
+        e_x, e_y, v_x, v_y, slip, shell_speed = motions[k]
+        each = rub(asperities, f, clearances[k], e_x, e_y, v_x, v_y, slip, shell_speed)
+        found[k, 0], found[k, 1], found[k, 2], found[k, 3] = each.f_x, each.f_y, each.torque, each.power

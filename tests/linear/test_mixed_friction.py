@@ -1,0 +1,132 @@
+"""Rough bearings at rest: standing on their summits, mixed friction, and the film alone."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position
+from frbcli.errors import InputError
+from frbcli.film.roughness.plain import plain_touch
+from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.film_state import FilmState, MixedFriction
+from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.gate import require
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+ROUGH = (
+    "contact.model=asperities",
+    "contact.roughness=0.4 um",
+    "contact.summit_radius=20 um",
+    "contact.summit_density=5e9 1/m^2",
+    "contact.friction=0.12",
+)
+LOAD = 6.1 * 9.81 / 2.0
+
+
+def rigid(*settings: str) -> Case:
+    return load_case("rigid", [*ROUGH, *settings])
+
+
+def mixed(state: FilmState) -> MixedFriction:
+    assert state.mixed is not None
+    return state.mixed
+
+
+def test_a_shaft_that_stands_still_rests_on_its_summits() -> None:
+    case = rigid()
+    system = make_system(case, make_plan(case))
+    place = resting_position(system, 0.0).journals[0]
+    assert place[0] == pytest.approx(0.0, abs=1e-12 * system.clearances[0])
+    assert system.asperities is not None
+    _, radial = plain_touch(system.asperities, 0, system.clearances[0], -float(place[1]))
+    assert radial == pytest.approx(LOAD, rel=1e-6)
+
+
+def test_thin_oil_leaves_boundary_friction() -> None:
+    """A film that carries nothing: the journal climbs until friction and pressure hold its weight."""
+    (state,) = bearing_sheet(rigid("oil.viscosity=1e-8 Pa*s"), [1.0]).points
+    assert mixed(state).share == pytest.approx(1.0, abs=1e-4)
+    assert state.attitude_deg == pytest.approx(-math.degrees(math.atan(0.12)), abs=1e-3)  # against the film's sense
+    system = make_system(rigid(), make_plan(rigid()))
+    assert system.asperities is not None
+    eccentricity = state.eccentricity * state.clearance
+    normal, radial = plain_touch(system.asperities, 0, state.clearance, eccentricity)
+    assert state.friction_coefficient == pytest.approx(0.12 * normal / (radial * math.hypot(1.0, 0.12)), rel=1e-4)
+
+
+def test_stribeck_curve_has_its_minimum_between_boundary_friction_and_the_film_alone() -> None:
+    speeds = [0.05, 0.1, 0.2, 0.4, 0.8, 3.0, 20.0]
+    rough, smooth = (bearing_sheet(case, speeds).points for case in (rigid(), load_case("rigid")))
+    friction = [state.friction_coefficient for state in rough]
+    least = int(np.argmin(friction))
+    assert 0 < least < len(speeds) - 2
+    assert friction[: least + 1] == sorted(friction[: least + 1], reverse=True)
+    assert friction[least:] == sorted(friction[least:])
+    shares = [mixed(state).share for state in rough]
+    assert shares == sorted(shares, reverse=True)
+    assert shares[0] > 0.5
+    for own, film in zip(rough[-2:], smooth[-2:], strict=True):  # where no summits meet
+        assert mixed(own).share == mixed(own).power == 0.0
+        assert own.friction_coefficient == film.friction_coefficient
+        np.testing.assert_array_equal(own.displacement, film.displacement)
+        np.testing.assert_array_equal(own.stiffness, film.stiffness)
+
+
+def test_torque_and_power_are_those_of_film_and_summits() -> None:
+    (state,) = bearing_sheet(rigid(), [0.1]).points
+    omega = 2.0 * math.pi * state.speed_Hz
+    assert state.power == pytest.approx(-state.torque * omega, rel=1e-9)
+    assert mixed(state).power == pytest.approx(-mixed(state).torque * omega, rel=1e-9)
+    assert 0.5 * state.power < mixed(state).power < state.power
+
+
+@pytest.mark.parametrize("speed", [0.2, 20.0])
+def test_smooth_surfaces_have_the_film_alone(speed: float) -> None:
+    (rough,) = bearing_sheet(rigid("contact.roughness=1 nm", "contact.summit_radius=50 nm"), [speed]).points
+    (smooth,) = bearing_sheet(load_case("rigid"), [speed]).points
+    np.testing.assert_allclose(rough.displacement, smooth.displacement, rtol=1e-9)
+    np.testing.assert_allclose(rough.stiffness, smooth.stiffness, rtol=1e-9)
+    assert rough.torque == pytest.approx(smooth.torque, rel=1e-9)
+
+
+def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
+    case = rigid()
+    system = make_system(case, make_plan(case))
+    place, omega = np.array([2e-6, -33.9e-6]), 2.0 * math.pi * 0.2
+    found, step = system.force(0, place, np.zeros(2), omega), 1e-11
+    for column, unit in enumerate(np.eye(2)):
+        ahead, behind = (system.force(0, place + side * step * unit, np.zeros(2), omega).force for side in (1, -1))
+        slope = found.by_displacement[:, column]
+        np.testing.assert_allclose(slope, (ahead - behind) / (2 * step), rtol=1e-4, atol=1e-4 * abs(slope).max())
+
+
+@pytest.mark.parametrize(
+    ("settings", "key", "problem"),
+    [
+        (("contact.roughness=5 um",), "contact.roughness", "meet all around"),
+        (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
+        (("film.coupling=co-simulation",), "film.coupling", "too stiff"),
+    ],
+)
+def test_what_rough_surfaces_are_not_modelled_with(settings: tuple[str, ...], key: str, problem: str) -> None:
+    with pytest.raises(InputError) as caught:
+        make_plan(rigid(*settings))
+    faults = {fault.key: fault.problem for fault in caught.value.faults}
+    assert problem in faults[key]
+
+
+def test_rough_shells_are_in_line() -> None:
+    with pytest.raises(InputError, match="same along the axis"):
+        require(rigid('bearing.misalignment=["0.1 mrad", "0 mrad"]'), BEARING)
+
+
+@pytest.mark.parametrize("analysis", [STABILITY, SPEED_CYCLES])
+def test_motions_near_rest_do_not_know_of_summits(analysis: str) -> None:
+    with pytest.raises(InputError, match="asperities"):
+        require(rigid(), analysis)

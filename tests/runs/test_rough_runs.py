@@ -1,0 +1,128 @@
+"""Runs of rough bearings: from rest on the shell to the film and back, their energy, events and resume."""
+
+from __future__ import annotations
+
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import quad
+from scipy.interpolate import CubicSpline
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.film.roughness.asperities import touch
+from frbcli.film.roughness.summits import LAST
+from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.results.store import Run
+from frbcli.runs import march
+from frbcli.runs.march import Progress
+from frbcli.runs.run import rundown, runup
+from frbcli.scene.machine.system import rough_surfaces
+
+ROUGH = (
+    "contact.model=asperities",
+    "contact.roughness=0.4 um",
+    "contact.summit_radius=20 um",
+    "contact.summit_density=5e9 1/m^2",
+    "contact.friction=0.12",
+)
+STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
+
+
+def rigid(*settings: str) -> Case:
+    return load_case("rigid", [*ROUGH, *STARTS, *settings])
+
+
+@pytest.fixture(scope="module")
+def started(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """From standstill to 6 Hz, with fine steps."""
+    case = rigid("speed.to=6 Hz", "speed.duration=0.4 s", "output.step=2e-5 s", "accuracy.tolerance=1e-9")
+    return runup(case, tmp_path_factory.mktemp("started") / "run.h5")
+
+
+def test_a_rotor_starts_on_its_shell_rolls_up_and_lifts_off(started: Run) -> None:
+    assert started.status == "finished"
+    assert started["asperity_share"][0] == pytest.approx(1.0, abs=1e-4)
+    assert started["contact_power_W"][0] == 0.0
+    assert started["journal_x_m"][0] == 0.0
+    assert started["journal_x_m"].min() < -1e-7  # the shell takes it along, against the sense of rotation
+    assert started["journal_x_m"][-1] > 1e-5  # the film carries it in the sense of rotation
+    assert started["asperity_share"][-1] == 0.0
+    kinds = [(event["kind"], event["t_s"]) for event in started.events if event["kind"] in ("touch", "lift-off")]
+    assert [kind for kind, _ in kinds] == ["touch", "lift-off"]
+    assert kinds[0][1] == 0.0
+    assert 1.0 < 15.0 * kinds[1][1] < 5.0  # Hz: between friction and film of the sheet
+    np.testing.assert_allclose(
+        started["film_thickness_m"], 35e-6 * (1.0 - started["eccentricity"]), rtol=1e-9, atol=1e-15
+    )
+
+
+def test_drive_gives_what_films_and_friction_take_and_what_is_stored(started: Run) -> None:
+    case = rigid()
+    (film,), rotor, surfaces = case.films, case.rotor, rough_surfaces(case)
+    assert surfaces is not None
+    t = started["time_s"]
+
+    def whole(values: np.ndarray) -> float:
+        return float(CubicSpline(t, values).integrate(t[0], t[-1]))
+
+    def pressed(eccentricity: float) -> float:
+        """Energy of the summits of one bearing as a spring."""
+        free = film.clearance - LAST * surfaces.roughness
+        own = quad(lambda e: touch(surfaces, 0, film.clearance, e).radial, free, max(free, eccentricity), epsrel=1e-10)
+        return float(own[0])
+
+    drive = whole(-2.0 * started["torque_N_m"] * 2.0 * np.pi * started["speed_Hz"])
+    lost = whole(2.0 * started["power_W"])
+    places = [started[f"journal_{axis}_m"] for axis in "xy"]
+    speed = np.hypot(*(CubicSpline(t, place)(t[-1], 1) for place in places))
+    mass = 6.1
+    stored = 0.5 * mass * speed**2 + mass * rotor.gravity * (places[1][-1] - places[1][0])
+    stored += 2.0 * (pressed(float(np.hypot(*(p[-1] for p in places)))) - pressed(float(-places[1][0])))
+    assert drive - lost - stored == pytest.approx(0.0, abs=1e-8 * drive)
+    assert 0.1 * drive < whole(2.0 * started["contact_power_W"]) < 0.9 * drive
+
+
+def test_a_slow_rotor_stays_where_the_sheet_has_it(tmp_path: Path) -> None:
+    case = rigid('speed={points=[["0 s", "0.2 Hz"], ["0.2 s", "0.2 Hz"]]}', "output.step=1e-3 s")
+    run = runup(case, tmp_path / "run.h5")
+    (state,) = bearing_sheet(case, [0.2]).points
+    assert state.mixed is not None
+    np.testing.assert_allclose(run["eccentricity"], state.eccentricity, rtol=1e-7)
+    assert run["asperity_share"][-1] == pytest.approx(state.mixed.share, rel=0.05)  # of sizes, not along the load
+    assert run["contact_power_W"][-1] == pytest.approx(state.mixed.power, rel=1e-5)
+    assert run["power_W"][-1] == pytest.approx(state.power, rel=5e-3)  # the sheet solves its film on cells
+
+
+def test_a_run_down_ends_on_the_shell(tmp_path: Path) -> None:
+    settings = "speed.to=20 Hz", "speed.duration=0.2 s", "speed.hold=0.1 s", "output.step=1e-3 s"
+    case = rigid(*settings, "speed.down_duration=0.6 s", "oil.viscosity=1 mPa*s")  # thin oil is soon squeezed out
+    run = rundown(case, tmp_path / "run.h5")
+    kinds = [event["kind"] for event in run.events if event["kind"] in ("touch", "lift-off")]
+    assert run.status == "finished"
+    assert kinds == ["touch", "lift-off", "touch"]
+    assert run["asperity_share"][-1] > 0.5
+    assert run["speed_Hz"][-1] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_an_interrupted_run_goes_on_in_contact_as_if_it_had_not_stopped(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(march, "BUDGET", 30)  # steps between two looks at the clock
+    case = rigid("speed.to=6 Hz", "speed.duration=0.4 s", "output.step=1e-4 s", "accuracy.tolerance=1e-8")
+    whole = runup(case, tmp_path / "whole.h5")
+    calls = iter(range(4))
+
+    def interrupt(_: Progress) -> None:
+        if next(calls, None) == 3:
+            signal.raise_signal(signal.SIGINT)
+
+    broken = runup(case, tmp_path / "broken.h5", observe=interrupt)
+    assert broken.status == "interrupted"
+    assert broken["asperity_share"][-1] > 0.0
+    again = runup(case, tmp_path / "broken.h5", resume=True)
+    for name in whole.signals:
+        np.testing.assert_array_equal(again[name], whole[name])
+    assert again.events == whole.events
