@@ -86,8 +86,8 @@ class SpectralLine:
 class UnbalancedWhirl:
     """A whirl with the unbalance beside it. speed_Hz: of the rotor; frequency_Hz: of the whirl; locked: whether it has
     locked in at half the speed, else the motion has two frequencies; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean;
-    lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if the
-    motion has two frequencies, where it is not known."""
+    lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if
+    that could not be seen of a motion of two frequencies."""
 
     speed_Hz: float
     frequency_Hz: float

@@ -76,8 +76,8 @@ def _within(
     count = _crossed(low, high)
     if count == 0 or halvings == 0:
         return
-    if count == 1:
-        before, after = growing(low.eigenvalues), growing(high.eigenvalues)
+    before, after = growing(low.eigenvalues), growing(high.eigenvalues)
+    if count == 1 and before != after:  # else a whirl begins as another one becomes a drift
         here = located(lambda value: between(low, high, value), low, high, max(before, after) - 1, close)
         yield Crossing(here, after > before)
         return

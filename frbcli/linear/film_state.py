@@ -106,7 +106,7 @@ class FilmState:
         numbers = self.film_thickness_min, self.p_max, self.power, self.side_flow
         errors = self.film_thickness_error, self.p_max_error, self.power_error, self.side_flow_error
         known = [error / abs(number) for error, number in zip(errors, numbers, strict=True) if abs(number) > 0.0]
-        return max(self.force_error, *known)
+        return max([self.force_error, *known])
 
     @property
     def status(self) -> str:

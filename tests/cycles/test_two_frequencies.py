@@ -12,10 +12,12 @@ from cycle_machines import machine_of, ring_case
 
 import frbcli
 from frbcli.case.reading.load import load_case_text
-from frbcli.cycles.method.balance import unpacked
+from frbcli.cycles.method.balance import packed, unpacked
+from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Loads, Machine, driven_motions, film_loads, transfer
 from frbcli.cycles.result import CyclePoint, UnbalancedWhirl
 from frbcli.cycles.unbalance import two_frequencies
+from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, solved, with_unbalance
 from frbcli.cycles.unbalance.whirls import motion_of
 
@@ -194,6 +196,62 @@ def test_a_whirl_of_two_frequencies_is_that_of_a_run(speed_Hz: float, unbalance:
         assert abs(x + 1j * y) == pytest.approx(seen[(j, k)], rel=1e-3)
 
 
+def beating_at(speed_Hz: float) -> UnbalancedWhirl:
+    case = jeffcott(1.0, SHORT, f"speed.from={speed_Hz - 0.1} Hz", f"speed.to={speed_Hz} Hz")
+    found = frbcli.limit_cycles(case, [speed_Hz], with_unbalance=True)
+    return found.branches[0].with_unbalance[-1]
+
+
+def test_a_whirl_that_beats_with_the_unbalance_is_found_and_stable() -> None:
+    """1 g mm at 190 Hz, where nothing locks in; a run has 95.048432 Hz and 0.884790 over four beats of 10.3 s."""
+    whirl = beating_at(190.0)
+    assert not whirl.locked
+    assert whirl.stable
+    assert whirl.frequency_Hz == pytest.approx(95.048432, abs=1e-6)
+    assert whirl.eccentricity_max[0] == pytest.approx(0.884790, abs=2e-6)
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("speed_Hz", [189.4, 193.0, 196.8])
+def test_a_beat_is_that_of_a_run(speed_Hz: float, tmp_path: Path) -> None:
+    """Frequency over whole beats, in which the phase against half the speed gains a turn, and eccentricity."""
+    whirl = beating_at(speed_Hz)
+    beat_s = 1.0 / abs(2.0 * whirl.frequency_Hz - speed_Hz)
+    signals = run_at(jeffcott(1.0, SHORT, "start.displacement=[0.3, -0.3]"), speed_Hz, 5.0 * beat_s, tmp_path)
+    t, z = signals["time_s"], signals["journal_x_m"] + 1j * signals["journal_y_m"]
+    phase = np.unwrap(np.angle((z - z.mean()) * np.exp(-1j * np.pi * speed_Hz * t)))
+    smooth = np.convolve(phase, np.ones(4001) / 4001, "valid")
+    beats = np.flatnonzero(np.diff(np.floor(smooth / np.pi)))
+    seen = 0.5 * speed_Hz + 0.5 / np.diff(t[beats]).mean()
+    assert len(beats) > 1
+    assert whirl.frequency_Hz == pytest.approx(seen, abs=1e-4)
+    assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=1e-5)
+    assert whirl.stable
+
+
+def test_without_unbalance_it_is_as_stable_as_the_cycle() -> None:
+    """Of the floating ring the smaller one of two cycles below its Hopf point is unstable."""
+    case = load_case_text(ring_case().source_text, ["rotor.unbalance=0 g*mm", "speed.to=260 Hz"], "ring")
+    machine = machine_of(case)
+    (branch,) = frbcli.limit_cycles(case).branches
+    kinds = {point.stable: point for point in branch.points if not point.kind}
+    assert len(kinds) == 2
+    for stable, point in kinds.items():
+        nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
+        motion = motion_of(machine, point)
+        cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
+        assert is_stable(machine, state_space(machine), of_cycle(motion, nu, omega), cycle) == stable
+
+
+def test_newtons_matrix_is_what_a_step_changes(short: tuple[Machine, CyclePoint]) -> None:
+    """So that small systems, solved directly, and large ones, solved by GMRES, have the same step."""
+    machine, point = short
+    balance = two_frequencies._Linearised(machine, cycle_of(machine, point), cycle_of(machine, point).motion)
+    step = np.random.default_rng(1).standard_normal(len(balance.row) + 1)
+    changed = balance.moved(step)
+    np.testing.assert_allclose(balance.matrix() @ step, changed, atol=1e-12 * np.abs(changed).max())
+
+
 @pytest.mark.nightly
 def test_the_whirl_of_a_floating_ring_with_unbalance_is_that_of_a_run(tmp_path: Path) -> None:
     """Without feed holes, at 200 Hz with 3 g mm, after 2 of 4 s."""
@@ -249,7 +307,7 @@ def test_a_branch_with_unbalance() -> None:
     for whirl in branch.with_unbalance:
         (cycle,) = [point for point in branch.points if point.speed_Hz == pytest.approx(whirl.speed_Hz, rel=1e-12)]
         assert not whirl.locked
-        assert whirl.stable is None
+        assert whirl.stable
         assert [line.name for line in whirl.lines[:2]] == ["nu", "Omega"]
         assert whirl.frequency_Hz == pytest.approx(cycle.frequency_Hz, rel=0.02)
         np.testing.assert_allclose(whirl.eccentricity_max, cycle.eccentricity_max, atol=0.02)

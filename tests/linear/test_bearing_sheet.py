@@ -340,3 +340,9 @@ def test_a_damper_around_a_bearing_leaves_its_sheet_as_it_is() -> None:
         bearing_sheet(case.with_settings(DAMPED.replace(', spring="1e7 N/m"', "")), [40.0])
     with pytest.raises(InputError, match="load of a single film"):
         bearing_sheet(damped, [40.0], load=30.0)
+
+
+def test_a_point_without_a_state_has_no_error() -> None:
+    """Its row of the table is asked for all the same."""
+    point = FilmState("inner", 20.0, 20.0, 0.0, np.array([0.0, -1.0]), np.zeros(2), problem="has no place of rest")
+    assert math.isnan(point.largest_error)

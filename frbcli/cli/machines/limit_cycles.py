@@ -246,8 +246,10 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
     if not whirls:
         return
     terminal.show("With unbalance", table_of(WHIRLS, whirls))
-    if any(not whirl.locked for _, whirl in whirls):
-        terminal.result("Whether whirls of two frequencies are stable is not computed.")
+    for stable, told in ((False, "Unstable"), (None, "Whether it is stable could not be seen")):
+        speeds = [f"{whirl.speed_Hz:.4g}" for _, whirl in whirls if whirl.stable is stable]
+        if speeds:
+            terminal.result(f"{told}: the whirl at {', '.join(speeds)} Hz.")
 
 
 def _left_out(found: LimitCycles) -> list[str]:

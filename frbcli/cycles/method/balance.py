@@ -70,7 +70,7 @@ class Balance:
             last = through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
         n = c * (2 * h + 1)
         residual, jacobian = np.empty(n + 1), np.zeros((n + 1, n + 2))
-        residual[:n], jacobian[:n, :n] = packed(out), _real(by_motion)
+        residual[:n], jacobian[:n, :n] = packed(out), as_real(by_motion)
         jacobian[:n, n], jacobian[:n, n + 1] = machine.pace * packed(by_nu), packed(last)
         row = phase_row(self.reference)
         residual[n], jacobian[n, :n] = row @ y[:n], row
@@ -158,7 +158,7 @@ def _both_signs(samples: Array, h: int) -> Complex:
     return np.concatenate([np.conj(one[:0:-1]), one])
 
 
-def _real(slope: Complex) -> Array:
+def as_real(slope: Complex) -> Array:
     """The derivative (k, i, l, j) of harmonics k by u_l, l = -h ... h, as a real matrix of packed vectors."""
     h, c = len(slope) - 1, slope.shape[1]
     ahead, behind = slope[:, :, h + 1 :], slope[:, :, h - 1 :: -1] if h > 0 else slope[:, :, :0]

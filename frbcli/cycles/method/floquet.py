@@ -98,17 +98,32 @@ def multipliers(
 
 def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
     """(N, N): what one period makes of a disturbance, with `count` equal intervals."""
-    c, nu, omega = machine.size, float(y[-2] * machine.pace), float(y[-1] * machine.pace)
-    h, s = 2.0 * np.pi / (nu * count), len(NODES)
-    tau = 2.0 * np.pi * (np.arange(count)[:, None] + NODES) / count
-    u, rate = _at(unpacked(y[:-2], c), tau.ravel())
-    loads = film_loads(machine, u, nu * rate, omega)
+    nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
+    u, rate = _at(unpacked(y[:-2], machine.size), moments_within(count))
+    return through_all(transitions(machine, space, u, nu * rate, omega, 2.0 * np.pi / (nu * count)))
+
+
+def moments_within(count: int) -> Array:
+    """(3 count,): the phases of the nodes of `count` equal intervals of a period."""
+    return np.asarray(2.0 * np.pi * (np.arange(count)[:, None] + NODES) / count).ravel()
+
+
+def transitions(machine: Machine, space: StateSpace, u: Array, v: Array, omega: float, h: float) -> Array:
+    """(count, N, N): what each interval of the length h in s makes of a disturbance. u, v: (3 count, c) the motion and
+    its rate in 1/s at the nodes; omega: rad/s."""
+    c, s = machine.size, len(NODES)
+    count = len(u) // s
+    loads = film_loads(machine, u, v, omega)
     by_start, by_loads = _interval(space, omega, h)
     by_u, by_v = (slope.reshape(count, s, c, c) for slope in (loads.by_u, loads.by_v))
     columns = np.concatenate([by_loads, by_start], axis=2)
     felt = (by_u @ (space.read @ columns) + by_v @ (space.read_rate @ columns)).reshape(count, s * c, -1)
     answer = np.linalg.solve(np.eye(s * c) - felt[:, :, : s * c], felt[:, :, s * c :])
-    steps = by_start[-1] + by_loads[-1] @ answer
+    return np.asarray(by_start[-1] + by_loads[-1] @ answer)
+
+
+def through_all(steps: Array) -> Array:
+    """(N, N): the product of steps (count, N, N), the first one on the right."""
     while len(steps) > 1:
         if len(steps) % 2:
             steps = np.concatenate([steps[:-2], (steps[-1] @ steps[-2])[None]])

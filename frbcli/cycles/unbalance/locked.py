@@ -95,10 +95,7 @@ def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: 
     from scipy.optimize import brentq
 
     angles = 2.0 * np.pi * np.arange(ANGLES + 1) / ANGLES
-    y = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
-    known: dict[float, Array] = {}
-    for theta in angles:
-        y = known[theta] = _shifted(machine, motion, y, share, theta)
+    known = dict(zip(angles, shifted(machine, motion, nu, omega, share, angles), strict=True))
 
     def off(theta: float) -> float:
         if theta not in known:
@@ -113,6 +110,16 @@ def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: 
             off(theta)
             guesses.append(unpacked(known[theta][:-2], machine.size) * np.exp(-0.5j * theta * orders))
     return guesses
+
+
+def shifted(machine: Machine, motion: Complex, nu: float, omega: float, share: float, angles: Array) -> list[Array]:
+    """The cycles with a share of the unbalance shifted by angles theta, each from the one before it. Raises
+    Unreachable."""
+    y, found = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]]), []
+    for theta in angles:
+        y = _shifted(machine, motion, y, share, float(theta))
+        found.append(y)
+    return found
 
 
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:

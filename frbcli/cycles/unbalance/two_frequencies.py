@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.method.balance import packed, through, unpacked
+from frbcli.cycles.method.balance import as_real, packed, through, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.parts.machine import Loads, Machine, Transfer, driven_motions, film_loads, transfer
 from frbcli.cycles.unbalance.synchronous import WHIRLS
@@ -39,6 +39,7 @@ SMALLEST = 1.0 / 8.0  # step by which the unbalance is raised
 SAMPLES_PER_ORDER, FEWEST = np.array([5, 5]), np.array([32, 16])
 CLOSE = 1e-9  # residual over the clearance that ends Newton's method
 ITERATIONS = 10
+DENSE = 3000  # equations up to which Newton's steps are solved directly
 INEXACT, KRYLOV = 1e-5, 60  # of GMRES: relative tolerance, vectors
 
 
@@ -214,6 +215,8 @@ class _Linearised:
 
     def newton_step(self, residual: Array) -> Array:
         """The step (n,) that removes a residual."""
+        if len(residual) <= DENSE:
+            return np.asarray(np.linalg.solve(self.matrix(), -residual))
         from scipy.sparse.linalg import LinearOperator, gmres
 
         n, nearly = len(residual), _ByMean(self)
@@ -226,6 +229,25 @@ class _Linearised:
             M=LinearOperator((n, n), nearly.solved),
         )
         return np.asarray(step)
+
+    def matrix(self) -> Array:
+        """(n, n): of `moved`."""
+        torus, passing, (m, c) = self.torus, self.passing, self.torus.motion.shape
+        by_u, by_v = (
+            np.fft.fft2(slope.reshape(*self.counts, c, c), axes=(0, 1), norm="forward")
+            for slope in (self.loads.by_u, self.loads.by_v)
+        )
+        by = np.concatenate([-torus.orders[:0:-1], torus.orders])
+        apart = torus.orders[:, None] - by[None, :]
+        place = apart[..., 0], apart[..., 1]
+        rates = 1j * np.concatenate([-torus.frequencies[:0:-1], torus.frequencies])
+        slope = (by_u[place] + rates[:, None, None] * by_v[place]).transpose(0, 2, 1, 3)
+        same = np.arange(m)
+        slope[same, :, m - 1 + same, :] += passing.kappa[:, :, None] * np.eye(c)
+        felt = -np.einsum("kij,kjlm->kilm", passing.values, slope)
+        felt[same, :, m - 1 + same, :] += np.eye(c)
+        by_nu = self.machine.pace * packed(self.by_nu)
+        return np.block([[as_real(felt), by_nu[:, None]], [self.row, np.zeros(1)]])
 
 
 class _ByMean:

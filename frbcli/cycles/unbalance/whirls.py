@@ -11,11 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.branch import ASKED, MOMENTS, Cycle, largest_of
-from frbcli.cycles.method.balance import motion_along, unpacked
+from frbcli.cycles.method.balance import motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import Machine
+from frbcli.cycles.parts.reduced_states import reduced_space
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
+from frbcli.cycles.unbalance.beats import beating
+from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance
 
@@ -91,10 +94,11 @@ class _Chain:
             self.last = None
             return None
         self.last = before, torus
-        return _free_whirl(machine, torus)
+        cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
+        return _free_whirl(machine, torus, is_stable(machine, reduced_space(machine), torus, cycle))
 
     def _locked(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
-        if abs(2.0 * nu - omega) > NEAR_HALF * omega:
+        if not _nearly_half(nu, omega):
             return None
         if self.locked is not None:
             near = unpacked(self.locked.y[:-2], machine.size)
@@ -104,12 +108,26 @@ class _Chain:
         return locked_whirl(machine, motion, nu, omega)
 
     def _torus(self, machine: Machine, before: Torus) -> Torus:
-        if self.last is not None:
+        for guess in (self._beating, self._moved_on):
             try:
-                return fitted(machine, _moved_on(before, *self.last))
+                return fitted(machine, guess(machine, before))
             except Unreachable:
                 pass
         return with_unbalance(machine, before)
+
+    def _beating(self, machine: Machine, before: Torus) -> Torus:
+        if not _nearly_half(before.nu, before.omega):
+            raise Unreachable
+        return beating(machine, before.motion[before.orders[:, 1] == 0], before.nu, before.omega)
+
+    def _moved_on(self, _machine: Machine, before: Torus) -> Torus:
+        if self.last is None:
+            raise Unreachable
+        return _moved_on(before, *self.last)
+
+
+def _nearly_half(nu: float, omega: float) -> bool:
+    return abs(2.0 * nu - omega) <= NEAR_HALF * omega
 
 
 def _moved_on(cycle: Torus, cycle_before: Torus, torus_before: Torus) -> Torus:
@@ -133,7 +151,7 @@ def motion_of(machine: Machine, point: CyclePoint) -> Complex:
     return motion
 
 
-def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
+def _free_whirl(machine: Machine, torus: Torus, stable: bool | None) -> UnbalancedWhirl:
     """Results of a motion of two frequencies."""
     films = 2 * machine.film_count
     displacements = samples(torus.orders, torus.motion[:, :films], PHASES)
@@ -149,7 +167,7 @@ def _free_whirl(machine: Machine, torus: Torus) -> UnbalancedWhirl:
         eccentricity_max=largest_of(displacements.reshape(-1, films)),
         ring_speeds_Hz=hertz(machine.pace) * torus.motion[0, films:].real,
         lines=_main(lines, ("nu", "Omega")),
-        stable=None,
+        stable=stable,
     )
 
 
