@@ -66,7 +66,7 @@ def short_course(plan: KinematicPlan, path: Path, times: Array) -> Course:
 
 
 def _share(plan: KinematicPlan, time: float) -> float:
-    """Of the supply pressure, which may rise (4.11)."""
+    """The share of the supply pressure at a time in s, as it rises (4.11)."""
     return supply_share(time, plan.ramp) if plan.ramp else 1.0
 
 

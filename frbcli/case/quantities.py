@@ -121,11 +121,13 @@ class Count:
     example: int
 
     def read(self, given: object) -> int:
+        """The number. Raises ValueFault if it is none of these."""
         if isinstance(given, int) and not isinstance(given, bool) and self.least <= given <= self.most:
             return given
         raise ValueFault(f"is not a whole number from {self.least} to {self.most}.", f"Write e.g. {self.example}.")
 
     def written_example(self) -> str:
+        """A value as a case file has it."""
         return str(self.example)
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:

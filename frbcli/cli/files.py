@@ -22,6 +22,7 @@ class InputFile(click.Path):
         super().__init__(path_type=Path)
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The path, which the command then does not write."""
         path = Path(os.fsdecode(super().convert(value, param, ctx)))
         note_read(path, ctx)
         return path
@@ -33,6 +34,7 @@ class InputFiles(click.ParamType[tuple[Path, ...]]):
     name = "files"
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> tuple[Path, ...]:
+        """The paths, which the command then does not write."""
         if isinstance(value, tuple):
             return value
         return tuple(INPUT.convert(name.strip(), param, ctx) for name in str(value).split(",") if name.strip())

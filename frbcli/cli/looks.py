@@ -36,6 +36,7 @@ class Size(click.ParamType[tuple[float, float]]):
     def convert(
         self, value: object, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, float]:
+        """Width and height in inches."""
         from frbcli.units import quantity
 
         if isinstance(value, tuple):
@@ -64,6 +65,7 @@ class Span(click.ParamType[tuple[float, float]]):
     def convert(
         self, value: object, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, float]:
+        """The lower and the upper number."""
         if isinstance(value, tuple):
             return value
         try:

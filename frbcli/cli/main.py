@@ -158,9 +158,11 @@ class LazyGroup(click.Group):
     """A group that imports only the command that is called."""
 
     def list_commands(self, _ctx: click.Context) -> list[str]:
+        """Names of all commands."""
         return list(COMMANDS)
 
     def get_command(self, _ctx: click.Context, name: str) -> click.Command | None:
+        """Import the command of a name; None if there is no such command."""
         if name not in COMMANDS:
             return None
         if name not in LIGHT:
@@ -179,6 +181,7 @@ class LazyGroup(click.Group):
         return super().resolve_command(ctx, args)
 
     def format_commands(self, _ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        """Write the commands with their help, group by group, without importing them."""
         longest = max(map(len, COMMANDS))
         for group, names in GROUPS.items():
             with formatter.section(group):

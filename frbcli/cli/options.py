@@ -23,6 +23,7 @@ class QuantityOption(click.ParamType[float]):
     positive: bool = True
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The quantity in `unit`."""
         from frbcli.units import quantity
 
         with suppress(ValueError):  # then it has a unit
@@ -41,6 +42,7 @@ class UnitOption(QuantityOption):
     """A unit, alone, such as "um", or as a multiple of one, such as "125 um"."""
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """The size of the unit in `unit`: 1e-6 for "um" in m."""
         text = str(value).strip()
         return super().convert(f"1 {text}" if text[:1].isalpha() else value, param, ctx)
 
@@ -58,6 +60,7 @@ class Names(click.ParamType[tuple[str, ...]]):
     name = "names"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[str, ...]:  # noqa: ARG002
+        """The names without spaces around them."""
         names = value if isinstance(value, tuple) else str(value).split(",")
         return tuple(name.strip() for name in names if name.strip())
 
@@ -68,6 +71,7 @@ class Numbers(click.ParamType[tuple[float, ...]]):
     name = "numbers"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
+        """The numbers in their order."""
         if isinstance(value, tuple):
             return value
         try:

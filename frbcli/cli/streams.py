@@ -39,10 +39,12 @@ class OutputStream(io.TextIOWrapper):
         self._raises = raises
 
     def write(self, text: str) -> int:
+        """Write a text as far as the stream takes it; see `lost`."""
         self._try(lambda: super(OutputStream, self).write(text))
         return len(text)
 
     def flush(self) -> None:
+        """Write what is kept back; see `lost`."""
         self._try(super().flush)
 
     def _try(self, act: Callable[[], object]) -> None:

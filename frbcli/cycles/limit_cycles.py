@@ -9,13 +9,13 @@ from dataclasses import replace
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import HOPF, Follower
-from frbcli.cycles.diagram import Observer, diagram, over_speed, with_response
+from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.over_speed import changing_walk
-from frbcli.cycles.parts.machine import make_machine
+from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
@@ -24,8 +24,9 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
 from frbcli.scene.gate.cycles import by_shooting
-from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
 from frbcli.scene.remedies import advised
 
 
@@ -82,13 +83,7 @@ def limit_cycles(
     machine = make_machine(system, fastest)
     try:
         with advised(case):
-            if case.heat is not None:
-                walk = warm_walk(case, plan, system, slowest, fastest, asked)
-            elif system.rotor.over_speed is not None:
-                walk = changing_walk(system, slowest, fastest, asked)
-            else:
-                resting = resting_curve(system, machine, slowest, fastest)
-                walk = over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked))
+            walk = _walk(case, plan, system, machine, slowest, fastest, asked)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
@@ -102,6 +97,19 @@ def limit_cycles(
         return replace(found, cost=replace(found.cost, cpu_s=time.process_time() - begun))
     response = synchronous_response(machine, walk.resting.points[-1], slowest)
     return with_response(found, walk, response, time.process_time() - begun)
+
+
+def _walk(
+    case: Case, plan: Plan, system: System, machine: Machine, slowest: float, fastest: float,
+    asked: Sequence[float],
+) -> Walk:  # fmt: skip
+    """Resting positions and cycles between two speeds in rad/s. Raises Unreachable."""
+    if case.heat is not None:
+        return warm_walk(case, plan, system, slowest, fastest, asked)
+    if system.rotor.over_speed is not None:
+        return changing_walk(system, slowest, fastest, asked)
+    resting = resting_curve(system, machine, slowest, fastest)
+    return over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked))
 
 
 def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:

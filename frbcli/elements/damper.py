@@ -42,7 +42,7 @@ class DamperElement(MachineElement):
 
     @property
     def node(self) -> str:
-        """Of the shell."""
+        """Name of the node of the shell."""
         return f"shell_{self.bearing}".rstrip("_")
 
     @property

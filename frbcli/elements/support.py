@@ -39,7 +39,7 @@ class SupportElement(MachineElement):
 
     @property
     def node(self) -> str:
-        """Of the shell."""
+        """Name of the node of the shell."""
         return f"support_{self.bearing}".rstrip("_")
 
     def parts(self, site: Site) -> Parts:

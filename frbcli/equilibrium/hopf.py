@@ -37,12 +37,17 @@ def whirls(eigenvalues: Complex, slowest: float = 0.0) -> NDArray[np.int64]:
 
 
 class AtRest(Protocol):
-    """A machine at rest. value: of the number that changes; eigenvalues: (N,) in 1/s."""
+    """A machine at rest at one value of a number that changes, such as its speed."""
 
     @property
-    def value(self) -> float: ...
+    def value(self) -> float:
+        """The value of the number that changes."""
+        ...
+
     @property
-    def eigenvalues(self) -> Complex: ...
+    def eigenvalues(self) -> Complex:
+        """(N,) of the linearised machine, 1/s."""
+        ...
 
     def growth_of(self, number: int) -> float:
         """Growth in 1/s of the whirl number 0, 1, ... by falling growth; -inf if there are not as many."""

@@ -57,7 +57,7 @@ TILTING = (
 
 
 def film_columns(films: Iterable[Any]) -> tuple[Column, ...]:
-    """Of these RestingFilms."""
+    """The columns of these RestingFilms."""
     return (*FILM, *TILTING) if any(film.tilting is not None for film in films) else FILM
 
 
@@ -241,7 +241,7 @@ RESPONSE_COEFFICIENTS = (
 
 
 def point_columns(films: Sequence[str], columns: tuple[Column, ...] = FILM) -> tuple[Column, ...]:
-    """Of the points of a rotor with films of these names; columns: of each film."""
+    """The columns of the points of a rotor with films of these names; columns: of each film."""
     names = [name if len(films) > 1 else "" for name in films]
     own = [column for i, name in enumerate(names) for column in named(columns, name, _film(i))]
     return (*POINT[:2], *own, *POINT[2:])

@@ -156,7 +156,7 @@ def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[comp
 
 
 def _direction(motion: Amplitudes) -> str:
-    """Of points with complex amplitudes (p, 2)."""
+    """The direction in which points with complex amplitudes (p, 2) whirl."""
     forward, backward = np.abs(motion[:, 0] + 1j * motion[:, 1]), np.abs(motion[:, 0] - 1j * motion[:, 1])
     moving = forward + backward > STILL * np.max(forward + backward)
     moving &= np.abs(forward - backward) > EQUAL * (forward + backward)  # to and fro in a line: no sense

@@ -255,6 +255,6 @@ def _with_fields(
 
 
 def no_state(name: str, speed: float, problem: str, eccentricity: float = math.nan) -> FilmState:
-    """Of a film at a rotor speed in Hz for which there is none."""
+    """The state of a film at a rotor speed in Hz at which none was found."""
     unknown = np.full(2, math.nan)
     return FilmState(name, speed, math.nan, math.nan, unknown, np.array([eccentricity, 0.0]), problem=problem)

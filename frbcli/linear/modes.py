@@ -186,7 +186,7 @@ def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) 
 
 
 def _kind(coordinates: Array, shape: Array) -> str:
-    """Of a motion of unit length in the free modes with this shape; a conical one has a node on the shaft."""
+    """The kind of a motion of unit length in the free modes with this shape; a conical one has a node on the shaft."""
     if coordinates[:RIGID] @ coordinates[:RIGID] < RIGID_SHARE:
         return "bending"
     return "conical" if shape.min() < 0 < shape.max() else "cylindrical"

@@ -58,12 +58,12 @@ class OilGrade:
 
 
 def _three(name: str, density_15: float, at_40: float, at_100: float, at_150: float, source: str) -> OilGrade:
-    """Of dynamic viscosities in mPa s."""
+    """A grade with three dynamic viscosities in mPa s."""
     return OilGrade(name, (1e-3 * at_40, 1e-3 * at_100, 1e-3 * at_150), density_15, source)
 
 
 def _two(name: str, density_15: float, at_40: float, at_100: float, source: str) -> OilGrade:
-    """Of dynamic viscosities in mPa s; that at 150 degC by the line of ASTM D341."""
+    """A grade with two dynamic viscosities in mPa s; that at 150 degC follows from the line of ASTM D341."""
     kelvin = [t + ZERO_CELSIUS for t in TEMPERATURES]
     densities = [density(density_15, t) for t in kelvin]
     first, second = (kelvin[0], 1e3 * at_40 / densities[0]), (kelvin[1], 1e3 * at_100 / densities[1])

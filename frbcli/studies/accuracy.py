@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import itertools
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
@@ -83,26 +84,17 @@ def accuracy(
     >>> found = frbcli.accuracy(case, until=0.1)  # doctest: +SKIP
     >>> found.to_pandas()  # doctest: +SKIP
     """
-    require(case, LADDER)
-    _check_names(case, theories, couplings)
+    _check(case, theories, couplings)
     short = _until(case, until)
     own = planned_rung(make_plan(short))
-    *_, best = _theories(case)
-    mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
-    fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)
-    coarser = replace(fine, mesh=coarse, tolerance=LOOSER * fine.tolerance)
+    fine, coarser = _references(case, own)
     rungs = list(ladder(short, own, theories, couplings))
-    begun = 0
+    numbers = itertools.count(1)
     with TemporaryDirectory(prefix="frb-accuracy-") as folder:
 
         def run(rung: Rung) -> Run:
-            nonlocal begun
-            begun += 1
-            watch = None if observe is None else functools.partial(observe, rung, begun, len(rungs) + 2)
-            one = runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch, force=True)
-            if one.status == INTERRUPTED:
-                raise KeyboardInterrupt
-            return one
+            watch = None if observe is None else functools.partial(observe, rung, next(numbers), len(rungs) + 2)
+            return _whole(runup(_with_rung(short, rung), Path(folder) / "run.h5", observe=watch, force=True))
 
         exact = run(fine)
         reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
@@ -119,6 +111,21 @@ def accuracy(
             complete = True
     found.sort(key=lambda item: item.cpu_s)
     return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
+
+
+def _references(case: Case, own: Rung) -> tuple[Rung, Rung]:
+    """The fine reference of a case with the planned rung `own`, and a coarser one, which tells its error."""
+    *_, best = _theories(case)
+    mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
+    fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)
+    return fine, replace(fine, mesh=coarse, tolerance=LOOSER * fine.tolerance)
+
+
+def _whole(run: Run) -> Run:
+    """A run that Ctrl-C did not end; else this is raised on."""
+    if run.status == INTERRUPTED:
+        raise KeyboardInterrupt
+    return run
 
 
 def _theories(case: Case) -> tuple[str, ...]:
@@ -233,7 +240,9 @@ def _with(case: Case, *settings: str) -> Case:
     return case.with_settings(*settings)
 
 
-def _check_names(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:
+def _check(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> None:
+    """Raises InputError for a case or a name that the ladder does not have."""
+    require(case, LADDER)
     faults = [
         Fault(option, name, None, "is not known.", did_you_mean(name, known))
         for option, names, known in (("--theory", theories, _theories(case)), ("--coupling", couplings, COUPLINGS))

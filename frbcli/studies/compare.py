@@ -185,10 +185,7 @@ def compare(
     require(case, COMPARISON)
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
-    cases = [_with_models(case, variant) for variant in variants]
-    for variant, its_case in zip(variants, cases, strict=True):
-        make_plan(its_case)
-        _check_own_models(case, variant, its_case)
+    cases = [_planned(case, variant) for variant in variants]
     runs: list[Run] = []
     status, message = FINISHED, ""
     with _directory(keep) as folder:
@@ -210,6 +207,14 @@ def compare(
         VariantResult(variant, run, deviation(run, runs[0])) for variant, run in zip(variants, runs, strict=False)
     ]
     return Comparison(case, test, tuple(results), status, message)
+
+
+def _planned(case: Case, variant: Variant) -> Case:
+    """The case of a variant. Raises InputError if it cannot be modelled."""
+    its_case = _with_models(case, variant)
+    make_plan(its_case)
+    _check_own_models(case, variant, its_case)
+    return its_case
 
 
 def _is_begun(case: Case, path: Path) -> bool:

@@ -111,40 +111,73 @@ def waterfall(
     >>> bool(abs(found.amplitude.max() - 1e-5) < 1e-7)
     True
     """
-    if direction not in DIRECTIONS:
-        raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
-    if not 0.0 <= overlap < 1.0:
-        raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
-    count, step = len(time_s), _step(time_s)
+    _check(direction, overlap)
+    step = _step(time_s)
     if window_s is None:
         window_s = max(window_length(time_s, speed_Hz), FEWEST * step)
-    length = round(window_s / step) if np.isfinite(window_s) else 0
-    if not FEWEST <= length <= count:
-        limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
-        raise _fault("window", f"{window_s:g} s", "does not fit the run.", limits)
-    first = _starts(count, length, max(1, round(length * (1.0 - overlap))))
-    window = hann(length)
-    window /= window.sum()
-    padded = fast_length(PADDING * length)
-    frequency = np.arange((padded + (1 if direction == "forward" else 2)) // 2) / (padded * step)
-    kept = int(np.count_nonzero(frequency <= (np.inf if max_frequency_Hz is None else max_frequency_Hz)))
+    length = _samples(window_s, step, len(time_s))
+    first = _starts(len(time_s), length, max(1, round(length * (1.0 - overlap))))
     group = 1 if most is None else -(-len(first) // most)
     groups = [first[begin : begin + group] for begin in range(0, len(first), group)]
-    amplitude, time = np.zeros((kept, len(groups))), np.empty(len(groups))
-    speed, swept = np.empty(len(groups)), np.empty(len(groups))
-    begin = float(time_s[0:1][0])
+    transform = _transform(length, step, direction == "forward", max_frequency_Hz)
+    amplitude, middles, speed, swept = _spectra(groups, transform, x, y, speed_Hz, direction)
+    time = float(time_s[0:1][0]) + step * middles
+    level = 20.0 * np.log10(np.maximum(amplitude / clearance, 10.0 ** (FLOOR_dB / 20.0)))
+    lost = np.maximum(0.0, -20.0 * np.log10(chirp_height(swept * window_s)))
+    return Spectrogram(time, speed, transform.frequency, amplitude, level, window_s, lost)
+
+
+@dataclass(frozen=True)
+class _Transform:
+    """window: (length,) Hann's, with the sum 1; padded: samples of a transform; frequency: (kept,) Hz of its lines."""
+
+    window: Values
+    padded: int
+    frequency: Values
+
+
+def _transform(length: int, step: float, two_sided: bool, most_Hz: float | None) -> _Transform:
+    """Windows of `length` samples that are `step` s apart. most_Hz: of the lines that are kept."""
+    window, padded = hann(length), fast_length(PADDING * length)
+    frequency = np.arange((padded + (1 if two_sided else 2)) // 2) / (padded * step)
+    kept = int(np.count_nonzero(frequency <= (np.inf if most_Hz is None else most_Hz)))
+    return _Transform(window / window.sum(), padded, frequency[:kept])
+
+
+def _spectra(
+    groups: list[NDArray[np.int64]], transform: _Transform, x: SignalColumn, y: SignalColumn, speed_Hz: SignalColumn,
+    direction: Direction,
+) -> tuple[Values, Values, Values, Values]:  # fmt: skip
+    """The largest lines (kept, m) of m groups of windows that begin at samples; (m,) the sample in the middle of each,
+    the speed there, and by how much it changes within a window at most."""
+    length = len(transform.window)
+    amplitude, (middles, speed, swept) = np.zeros((len(transform.frequency), len(groups))), np.empty((3, len(groups)))
     for column, starts in enumerate(groups):
         low, high = int(starts[0]), int(starts[-1]) + length
         middle = int(starts[len(starts) // 2]) + length // 2
         turning = speed_Hz[low:high]
-        time[column], speed[column] = begin + step * middle, turning[middle - low]
-        swept[column] = np.max(np.abs(turning[starts - low + length - 1] - turning[starts - low])) * window_s
+        middles[column], speed[column] = middle, turning[middle - low]
+        swept[column] = np.max(np.abs(turning[starts - low + length - 1] - turning[starts - low]))
         motion = x[low:high] + 1j * y[low:high] if direction == "forward" else {"x": x, "y": y}[direction][low:high]
-        for lines in _lines(motion, starts - low, window, padded, kept):
+        for lines in _lines(motion, starts - low, transform):
             np.maximum(amplitude[:, column], lines, out=amplitude[:, column])
-    level = 20.0 * np.log10(np.maximum(amplitude / clearance, 10.0 ** (FLOOR_dB / 20.0)))
-    lost = np.maximum(0.0, -20.0 * np.log10(chirp_height(swept)))
-    return Spectrogram(time, speed, frequency[:kept], amplitude, level, window_s, lost)
+    return amplitude, middles, speed, swept
+
+
+def _check(direction: str, overlap: float) -> None:
+    if direction not in DIRECTIONS:
+        raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
+    if not 0.0 <= overlap < 1.0:
+        raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
+
+
+def _samples(window_s: float, step: float, count: int) -> int:
+    """Samples of a window. Raises InputError if it does not fit a run of `count` of them, `step` s apart."""
+    length = round(window_s / step) if np.isfinite(window_s) else 0
+    if not FEWEST <= length <= count:
+        limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
+        raise _fault("window", f"{window_s:g} s", "does not fit the run.", limits)
+    return length
 
 
 def window_length(time_s: SignalColumn, speed_Hz: SignalColumn, apart_Hz: float | None = None) -> float:
@@ -167,10 +200,9 @@ def _starts(count: int, length: int, hop: int) -> NDArray[np.int64]:
     return np.arange(first if first + length <= count else 0, count - length + 1, hop)
 
 
-def _lines(
-    motion: Values | Motion, starts: NDArray[np.int64], window: Values, padded: int, kept: int
-) -> Iterator[Values]:
-    """Peak amplitudes (kept,) of the windows of `motion` at `starts`, without their mean; `window` has the sum 1."""
+def _lines(motion: Values | Motion, starts: NDArray[np.int64], transform: _Transform) -> Iterator[Values]:
+    """Peak amplitudes (kept,) of the windows of `motion` at `starts`, without their mean."""
+    window, padded, kept = transform.window, transform.padded, len(transform.frequency)
     at_a_time = max(1, BLOCK // padded)
     for begin in range(0, len(starts), at_a_time):
         seen = np.stack([motion[start : start + len(window)] for start in starts[begin : begin + at_a_time]])

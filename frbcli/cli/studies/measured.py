@@ -28,6 +28,7 @@ class Rate(click.ParamType["float | str"]):
     name = "rate"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float | str:
+        """Samples per second, 1/s, or the name."""
         try:
             rate = float(str(value))
         except ValueError:

@@ -86,7 +86,7 @@ class SpeedCourse(EquilibriumCourse, Protocol):
 
     @property
     def pace(self) -> float:
-        """Of its machines."""
+        """The unit of speeds of its machines, rad/s."""
 
     def equations(self, y: Array) -> tuple[Array, Array]:
         """Those of a resting position y = (u, Omega / pace), see continuation.py."""

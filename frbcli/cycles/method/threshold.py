@@ -31,8 +31,8 @@ class ThresholdKind:
 
 
 def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
-    """Of a case that is stable at rest below a threshold in Hz and not above; None where it cannot be told: of films
-    whose force does not follow from the motion alone, or next to the change from one kind to the other."""
+    """What begins at the threshold in Hz of a case that is stable at rest below it; None where this is not known: for
+    films whose force does not follow from the motion alone, or next to the change from one kind to the other."""
     try:
         slowest, fastest = check(case)
         system = make_system(case, make_plan(case))

@@ -268,8 +268,8 @@ def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
 
 
 def driven_motions(machine: Machine, omega: float) -> tuple[tuple[int, Complex], ...]:
-    """Of all that drives the rotor its order k, and (c,): u of exp(i k Omega t) that it makes without films but on
-    kappa, at the speed omega in rad/s."""
+    """The order k of each load that drives the rotor, and (c,): u of exp(i k Omega t) that it makes without films but
+    on kappa, at the speed omega in rad/s."""
     sizes = [omega**2, *np.ones(len(machine.orders) - 1)]
     return tuple(
         (order, size * _moved_by(machine, 1 + number, order, omega))

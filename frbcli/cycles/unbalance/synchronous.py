@@ -55,7 +55,7 @@ class Synchronous(Follower):
         return at
 
     def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
-        """Of which none is trivial: the unbalance holds the motion in time. A 1 stands in its place."""
+        """The multipliers; none is trivial, for the unbalance holds the motion in time, and a 1 stands in its place."""
         harmonics = (len(place.y) - 2) // self.machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
         values = np.linalg.eigvals(monodromy(self.machine, self.space_at(place.y), place.y, count)).astype(complex)

@@ -182,7 +182,7 @@ class _Linearised:
 
     @cached_property
     def row(self) -> Array:
-        """Of the phase condition, which is one for the harmonics with k = 0, see phase_row of balance.py."""
+        """The row of the phase condition, one for the harmonics with k = 0, see phase_row of balance.py."""
         j, k = self.torus.orders.T
         row = packed(1j * np.where(k == 0, j, 0)[:, None] * self.reference)
         return np.asarray(row / np.linalg.norm(row))

@@ -45,7 +45,7 @@ class DynamicStiffness:
 
 
 def without_memory(stiffness: Array, damping: Array) -> DynamicStiffness:
-    """Of a film with eight coefficients, (2, 2) each."""
+    """The dynamic stiffness of a film with eight coefficients, (2, 2) each."""
     nothing = np.zeros((2, 0), dtype=complex)
     return DynamicStiffness(stiffness, damping, nothing, nothing.T, nothing.T, np.zeros(0, dtype=complex))
 

@@ -30,8 +30,9 @@ BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held
 
 @dataclass(frozen=True)
 class SolveCounts:
-    """Of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a stage;
-    pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the shell."""
+    """Counts of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a
+    stage; pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the
+    shell."""
 
     crowded: float
     quiet: float
@@ -93,7 +94,7 @@ class FilmForm:
         return 0.0
 
     def again_share(self) -> float:
-        """Of the time loop, for the run on fewer cells."""
+        """Share of the time loop that the run on fewer cells takes."""
         return 0.0
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:

@@ -54,7 +54,7 @@ class Findings:
 
 
 def findings(case: Case) -> Findings:
-    """Of a case. Raises InputError if its shaft has no modes."""
+    """What is found of a case before a run. Raises InputError if its shaft has no modes."""
     films = tuple(
         _film(case, film.name, place.geometry, load, film.omega)
         for film, place, load in zip(operating_points(case), film_places(case), static_loads(case), strict=False)

@@ -34,9 +34,9 @@ MEASURED_AT = 0.85  # largest eccentricity of the films whose errors stand here;
 
 @dataclass(frozen=True)
 class CellError:
-    """Of films of one kind. around: error of USUAL cells around, of an order; along: error by the cells along; least:
-    cells around, below which the error is a matter of chance; growth: power of the smallest gap with which the error of
-    the cells around grows."""
+    """The error of films of one kind by their cells. around: of USUAL cells around, of an order; along: by the cells
+    along; least: cells around, below which the error is a matter of chance; growth: power of the smallest gap with
+    which the error of the cells around grows."""
 
     around: float
     order: float

@@ -48,7 +48,7 @@ def heavily_loaded(case: Case) -> bool:
 
 
 def _expected(case: Case, film: FilmGeometry) -> float:
-    """Of one film, in a run-up."""
+    """The largest eccentricity that is expected of one film in a run-up."""
     profile, slender = run_up_profile(case), slenderness_of(film)
     softness = (2.0 * film.clearance / film.diameter) ** 2 / (film.width * film.diameter * case.viscosity(film))
     weight, top = softness * _weight(case), 0.5 * abs(float(profile.speeds[-1]))

@@ -75,12 +75,12 @@ class KinematicPlan:
 
     @property
     def theory(self) -> str:
-        """Of the film, or the name of its bearing model."""
+        """The theory of the film, or the name of its bearing model."""
         return self.form.theory_in_tests if self.model is None else self.model.name
 
     @property
     def label(self) -> str:
-        """Of the cavitation law, or of the bearing model."""
+        """The label of the cavitation law, or of the bearing model."""
         return label_of(self.cavitation) if self.model is None else self.model.label
 
     @property

@@ -54,7 +54,7 @@ class Shaft(ABC):
     @property
     @abstractmethod
     def mass(self) -> float:
-        """Of shaft, disks and journals, kg."""
+        """Mass of shaft, disks and journals in kg."""
 
     @property
     @abstractmethod
@@ -108,6 +108,6 @@ class Shaft(ABC):
 
 
 def symmetric_stations(positions: Array, maps: Array) -> Stations:
-    """Of a symmetric rotor; a disk in the middle where there are more places than its journals."""
+    """The stations of a symmetric rotor, with a disk in the middle where there are more places than its journals."""
     disk = (("disk", 0.5),) if len(positions) > 2 else ()
     return Stations(positions, np.asarray(maps), False, (("bearing", 0.0), *disk, ("bearing", 1.0)))

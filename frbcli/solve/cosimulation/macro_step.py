@@ -239,13 +239,11 @@ def _advance(
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
     spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
-    weights, moments, defect = tableau.stage, tableau.times, tableau.defect
+    weights, moments, defect, stages = tableau.stage, tableau.times, tableau.defect, tableau.times.shape[0]
     tolerance, stiffness = control.tolerance, control.contact_stiffness
-    stages = moments.shape[0]
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = exchange.scratch
-    responses, given, told = exchange.responses, exchange.given, exchange.told
-    turning, aside = exchange.rings, exchange.aside
+    responses, given, told, turning, scratch, aside = exchange
+    selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
     written, done = 0, 0
 

@@ -107,15 +107,13 @@ def sweep(
     """
     workers = workers or Workers()
     settings = grid(points) if isinstance(points, Mapping) else checked(points)
-    if method not in METHODS:
-        raise _refuse("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
+    _check_method(method)
     check_workers(workers)
-    cases = [_case(case, chosen) for chosen in settings]
-    if isinstance(cases[0], InputError) and not any(isinstance(each, Case) for each in cases):
-        raise cases[0]
+    cases = _cases(case, settings)
     _check_models(cases, workers)
     folder = Path(directory).absolute()
-    _make(folder / RUNS if keep_runs and method == "runup" else folder)
+    runs = folder / RUNS if keep_runs and method == "runup" else None
+    _make(runs or folder)
     log = folder / LOG
     with locked(log):
         found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
@@ -126,18 +124,41 @@ def sweep(
             if observe is not None:
                 observe(point, len(found), len(settings))
 
-        tasks: list[Task] = []
-        for number, (chosen, its_case) in enumerate(zip(settings, cases, strict=True), 1):
-            if number in found:
-                continue
-            if isinstance(its_case, InputError):
-                take(SweepPoint(number, chosen, INPUT_ERROR, one_line(its_case)))
-                continue
-            run = folder / RUNS / f"{number:0{max(3, len(str(len(settings))))}d}.h5"
-            tasks.append(Task(number, chosen, its_case, method, run if keep_runs and method == "runup" else None))
-        _compute(tasks, workers, take)
-    missing = {n: SweepPoint(n, chosen, INTERRUPTED) for n, chosen in enumerate(settings, 1) if n not in found}
-    return Sweep(case, method, tuple(point for _, point in sorted((missing | found).items())))
+        missing = [number for number in range(1, len(settings) + 1) if number not in found]
+        _compute(_tasks(missing, settings, cases, method, runs, take), workers, take)
+    numbered = enumerate(settings, 1)
+    return Sweep(case, method, tuple(found.get(n, SweepPoint(n, chosen, INTERRUPTED)) for n, chosen in numbered))
+
+
+def _cases(case: Case, settings: Sequence[Settings]) -> list[Case | InputError]:
+    """The cases of all points, or why they cannot be modelled. Raises InputError if none can."""
+    cases = [_case(case, chosen) for chosen in settings]
+    if isinstance(cases[0], InputError) and not any(isinstance(each, Case) for each in cases):
+        raise cases[0]
+    return cases
+
+
+def _check_method(method: str) -> None:
+    if method not in METHODS:
+        raise _refuse("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
+
+
+def _tasks(
+    numbers: Sequence[int], settings: Sequence[Settings], cases: Sequence[Case | InputError], method: str,
+    runs: Path | None, take: Callable[[SweepPoint], None],
+) -> list[Task]:  # fmt: skip
+    """The points of these numbers, from 1, that can be computed; the others are given to `take`. runs: folder of the
+    runs, None where they are not kept."""
+    tasks: list[Task] = []
+    digits = max(3, len(str(len(settings))))
+    for number in numbers:
+        chosen, its_case = settings[number - 1], cases[number - 1]
+        if isinstance(its_case, InputError):
+            take(SweepPoint(number, chosen, INPUT_ERROR, one_line(its_case)))
+        else:
+            run = None if runs is None else runs / f"{number:0{digits}d}.h5"
+            tasks.append(Task(number, chosen, its_case, method, run))
+    return tasks
 
 
 def _compute(tasks: Sequence[Task], workers: Workers, take: Callable[[SweepPoint], None]) -> None:
