@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
@@ -10,7 +11,6 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import (
     Density,
-    Pressure,
     Quantity,
     SpecificHeat,
     Temperature,
@@ -18,6 +18,7 @@ from frbcli.case.quantities import (
     ThermalConductivity,
     Viscosity,
 )
+from frbcli.case.surroundings.over_time import is_over_time
 from frbcli.materials.oils import OILS, OilGrade, conductivity, density, heat_capacity
 from frbcli.materials.viscosity import VogelLaw
 from frbcli.units import NUMBER, ValueFault, quantity
@@ -27,6 +28,21 @@ USUAL_TEMPERATURE = 353.15  # K: 80 degC, of the density of a grade where no tem
 USUAL_DENSITY = 850.0
 
 GradeName: Any = Literal[tuple(OILS)]
+
+
+@dataclass(frozen=True)
+class _Constant(Quantity):
+    """A quantity that a table over time cannot give."""
+
+    def read(self, given: object) -> float:
+        """See Quantity."""
+        if is_over_time(given):
+            problem = "changes over time, and the pressures of all films count from one that stays."
+            raise ValueFault(problem, "Give one pressure; that of a supply may change over time.")
+        return super().read(given)
+
+
+ReferencePressure = Annotated[float, _Constant("Pa", "1 bar", above=0)]
 
 
 class Vogel(Model):
@@ -79,8 +95,8 @@ class Oil(Model):
     conductivity: ThermalConductivity | None = Field(
         default=None, description="thermal; if not given, that of a petroleum oil of this density"
     )
-    ambient_pressure: Pressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
-    cavitation_pressure: Pressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
+    ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
+    cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
 
     @model_validator(mode="before")
     @classmethod

@@ -58,6 +58,12 @@ def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str
         assert expected in captured.out
 
 
+def test_check_refuses_a_table_that_ends_before_the_run(capsys: pytest.CaptureFixture[str]) -> None:
+    table = 'bearing.supply.pressure=[["0 s", "1 bar"], ["2 s", "3 bar"]]'
+    assert run(["check", "jeffcott", "--set", "film.theory=short", "--set", table]) == 2
+    assert "ends at 2 s, and the run ends at 10 s" in " ".join(capsys.readouterr().err.split())
+
+
 @pytest.mark.usefixtures("_planned")
 def test_check_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert run(["check", "jeffcott", "--json", "--quiet"]) == 0

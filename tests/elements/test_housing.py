@@ -206,6 +206,72 @@ def test_modes_with_masses_are_orthonormal_and_have_the_weight() -> None:
         case.with_settings({"housing.modes": turned})
 
 
+# ------------------------------------------------------------------------------------------------- a table of modes
+
+TABLE = """frequency_Hz,damping,left_x,left_y,right_x,right_y
+80,0.02,0.5,0,0,0
+85.3,0.01,0,0.5,0,0
+91,0,0,0,0.3333333333333333,0
+99.7,0.03,0,0,0,0.3333333333333333
+"""
+LUMPS = {"left": "4 kg", "right": "9 kg"}
+
+
+def from_table(folder: Path, text: str, **keys: object) -> frbcli.Case:
+    (folder / "modes.csv").write_text(text, encoding="utf-8")
+    return case_from_dict(SHAFT | {"housing": {"file": "modes.csv", **keys}}, "table", folder=folder)
+
+
+def test_modes_out_of_a_table_are_those_that_stand_in_the_case(tmp_path: Path) -> None:
+    """Bit for bit: matrices, eigenvalues and a run, also of the case that the run keeps."""
+    rows = [line.split(",") for line in TABLE.splitlines()[1:]]
+    modes = [{"frequency": f"{row[0]} Hz", "damping": float(row[1]),
+              "at": {"left": [float(each) for each in row[2:4]], "right": [float(each) for each in row[4:]]}}
+             for row in rows]  # fmt: skip
+    inline = case_from_dict(SHAFT | {"housing": {"modes": modes, "masses": LUMPS}}, "table")
+    table = from_table(tmp_path, TABLE, masses=LUMPS)
+    assert table.same_run(inline)
+    for one, other in zip(stability(inline, [80.0]).points, stability(table, [80.0]).points, strict=True):
+        np.testing.assert_array_equal(other.eigenvalues, one.eigenvalues)
+    short = {"speed.duration": "20 ms"}
+    runs = [runup(case.with_settings(short), tmp_path / f"{i}.h5") for i, case in enumerate((inline, table))]
+    for name in runs[0].signals:
+        np.testing.assert_array_equal(runs[1][name], runs[0][name], strict=True)
+    assert load_case_text(table.source_text, name="table") == table
+
+
+BAD_TABLES = {
+    "orthonormal": (TABLE.replace("91,0,0,0,0.33", "91,0,0,0,0.4"), {"masses": LUMPS}, "in place of 1"),
+    "half a place": (TABLE.replace(",right_y", ""), {}, "has 6 values in row 1"),
+    "no y": ("frequency_Hz,left_x,right_x\n80,1,1\n", {}, "lacks left_y, right_y"),
+    "no frequency": (TABLE.replace("frequency_Hz", "mode"), {}, "lacks frequency_Hz"),
+    "unknown column": (TABLE.replace("damping", "zeta"), {}, '"zeta", which is not known'),
+    "twice": (TABLE.replace("left_y", "left_x"), {}, '"left_x" twice'),
+    "no number": (TABLE.replace("85.3", "nan"), {}, "no finite number"),
+    "no rows": (TABLE.splitlines()[0], {}, "has 0 modes"),
+    "empty": ("", {}, "is empty"),
+    "beside modes": (TABLE, {"modes": [{"frequency": "80 Hz", "at": {"left": [1.0, 0.0], "right": [0.0, 0.0]}}]},
+                     "beside modes"),
+    "a bearing left out": ("frequency_Hz,left_x,left_y\n80,1,0\n", {}, "no displacement at right"),
+    "beside a rigid housing": (TABLE, {"mass": "3 kg"}, "beside modes"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("given", BAD_TABLES.values(), ids=BAD_TABLES.keys())
+def test_bad_tables_of_modes_are_one_fault(given: tuple[str, dict[str, Any], str], tmp_path: Path) -> None:
+    text, keys, problem = given
+    with pytest.raises(InputError) as caught:
+        from_table(tmp_path, text, **keys)
+    (fault,) = caught.value.faults
+    assert problem in fault.problem
+    assert fault.remedy
+
+
+def test_a_table_of_modes_that_is_not_there_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="names no file"):
+        case_from_dict(SHAFT | {"housing": {"file": "none.csv"}}, "table", folder=tmp_path)
+
+
 # ---------------------------------------------------------------------------------------------------------- in runs
 
 

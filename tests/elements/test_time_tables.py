@@ -126,11 +126,13 @@ def row(place: int, **values: float) -> tuple[Any, ...]:
 
 
 GAP = np.concatenate([TIMES[:20], TIMES[30:]])
+UNEVEN = np.cumsum(np.where(np.arange(40) == 25, 0.05, 1e-3 * (1.0 + 0.5 * np.sin(np.arange(40.0)))))
 FAULTS: dict[str, tuple[tuple[Any, ...], str, str]] = {
     "falling time": (row(7, t=0.001), "time,x,y", "row 8"),
     "equal times": (row(7, t=TIMES[6]), "time,x,y", "row 8"),
     "not a number": (row(4, x=np.nan), "time,x,y", "no number in row 5"),
     "gap": ((GAP, GAP, GAP), "time,x,y", "gap of 0.0275 s before row 21"),
+    "gap of an uneven table": ((UNEVEN, UNEVEN, 0.0 * UNEVEN), "time,x,y", "gap of 0.05 s before row 26"),
     "no time": (row(0), "a,x,y", 'no column "time"'),
     "which column": (row(0), "time,left,right", "no columns of the values"),
     "unit": (row(0), "time,x [mm],y [mm]", '"mm" as unit'),
@@ -145,6 +147,12 @@ def test_bad_tables_are_refused_with_their_row(given: tuple[tuple[Any, ...], str
         machine(tmp_path, written(tmp_path, *columns, head=head))
     (fault,) = caught.value.faults
     assert (fault.key, problem in fault.problem, bool(fault.remedy)) == ("force.0.file", True, True), fault
+
+
+def test_a_long_interval_between_equal_values_is_no_gap(tmp_path: Path) -> None:
+    """A recorder that writes a row where its value has changed."""
+    held = np.arange(40.0) - (np.arange(40) >= 25)
+    assert machine(tmp_path, written(tmp_path, UNEVEN, held, held)).forces[0].over_time is not None
 
 
 @pytest.mark.parametrize("keys", [{"order": 2.0}, {"frequency": "5 Hz"}, {"rotating": True}, {"phase": "10 deg"}])

@@ -182,6 +182,8 @@ FAULTS = {
     "beside": (['bearing.supply.pressure={ file = "none.csv", unit = "bar" }'], "beside other keys"),
     "too hot": ([*HEAT, supplied((0, "20 degC"), (20, "400 degC"))], "not below thermal.hottest_film"),
     "without heat": ([*HEAT, "thermal.model=none", supplied((0, "20 degC"), (20, "40 degC"))], "without heat"),
+    "pressure of the air": ([f"oil.ambient_pressure={points((0, '1 bar'), (20, '0.8 bar'))}"], "from one that stays"),
+    "cavitation pressure from a file": (['oil.cavitation_pressure={ file = "none.csv" }'], "from one that stays"),
     "wall without heat": ([f"bearing.housing={points((0, '20 degC'), (20, '40 degC'))}"], "no effect without heat"),
 }
 

@@ -9,9 +9,10 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from frbcli.case.files.coefficient_files import with_coefficient_files
+from frbcli.case.files.housing_modes import with_housing_file
 from frbcli.case.model import Model
 from frbcli.case.reading import lines
-from frbcli.case.reading.coefficient_files import with_coefficient_files
 from frbcli.case.reading.ross import with_rotor_file
 from frbcli.case.reading.settings import with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
@@ -192,9 +193,10 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, unread = with_rotor_file(data, Path(folder))
     data, unknown = with_coefficient_files(data, Path(folder))
     data, unfit = with_time_tables(data, Path(folder))
+    data, no_modes = with_housing_file(data, Path(folder))
     data, wrong = with_speed_points(data, Path(folder))
     data, unread_inputs = with_input_files(data, Path(folder))
-    unfit += [*wrong, *unread_inputs]
+    unfit += [*wrong, *unread_inputs, *no_modes]
     case, found = _validate(data)
     files = {breach.path[:-1] for breach in unread_inputs}
     found = [breach for breach in found if breach.path not in files]

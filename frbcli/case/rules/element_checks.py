@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from frbcli.case.elements import EMPTY_MATRIX
-from frbcli.case.reading.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
+from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
 

@@ -9,7 +9,7 @@ from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchema
 from pydantic_core import CoreSchema
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Fraction, Identifier, Position, Quantity, RingInertia, ShellMass
+from frbcli.case.quantities import Fraction, Identifier, Label, Position, Quantity, RingInertia, ShellMass
 from frbcli.case.surroundings.support import DIRECTIONS, Dampings, Stiffnesses
 from frbcli.units import NUMBER, SPEED
 
@@ -80,6 +80,10 @@ class Housing(Model):
     position: Position | None = Field(default=None, description="of its centre of mass along the shaft, as `inertia`")
     mounts: tuple[Mount, ...] = Field(default=(), description="what holds a rigid housing")
     modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing, in place of all these keys")
+    file: Label = Field(
+        default="", description="in place of `modes`: a CSV with a row for each mode and the columns frequency_Hz, "
+        "damping, and left_x, left_y and so on by places; from the case's folder",
+    )  # fmt: skip
     masses: Annotated[tuple[MassAt, ...], _listed("mass"), _ByPlace()] = Field(
         default=(),
         description="all masses of an elastic housing by their places, each with a unit: modes are then "

@@ -6,7 +6,7 @@ The case gets the numbers in place of the key `file`, so that a run has all that
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -25,7 +25,8 @@ if TYPE_CHECKING:
 MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds
 TIMES, RATES = ("t", "time", "zeit"), ("fs", "rate", "sampling_rate", "sample_rate")
 EVEN, MOSTLY = 0.01, 0.9  # share by which steps of time may differ, and share of them from which a table is even
-FEWEST_EVEN = 20  # rows
+FEWEST_EVEN = 20  # rows of a table in which gaps are sought
+SPARSE = 10.0  # times the interval that most rows of an uneven table do not exceed: a gap
 SUFFIX = re.compile(r"(.+)_([A-Za-z0-9]+)")  # of names such as time_s, as frb export writes them
 
 
@@ -100,7 +101,7 @@ def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[
     if longest * len(found) > most:
         problem = f"has {longest} rows of {len(found)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
         raise Unfit(problem, "Cut it, or sample it at fewer times.")
-    _check_times(columns, time)
+    _check_times(columns, time, list(values.values()))
     return {name: column.tolist() for name, column in found.items()}
 
 
@@ -120,7 +121,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     except InputError as error:
         (fault,) = error.faults
         raise Unfit(fault.problem, fault.remedy) from None
-    _check_times(columns, time)
+    _check_times(columns, time, [signal])
     try:
         speed = tacho_speed(time, signal, pulses)
     except ValueError as error:
@@ -196,8 +197,9 @@ def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
         raise Unfit(problem, f"Give it in {si} or a unit like it.") from None
 
 
-def _check_times(columns: Columns, time: Values) -> None:
-    """Times rise, and a table of even steps has no gap."""
+def _check_times(columns: Columns, time: Values, values: Sequence[Values]) -> None:
+    """Times rise, and the table has no gap: no missing rows among even ones, and among uneven ones no interval that is
+    much longer than most and across which a line would make up the values."""
     import numpy as np
 
     if len(time) < 2:
@@ -207,12 +209,27 @@ def _check_times(columns: Columns, time: Values) -> None:
         row = int(np.argmin(steps > 0.0)) + 1
         problem = f"has the time {time[row]:.6g} s in {columns.row(row)}, not later than the row before."
         raise Unfit(problem, "Order its rows by rising times, each once.")
+    if len(time) < FEWEST_EVEN:
+        return
     usual = float(np.median(steps))
     even = np.abs(steps - usual) <= EVEN * usual
-    if len(time) >= FEWEST_EVEN and not np.all(even) and np.mean(even) >= MOSTLY and steps.max() > 1.5 * usual:
-        row = int(np.argmax(steps > 1.5 * usual)) + 1
-        problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; other rows are {usual:.4g} s apart."
+    if np.mean(even) >= MOSTLY:
+        wide, others = steps > 1.5 * usual, f"other rows are {usual:.4g} s apart"
+    else:
+        most = float(np.quantile(steps, MOSTLY))
+        wide = (steps > SPARSE * most) & _differ(values)
+        others = f"most rows are at most {most:.4g} s apart, and the values on both sides differ"
+    if np.any(wide):
+        row = int(np.argmax(wide)) + 1
+        problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; {others}."
         raise Unfit(problem, "Fill the gap, or cut the table there.")
+
+
+def _differ(values: Sequence[Values]) -> Any:
+    """Whether values of neighbouring rows differ, by more than a small share of the range of their column."""
+    import numpy as np
+
+    return np.any([np.abs(np.diff(each)) > EVEN * np.ptp(each) for each in values], axis=0)
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,6 @@ all that it was made of.
 
 from __future__ import annotations
 
-import csv
 import itertools
 import json
 import math
@@ -16,11 +15,10 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.elements import AXES
-from frbcli.case.quantities import LARGEST
+from frbcli.case.files.number_table import Columns, Refused, finite, number_table, text_of
 from frbcli.case.reading.tables import Breach, tables
 from frbcli.case.reading.toml import TomlFault, parse
 
-LARGEST_FILE = 4_194_304  # bytes
 MOST_SPEEDS = 2000
 SPEED = "speed_Hz"
 UNITS = {"k": "N/m", "c": "N*s/m", "m": "kg"}
@@ -29,14 +27,6 @@ MASSES = tuple(f"m{axes}" for axes in AXES)
 BEARINGS = ("BearingElement", "SealElement")
 COLUMNS = f"Give the columns {SPEED}, {', '.join(REQUIRED)}, and perhaps {', '.join(MASSES)}."
 WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or as .csv."
-SI = "Correct it; values are in SI units."
-
-Columns = dict[str, list[float]]
-
-
-class _Refused(Exception):
-    """Problem and remedy of a file that cannot be read."""
-
 
 def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
     """The tables of a case with the numbers of each bearing's `file` in place of that key, and the faults.
@@ -56,7 +46,7 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
             continue
         try:
             columns = _checked(_read(folder / name))
-        except _Refused as fault:
+        except Refused as fault:
             found.append(Breach(key, *fault.args))
             continue
         kept = {other: value for other, value in bearing.items() if other != "file"}
@@ -76,36 +66,13 @@ def _with_units(columns: Columns) -> dict[str, list[str]]:
 
 
 def _read(path: Path) -> Columns:
-    try:
-        if not path.is_file():
-            raise _Refused("names no file.", "Give its path from the folder of the case.")
-        if path.stat().st_size > LARGEST_FILE:
-            raise _Refused(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", "Name a file of coefficients.")
-        text = path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise _Refused(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
-    except ValueError:
-        raise _Refused("is no UTF-8 text.", WRITE) from None
-    return _of_table(text) if path.suffix.lower() == ".csv" else _of_ross(text, path.suffix.lower() == ".json")
-
-
-def _of_table(text: str) -> Columns:
-    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
-    if not rows:
-        raise _Refused("is empty.", COLUMNS)
-    names = [cell.strip() for cell in rows[0]]
-    unknown = [name for name in names if name not in (SPEED, *REQUIRED, *MASSES)]
+    text = text_of(path, "a file of coefficients", WRITE)
+    if path.suffix.lower() != ".csv":
+        return _of_ross(text, path.suffix.lower() == ".json")
+    columns = number_table(text, COLUMNS)
+    unknown = [name for name in columns if name not in (SPEED, *REQUIRED, *MASSES)]
     if unknown:
-        raise _Refused(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
-    if len(set(names)) < len(names):
-        twice = next(name for name in names if names.count(name) > 1)
-        raise _Refused(f'has the column "{twice}" twice.', COLUMNS)
-    columns: Columns = {name: [] for name in names}
-    for number, row in enumerate(rows[1:], start=1):
-        if len(row) != len(names):
-            raise _Refused(f"has {len(row)} values in row {number} of numbers, not {len(names)}.", "Complete the row.")
-        for name, cell in zip(names, row, strict=True):
-            columns[name].append(_number(cell, name, number))
+        raise Refused(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
     return columns
 
 
@@ -114,14 +81,14 @@ def _of_ross(text: str, is_json: bool) -> Columns:
         data = json.loads(text) if is_json else parse(text)
     except TomlFault as error:
         where = "" if error.fault.line is None else f" in line {error.fault.line}"
-        raise _Refused(f"is no TOML{where}: it {error.fault.problem}", WRITE) from None
+        raise Refused(f"is no TOML{where}: it {error.fault.problem}", WRITE) from None
     except (ValueError, RecursionError):
-        raise _Refused("is no JSON.", WRITE) from None
+        raise Refused("is no JSON.", WRITE) from None
     items = data.items() if isinstance(data, dict) else ()
     elements = [(name, item) for name, item in items if name.startswith(BEARINGS) and isinstance(item, dict)]
     if len(elements) != 1:
         told = "no bearing" if not elements else f"{len(elements)} bearings"
-        raise _Refused(f"holds {told}, not one.", WRITE)
+        raise Refused(f"holds {told}, not one.", WRITE)
     name, element = elements[0]
     given = element.get("frequency")
     columns: Columns = {}
@@ -131,7 +98,7 @@ def _of_ross(text: str, is_json: bool) -> Columns:
     if given is None and all(len(values) == 1 for values in columns.values()):
         columns[SPEED] = [0.0]  # constant
     elif given is None:
-        raise _Refused(f'lacks "frequency" in "{name}".', WRITE)
+        raise Refused(f'lacks "frequency" in "{name}".', WRITE)
     else:
         columns[SPEED] = [value / (2.0 * math.pi) for value in _numbers(given, "frequency")]
     return columns
@@ -139,20 +106,7 @@ def _of_ross(text: str, is_json: bool) -> Columns:
 
 def _numbers(given: object, name: str) -> list[float]:
     values = given if isinstance(given, list) else [given]
-    return [_number(value, name, number) for number, value in enumerate(values, start=1)]
-
-
-def _number(given: object, name: str, row: int) -> float:
-    """A finite number that a case would take."""
-    try:
-        if isinstance(given, bool) or not isinstance(given, str | int | float):
-            raise ValueError
-        value = float(given)
-    except (ValueError, OverflowError):
-        raise _Refused(f'has no number as {row}. value of "{name}".', SI) from None
-    if not math.isfinite(value) or abs(value) > LARGEST:
-        raise _Refused(f'has a {row}. value of "{name}" that is no finite number within {LARGEST:g}.', SI)
-    return value
+    return [finite(value, name, number) for number, value in enumerate(values, start=1)]
 
 
 def _checked(columns: Columns) -> Columns:
@@ -162,15 +116,15 @@ def _checked(columns: Columns) -> Columns:
     if some:
         missing += [name for name in MASSES if name not in columns]
     if missing:
-        raise _Refused(f"lacks {', '.join(missing)}.", COLUMNS)
+        raise Refused(f"lacks {', '.join(missing)}.", COLUMNS)
     count = len(columns[SPEED])
     if not 1 <= count <= MOST_SPEEDS:
-        raise _Refused(f"has {count} speeds.", f"Give 1 to {MOST_SPEEDS}.")
+        raise Refused(f"has {count} speeds.", f"Give 1 to {MOST_SPEEDS}.")
     for name, values in columns.items():
         if len(values) != count:
-            raise _Refused(f'has {len(values)} values of "{name}" at {count} speeds.', "Give one at each speed.")
+            raise Refused(f'has {len(values)} values of "{name}" at {count} speeds.', "Give one at each speed.")
     if problem := over_speed_problem(columns[SPEED], [columns[name] for name in MASSES] if some else ()):
-        raise _Refused(problem, "Give each speed once, in ascending order, and a mass that is not negative.")
+        raise Refused(problem, "Give each speed once, in ascending order, and a mass that is not negative.")
     return columns
 
 

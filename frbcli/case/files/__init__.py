@@ -1,0 +1,1 @@
+"""Files that a case names: their numbers take the place of the key `file`."""

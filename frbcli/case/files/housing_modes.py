@@ -1,0 +1,62 @@
+"""The modes of a housing out of a table, as a finite element program lists them: one row for each mode.
+
+The case gets the modes in place of the key `file`, so that a run has all that it was made of.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.files.number_table import Columns, Refused, number_table, text_of
+from frbcli.case.reading.tables import Breach, table
+
+KEY = ("housing", "file")
+FREQUENCY, DAMPING = "frequency_Hz", "damping"
+AXES = ("_x", "_y")
+MOST_MODES = 200
+COLUMNS = (
+    f"Give the columns {FREQUENCY}, {DAMPING}, and for each bearing and place NAME_x and NAME_y in 1/sqrt(kg), e.g. "
+    "left_x, left_y."
+)
+FILE = "a table of modes"
+
+
+def with_housing_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
+    """The tables of a case with the modes of housing.file in place of that key, and the faults.
+
+    folder: that a relative path counts from. With faults the tables are returned unchanged.
+    """
+    housing = table(data, "housing")
+    name = housing.get("file")
+    if not isinstance(name, str) or not name:
+        return data, []
+    if "modes" in housing:
+        return data, [Breach(KEY, "is given beside modes.", "Keep one of the two.")]
+    try:
+        modes = _modes(number_table(text_of(folder / name, FILE, COLUMNS), COLUMNS))
+    except Refused as fault:
+        return data, [Breach(KEY, *fault.args)]
+    kept = {key: value for key, value in housing.items() if key != "file"}
+    return data | {"housing": {**kept, "modes": modes}}, []
+
+
+def _modes(columns: Columns) -> list[dict[str, Any]]:
+    """The modes as a case file has them. Raises Refused."""
+    places = list(dict.fromkeys(name[:-2] for name in columns if name.endswith(AXES)))
+    wanted = [FREQUENCY, *(f"{place}{axis}" for place in places for axis in AXES)]
+    if missing := [name for name in wanted if name not in columns]:
+        raise Refused(f"lacks {', '.join(missing)}.", COLUMNS)
+    if unknown := [name for name in columns if name not in (*wanted, DAMPING)]:
+        raise Refused(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
+    count = len(columns[FREQUENCY])
+    if not 1 <= count <= MOST_MODES:
+        raise Refused(f"has {count} modes.", f"Give 1 to {MOST_MODES}, a row each.")
+    return [
+        {
+            "frequency": f"{columns[FREQUENCY][row]!r} Hz",
+            "damping": columns.get(DAMPING, [0.0] * count)[row],
+            "at": {place: [columns[f"{place}{axis}"][row] for axis in AXES] for place in places},
+        }
+        for row in range(count)
+    ]
