@@ -45,6 +45,7 @@ WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one 
 SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies sooner is a transient
 
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
+COLLAR_FILM, COLLAR_TOUCHES = "thrust_film_thickness_m", 1e-6 * (1.0 + 1e-9)  # m: the roughness of surfaces
 CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
 TOUCHES, LIFTED = 0.01, 0.001  # share of the force from which asperities count as touching, and below which as apart
 
@@ -130,11 +131,12 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     named = list(signals.films(run.signals))
     last = {film: signals.piece(run, joined("eccentricity", film), len(run) - 1, len(run))[0] for film in named}
     touching = max(named, key=lambda film: float(last[film]), default="")
+    on_pads = list(_collar_contact(run))
     for film in named:
-        events += _contacts(run, film, run.status == "contact" and film == touching)
+        events += _contacts(run, film, run.status == "contact" and film == touching and not on_pads)
         events += _touches(run, film)
     changes = _clearance_steps(run)  # before their consequences at the same time
-    return tuple(sorted([*changes, *events], key=lambda event: event.t_s))
+    return tuple(sorted([*changes, *events, *on_pads], key=lambda event: event.t_s))
 
 
 def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
@@ -255,6 +257,17 @@ def _at_even_angles(run: RunLike, name: str, times_s: Values) -> Motion:
     times = np.interp(steps, np.arange(len(times_s)), times_s)
     seen = np.asarray(np.interp(times, time_s, motion))
     return np.where(np.interp(times, time_s, speed) < 0.0, np.conj(seen), seen)
+
+
+def _collar_contact(run: RunLike) -> Iterator[Event]:
+    """The end of a run whose collar touches its pads: its last sample."""
+    if run.status != "contact" or COLLAR_FILM not in run.signals:
+        return
+    thickness, t, speed = (
+        float(signals.piece(run, name, len(run) - 1, len(run))[0]) for name in (COLLAR_FILM, "time_s", "speed_Hz")
+    )
+    if thickness <= COLLAR_TOUCHES:
+        yield Event("contact", None, t, speed, None, None, point="collar")
 
 
 def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:

@@ -19,6 +19,7 @@ from frbcli.analysis.signals import films
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import Fault, FrbError, InputError, printable
+from frbcli.plot.axial import axial_figure
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
 from frbcli.plot.run.film_signals import film_signal_figure
@@ -243,6 +244,8 @@ def _courses(run: Run) -> list[ShownRun]:
         figures.append((oil_content_figure([run]), "Oil fraction of the films."))
     if any(name.startswith("temperature") for name in run.signals):
         figures.append((heat_figure([run]), "Temperatures, viscosities, losses and side flows."))
+    if any(name.startswith("axial") for name in run.signals):
+        figures.append((axial_figure([run]), "Axial position, films and loss of the thrust bearing."))
     for kind, (quantity, _, _) in FILM_SIGNALS.items():
         if any(name.startswith(quantity) for name in run.signals):
             words = quantity.replace("_", " ")

@@ -60,7 +60,14 @@ EVENTS = (
 )  # fmt: skip
 
 # Signals of a run, by the quantities of their names
-MACHINE_SIGNALS = (Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"))
+AXIAL_SIGNALS = (
+    Column("axial_position", "m", "axial position of the collar of a thrust bearing",
+           more="from the middle of the end play, or from the pads of its only side"),
+    Column("thrust_film_thickness", "m", "smallest thickness of its films",
+           more="the gap over the lands less what the tilt of the collar takes at its rim"),
+    Column("thrust_loss", "W", "power that it puts into them"),
+)  # fmt: skip
+MACHINE_SIGNALS = (Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"), *AXIAL_SIGNALS)
 # Those of one of several films, bearings or disks have its name behind the quantity: eccentricity_inner, disk_left_x_m
 PART_SIGNALS = (
     Column("eccentricity", "", "relative eccentricity of a journal"),

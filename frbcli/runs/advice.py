@@ -12,6 +12,7 @@ import numpy as np
 
 from frbcli.analysis.signals import films, joined
 from frbcli.case.schema import Case
+from frbcli.elements.thrust import COLLAR
 from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
@@ -39,7 +40,7 @@ FINER, SMALLER = 4.0, 0.7  # divisor of the target; error of the cells, if that 
 class RunEnd:
     """The end of a run: speed in Hz; film: the name of that with the largest eccentricity, which is given; step: the
     last one in s that was tried, None if not known; whirl: the latest onset in it, an event of the run, or None;
-    hot_film: the name of a film that became too hot."""
+    hot_film: the name of a film that became too hot; on_pads: whether a collar touched its pads."""
 
     status: str
     t_s: float
@@ -49,6 +50,7 @@ class RunEnd:
     step_s: float | None
     whirl: dict[str, Any] | None
     hot_film: str = ""
+    on_pads: bool = False
 
     @property
     def journal(self) -> str:
@@ -71,6 +73,7 @@ def run_end(run: Run) -> RunEnd:
         step_s=None if numbers is None else float(numbers[STEP]),
         whirl=whirls[-1] if whirls and whirls[-1]["kind"] == "onset" else None,
         hot_film=hot_film(run.signals, run.checkpoint or {}),
+        on_pads=any(event["kind"] == "contact" and event.get("point") == COLLAR for event in run.events),
     )
 
 
@@ -137,6 +140,9 @@ def _overheated(case: Case, end: RunEnd) -> tuple[str, ...]:
 def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:
     if closed := _closed_shell(case, end):
         return (closed,)
+    if end.on_pads:
+        touched = f"The collar of the thrust bearing touched its pads at {end.speed_Hz:.4g} Hz{_while(end)}"
+        return (f"{touched}: its tilt and the axial load left less than the roughness of surfaces.",)
     limit = f"contact.eccentricity = {case.contact.eccentricity:g}"
     touched = f"The {end.journal} reached the shell at {end.speed_Hz:.4g} Hz ({limit})"
     through = () if case.contact.gives_way else (_through_contact(case),)

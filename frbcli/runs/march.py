@@ -6,6 +6,7 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -51,6 +52,9 @@ from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 from frbcli.solve.watched import NOTES, Notes, advance_watched
 
+if TYPE_CHECKING:
+    from frbcli.runs.axis import RunAxis
+
 BUFFER = 4096  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
 FIRST_BUDGET, BUDGET, GROWTH = 4, 5000, 8.0
@@ -90,6 +94,8 @@ class March:
         self._segments = [segment for segment in segments if segment.start < profile.end]
         self._profile = profile.with_stops(segment.start for segment in self._segments)
         self._inputs = RunInputs.of(case, segments[0].system)
+        self._axis = None if case.axial is None else _axis_of(case, self._profile)
+        self._touched: float | None = None  # time in s at which a collar touches its pads
         self._take_up(0)
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
@@ -175,7 +181,7 @@ class March:
     @property
     def time(self) -> float:
         """Time reached, s."""
-        return float(self._state.numbers[TIME])
+        return float(self._state.numbers[TIME]) if self._touched is None else self._touched
 
     @property
     def starves(self) -> bool:
@@ -220,6 +226,10 @@ class March:
             status = STUCK
         if status == RUNNING and not self._system.names and self._grown() > UNBOUNDED:
             status = STUCK
+        touch = None if self._axis is None else self._axis.touch(signals)
+        if touch is not None:
+            status, self._touched = CONTACT, float(times[touch])
+            signals = {name: values[: touch + 1] for name, values in signals.items()}
         return status, signals
 
     def _grown(self) -> float:
@@ -246,6 +256,7 @@ class March:
         samples = Samples(times, q, v, self._out_noted[: len(times)])
         kinds, warm = recorded(self._case), self._numbers(times)
         signals |= self._inputs.signals(times)
+        signals |= {} if self._axis is None else self._axis.signals(times, q)
         return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 
     def _numbers(self, times: Array) -> FilmNumbers | None:
@@ -338,3 +349,10 @@ class March:
             cpu_s=self._cpu_s,
             over_plan=self._cpu_s / max(self._expected.cpu_s * self._course.share(t), 1e-9),
         )
+
+
+def _axis_of(case: Case, profile: SpeedProfile) -> RunAxis | None:
+    """The axis of a run under an axial load."""
+    from frbcli.runs.axis import RunAxis  # films on pads take a second to import
+
+    return RunAxis.of(case, profile)

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 LAW = "law"  # of a case, the others of runs
 FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow")  # of output.signals
-CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", *FILM_SIGNALS)
+CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", *FILM_SIGNALS)
 SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
 
 
@@ -113,6 +113,7 @@ def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: 
 def _figure(
     what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, signal: str | None
 ) -> Picture:
+    from frbcli.plot.axial import axial_figure
     from frbcli.plot.run.displacement import displacement_figure
     from frbcli.plot.run.eccentricity import eccentricity_figure
     from frbcli.plot.run.film_signals import film_signal_figure
@@ -130,5 +131,6 @@ def _figure(
         return displacement_figure(runs, signal, *span)
     if what in FILM_SIGNALS:
         return film_signal_figure(runs, what, *span, over)
-    known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure}
+    known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure,
+             "axial": axial_figure}  # fmt: skip
     return known.get(what, eccentricity_figure)(runs, *span, over)

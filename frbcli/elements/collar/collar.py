@@ -56,8 +56,8 @@ class NotCarried(NotConverged):
 class CollarRest:
     """A collar at rest at one speed. omega: rad/s; load: on the rotor, towards larger positions, N; gap: over the lands
     on the side that it presses on, m; torque: that resists the rotation, N m; stiffness in N/m, damping in N s/m:
-    axial; tilt_stiffness, tilt_damping: (2, 2) over x and y, in N m and N m s per rad; viscosity in Pa s and
-    temperature in K of the loaded side."""
+    axial; tilt_stiffness, tilt_damping: (2, 2) over x and y, in N m and N m s per rad; viscosities: in Pa s, of the
+    loaded side and of the other one."""
 
     omega: float
     load: float
@@ -67,17 +67,15 @@ class CollarRest:
     damping: float
     tilt_stiffness: Floats
     tilt_damping: Floats
-    viscosity: float
-    temperature: float | None
+    viscosities: tuple[float, ...]
 
 
 @dataclass(frozen=True)
 class _Side:
-    """The pads of one side at a gap: films, viscosity in Pa s, temperature in K."""
+    """The pads of one side at a gap: films, and viscosity in Pa s."""
 
     films: ScaledPads
     viscosity: float
-    temperature: float | None
 
 
 @dataclass(frozen=True)
@@ -129,6 +127,16 @@ class Collar:
             return float(np.interp(np.interp(speed, speeds, times), self.load.time, self.load.x))
         return largest(self.load)
 
+    def films(self, gap: float) -> ScaledPads:
+        """The films of one side at a gap in m, at the nearest gap of the table."""
+        table = self._table
+        return table.at(min(max(gap, table.thin), table.wide))
+
+    def torques(self, gaps: Floats) -> Floats:
+        """(k,) torques of one side over viscosity and speed, in m^3, at gaps in m."""
+        table = self._table
+        return table.torques(np.clip(gaps, table.thin, table.wide))
+
     def rest(self, omega: float) -> CollarRest:
         """Where the collar rests at a speed in rad/s. Raises NotCarried if no film carries its load."""
         load = self.load_at(omega)
@@ -145,8 +153,7 @@ class Collar:
             damping=sum(side.viscosity * side.films.damping for side in sides),
             tilt_stiffness=np.sum([each * side.films.tilt_stiffness for side, each in pairs], axis=0),
             tilt_damping=np.sum([side.viscosity * side.films.tilt_damping for side in sides], axis=0),
-            viscosity=sides[0].viscosity,
-            temperature=sides[0].temperature,
+            viscosities=tuple(side.viscosity for side in sides),
         )
 
     def position(self, rest: CollarRest) -> float:
@@ -189,15 +196,15 @@ class Collar:
         return [self._side(each, omega) for each in gaps]
 
     def _side(self, gap: float, omega: float) -> _Side:
-        films = self._table.at(gap)
+        films = self.films(gap)
         if self.thermal is None or omega == 0.0:
-            return _Side(films, self.viscosity, self.oil.temperature)
+            return _Side(films, self.viscosity)
 
         def loss_and_flow(viscosity: float) -> tuple[float, float]:
             return viscosity * omega**2 * films.torque, omega * films.side_flow
 
         heat = PadHeat(self.oil, self.thermal)
-        return _Side(films, *heat.warm(loss_and_flow, omega, gap, films.inverse_gap))
+        return _Side(films, heat.warm(loss_and_flow, omega, gap, films.inverse_gap)[0])
 
 
 def pad_of(bearing: ThrustBearing) -> Pad:

@@ -56,8 +56,7 @@ class GapTable:
 
     def at(self, gap: float) -> ScaledPads:
         """The films at a gap in m between thin and wide."""
-        middle, half = 0.5 * np.log(self.thin * self.wide), 0.5 * np.log(self.wide / self.thin)
-        found = chebyshev.chebval((np.log(gap) - middle) / half, self.coefficients)
+        found = chebyshev.chebval(self._scaled(gap), self.coefficients)
         load, torque, side_flow, stiffness, damping, inverse_gap = np.exp(found[:6]).tolist()
         direct, cross, turning = (found[6:] * self.radius**2).tolist()
         return ScaledPads(
@@ -70,6 +69,16 @@ class GapTable:
             damping * turning * np.eye(2),
             inverse_gap,
         )
+
+
+    def torques(self, gaps: Floats) -> Floats:
+        """(k,) T / (eta omega) in m^3 at gaps in m."""
+        return np.asarray(np.exp(chebyshev.chebval(self._scaled(gaps), self.coefficients[:, 1])))
+
+    def _scaled(self, gaps: Floats | float) -> Floats:
+        """Gaps in m as the polynomials take them, from -1 to 1."""
+        middle, half = 0.5 * np.log(self.thin * self.wide), 0.5 * np.log(self.wide / self.thin)
+        return np.asarray((np.log(gaps) - middle) / half)
 
 
 @lru_cache(maxsize=MOST_HELD)

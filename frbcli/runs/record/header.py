@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
+from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
@@ -71,6 +72,7 @@ def header(
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
+    units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))
     return Header(

@@ -7,10 +7,12 @@ from dataclasses import replace
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
+from frbcli.elements.element import Parts
+from frbcli.elements.thrust import COLLAR
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import PLANE, point_mass, spin
+from frbcli.rotor.body import PLANE, Body, point_mass, spin
 from frbcli.rotor.held import preset
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of
 from frbcli.scene.shafts.table import shaft_of
@@ -22,6 +24,19 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
 
     Raises InputError if its shaft has no modes.
     """
+    bodies, films, elements, centred = _bodies_and_links(case, sees)
+    return preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
+
+
+def collar_tilt(case: Case) -> Array | None:
+    """(2, n) tilts about x and y of the collar of a case against its pads, None where it does not act in tilt."""
+    bodies, _, elements, _ = _bodies_and_links(case, PLANE)
+    links = [link for link, _ in elements.links if link.inside == COLLAR]
+    return assembled(bodies, links).journals[0] if links else None
+
+
+def _bodies_and_links(case: Case, sees: tuple[str, ...]) -> tuple[list[Body], list[Link], Parts, list[int]]:
+    """Bodies of the machine, links of its films, parts of its elements, and which of the films are centred dampers."""
     site, count = site_of(case), float(shaft_of(case).equal_bearings)
     bodies, films = [shaft_of(case).body()], []
     for bearing in case.bearings:
@@ -36,5 +51,4 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
     centred = [len(films) + number for number, damper in enumerate(dampers) if damper.given.centred]
     films += [replace(damper.link(site), sees=sees) for damper in dampers]
     elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
-    bodies += [*elements.bodies, *spins]
-    return preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
+    return [*bodies, *elements.bodies, *spins], films, elements, centred
