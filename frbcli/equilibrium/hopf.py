@@ -22,6 +22,7 @@ Complex = NDArray[np.complex128]
 
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 HALVINGS = 30  # of an interval with several Hopf points
+JUMP = 1e-2  # growth over that at the ends of an interval above which a whirl has turned into a drift
 
 
 def oscillating(eigenvalues: Complex) -> NDArray[np.bool_]:
@@ -82,9 +83,12 @@ def _within(
     if count == 0 or halvings == 0:
         return
     before, after = growing(low.eigenvalues), growing(high.eigenvalues)
-    if count == 1 and before != after:  # else a whirl begins as another one becomes a drift
-        here = located(lambda value: between(low, high, value), low, high, max(before, after) - 1, close)
-        yield Crossing(here, after > before)
+    if count == 1 and before != after:  # else one whirl begins to grow, and another one becomes a drift
+        number = max(before, after) - 1
+        here = located(lambda value: between(low, high, value), low, high, number, close)
+        ends = [growth for at in (low, high) if math.isfinite(growth := at.growth_of(number))]
+        if abs(here.growth_of(number)) < JUMP * max(map(abs, ends)):
+            yield Crossing(here, after > before)
         return
     middle = between(low, high, 0.5 * (low.value + high.value))
     yield from _within(between, low, middle, close, halvings - 1)
