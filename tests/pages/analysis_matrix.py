@@ -135,7 +135,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "rings that turn and the published form": ("floating-ring", PUBLISHED),
     "rings that turn and a bearing model of one's own": (
-        "floating-ring", (MODEL_THEORY, "film.cavitation=half-sommerfeld")
+        "floating-ring", (MODEL_THEORY, "film.cavitation=half-sommerfeld", 'bearing.inner.supply={kind="none"}')
     ),
     "co-simulation and the published form": ("jeffcott", (*PUBLISHED, APART)),
     "co-simulation and a bearing model of one's own": ("jeffcott", (APART, MODEL_THEORY)),

@@ -12,7 +12,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.bearing_model.table import model_named
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.films import film_places
 from frbcli.scene.forms.form import FilmForm, SolveCounts
 from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS
 from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega, sheet_omega
@@ -48,10 +48,6 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
 
 def _with_heat(case: Case) -> str | None:
     return None if case.heat is None else case.film.theory
-
-
-def _turning_ring(case: Case) -> str | None:
-    return "free" if turning_rings(case) else None
 
 
 def _key_faults(case: Case) -> Iterator[Fault]:
@@ -113,10 +109,6 @@ RULES = (
     tilt_refusal(
         "has no effect on a bearing model, whose force depends on one displacement and one velocity of the journal",
         'Write film.theory = "finite", or leave the tilt out.',
-    ),
-    refusal(
-        (RUN, *KINEMATIC), "bearing.ring.spin", _turning_ring,
-        "needs the torques of the films, and a bearing model gives forces alone", 'Write spin = "blocked".',
     ),
     Rule(_geometry_faults, (RUN, *KINEMATIC, *SHEETS)),
     refusal(

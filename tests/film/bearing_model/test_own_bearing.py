@@ -34,6 +34,7 @@ from scipy.optimize import brentq
 import frbcli
 from frbcli.case.reading.listing import values
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.checks import model_film
@@ -384,13 +385,33 @@ def test_what_a_model_is_not_told_of_is_refused(settings: list[str], told: str) 
         frbcli.make_plan(frbcli.load_case("rigid", ["film.theory=short-pi", *settings]))
 
 
-def test_a_ring_between_bearing_models_must_be_blocked() -> None:
-    settings = ["film.theory=short-pi", "film.cavitation=half-sommerfeld", "bearing.inner.supply={ kind = 'none' }",
-                "bearing.outer.supply={ kind = 'none' }"]  # fmt: skip
-    with pytest.raises(InputError, match="needs the torques of the films"):
-        frbcli.make_plan(frbcli.load_case("floating-ring", settings))
-    case = frbcli.load_case("floating-ring", [*settings, "bearing.ring.spin=blocked"])
-    assert len(make_system(case, frbcli.make_plan(case)).films.loop) == 2
+RINGED = ("film.cavitation=half-sommerfeld", "bearing.inner.supply={ kind = 'none' }",
+          "bearing.outer.supply={ kind = 'none' }", "speed.from=100 Hz", "speed.to=101 Hz",
+          "speed.duration=4 ms", "output.step=1e-4 s")  # fmt: skip
+
+
+def ring_cases() -> Iterator[frbcli.Case]:
+    """A ring between films of the program, and between the same ones as bearing models."""
+    return (frbcli.load_case("floating-ring", [f"film.theory={name}", *RINGED]) for name in ("short", "short-pi"))
+
+
+def test_a_ring_rests_between_bearing_models_as_between_films_of_the_program() -> None:
+    """The torques (4.17) on a ring follow from the forces of its films, and from the slip in full gaps."""
+    systems = [make_system(case, frbcli.make_plan(case)) for case in ring_cases()]
+    built_in, own = (resting_position(system, 200.0 * math.pi) for system in systems)
+    assert built_in.ring_speeds[0] > 1.0
+    assert own.ring_speeds == pytest.approx(built_in.ring_speeds, rel=1e-6)
+    assert own.journals == pytest.approx(built_in.journals, rel=1e-5)
+
+
+@pytest.mark.nightly
+def test_a_ring_turns_between_bearing_models_as_between_films_of_the_program(tmp_path: Path) -> None:
+    built_in, own = (frbcli.runup(case, tmp_path / f"{case.film.theory}.h5") for case in ring_cases())
+    assert abs(built_in["ring_speed_Hz"][-1]) > 1.0
+    np.testing.assert_allclose(own["ring_speed_Hz"], built_in["ring_speed_Hz"], rtol=1e-6, atol=1e-6)
+    for name in ("eccentricity_inner", "eccentricity_outer"):
+        assert np.max(built_in[name]) > 1e-3
+        np.testing.assert_allclose(own[name], built_in[name], atol=1e-6)
 
 
 def test_a_case_that_was_read_before_its_model_is_told_to_be_read_again() -> None:

@@ -104,7 +104,7 @@ def test_plates_fill_again_as_the_front_equation_has_it(rate: float) -> None:
     section = replace(section_of("none"), width=1e-4, cavitation_pressure=AMBIENT - 20.0)
     start_fraction, start_gap = 0.6, 0.9
     phi = np.linspace(-math.pi, math.pi, 9)
-    film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 161)), Elrod(), 1.0)
+    film = VolumeFilm(section, volume_grid(section, phi, np.linspace(0.0, 1.0, 121)), Elrod(), 1.0)
     d_y = start_gap - 1.0
     strip = 0
     shape = -math.cos(film.grid.centre[strip])  # dH/dd_y there
@@ -122,7 +122,7 @@ def test_plates_fill_again_as_the_front_equation_has_it(rate: float) -> None:
     first = 0.02
     start = np.full(film.grid.shape, start_fraction - 1.0)
     early = first**2 * (1.0 - start_fraction) / (2.0 * section.aspect * start_gap**2 * feed)  # H' = 0 until there
-    times = np.linspace(0.0, duration, 81)
+    times = np.linspace(0.0, duration, 61)
     exact = solve_ivp(front, (early, duration), [first], rtol=1e-9, atol=1e-12).y[0, -1]
     *_, last = march(film, motion, times, start)
     fraction = last.solution.state.fraction[strip]
@@ -164,7 +164,7 @@ def with_bores(half_width: float) -> Section:
 
 def test_bores_that_shrink_to_nothing_give_the_plain_film() -> None:
     plain = section_of("none")
-    grid = fitted_grid(plain, ROTATION.d, 96, 16)
+    grid = fitted_grid(plain, ROTATION.d, 72, 12)
 
     def force(section: Section) -> np.ndarray:
         film = VolumeFilm(section, volume_grid(section, grid.phi, grid.z), Reynolds(), 50.0)
@@ -178,7 +178,7 @@ def test_bores_that_shrink_to_nothing_give_the_plain_film() -> None:
 @pytest.mark.parametrize("half_width", [1.25e-3, 2e-3, 4e-3])
 def test_cells_of_a_bore_have_its_area(half_width: float) -> None:
     section = with_bores(half_width)
-    grid = volume_grid(section, np.linspace(-1.0, TURN - 1.0, 193), np.linspace(0.0, 1.0, 25))
+    grid = volume_grid(section, np.linspace(-1.0, TURN - 1.0, 97), np.linspace(0.0, 1.0, 13))
     area = 0.5 * math.pi * half_width**2  # the other half lies beyond the plane of symmetry
     assert hole_area(section, section.holes[0]) == pytest.approx(area, rel=1e-12)
     covered = float(grid.size[grid.fixed].sum()) * section.radius * section.width
