@@ -44,6 +44,7 @@ from frbcli.case.quantities import (
     Tilt,
     TiltRate,
     Velocity,
+    WearCoefficient,
 )
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Disk, Rotor, ShaftSection
@@ -229,12 +230,23 @@ class Contact(Model):
     hardness: Modulus | None = Field(
         default=None, description="of the softer asperities, which yield there; elastic if not given"
     )
+    wear: WearCoefficient | None = Field(
+        default=None,
+        description="Archard's coefficient of asperities, volume times hardness over force and path: runs then "
+        "estimate the depth",
+    )
+    flow_factors: bool = Field(default=False, description="of asperities, on the flow of the film: not modelled yet")
     friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
 
     @property
     def rough(self) -> bool:
         """Whether summits of rough surfaces touch."""
         return self.model == "asperities"
+
+    @property
+    def wear_rate(self) -> float | None:
+        """Volume that asperities lose over force and path, m^2/N; None where it is not asked for."""
+        return None if self.wear is None or self.hardness is None else self.wear / self.hardness
 
     @property
     def gives_way(self) -> bool:

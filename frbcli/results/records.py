@@ -36,7 +36,8 @@ EVENT_KEYS = ("kind", "film", *EVENT_NUMBERS, *EVENT_OPTIONAL)
 COST_OF_ALL = ("cpu_s", "steps", "rejected_steps", "steps_per_revolution", "film_solves", "ms_per_film_solve",
                "simulated_ms_per_hour")  # fmt: skip
 ERROR_OF_ALL = ("time_integration",)
-TOGETHER = {"oil_in_m3": "oil_out_m3", "heat_dissipated_J": "heat_carried_J", "eccentricity": "quiet_until_s"}
+TOGETHER = {"oil_in_m3": "oil_out_m3", "heat_dissipated_J": "heat_carried_J", "wear_depth_m": "wear_angle_deg",
+            "eccentricity": "quiet_until_s"}
 
 _NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel, behind the quantity
 

@@ -24,6 +24,7 @@ from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals
 from frbcli.runs.record.header import FLOW, named, recorded, ring_names
 from frbcli.runs.record.restored import array, check_samples, restored
+from frbcli.runs.record.wear import RunWear
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.costs.course import expected_course
@@ -103,6 +104,7 @@ class March:
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
+        self._wear = RunWear(case.contact.wear_rate, case.output.step, system.bodies)
         self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
             self._state = in_turn(self._heat.start, self._state, float(profile.speeds[0]))
@@ -255,6 +257,7 @@ class March:
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
         kinds, warm = recorded(self._case), self._numbers(times)
+        self._wear.add(system, warm, self._profile, samples)
         signals |= self._inputs.signals(times)
         signals |= {} if self._axis is None else self._axis.signals(times, q)
         return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
@@ -267,7 +270,7 @@ class March:
         """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
         noted = {"noted": self._noted} if self._watches and not np.isnan(self._noted).any() else {}
-        beside = {**noted, **self._heat.snapshot()}
+        beside = {**noted, **self._wear.snapshot(), **self._heat.snapshot()}
         return {**self._state._asdict(), **beside, "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
@@ -282,6 +285,7 @@ class March:
         self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
         self._heat.take_up(self._segments[self._current].case, self._system)
         self._heat.restore(checkpoint)
+        self._wear.restore(checkpoint)
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:
@@ -305,6 +309,7 @@ class March:
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
             **self._system.films.oil_passed(self._state.flows),
             **self._heat.passed(),
+            **self._wear.told(),
             **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }
 

@@ -347,6 +347,7 @@ mesh = [1, 2.5]
         ("[bearing]", "[contact]\nmodel = 'asperities'\n[bearing]", "contact.summit_radius", "is missing"),
         ("[bearing]", "[contact]\nmodel = 'asperities'\npolicy = 'stop'\n[bearing]", "contact.policy", "of a spring"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '-1 um'\n[bearing]", "contact.roughness", "greater than"),
+        ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nwear = 1e-7\n[bearing]", "contact.hardness", "is missing"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '9 um'\n[bearing]", "contact.roughness", "summits are flat"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nfriction = 1.1\n[bearing]", "contact.friction", "at most 1"),
         ("[bearing]", "[start]\ndisplacement = [0.8, 0.8]\n[bearing]", "start.displacement", "outside"),

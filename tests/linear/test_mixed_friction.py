@@ -111,6 +111,7 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
     [
         (("contact.roughness=5 um",), "contact.roughness", "meet all around"),
         (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
+        (("contact.flow_factors=true",), "contact.flow_factors", "0.83 of that at 3 roughnesses"),
         (("film.coupling=co-simulation",), "film.coupling", "too stiff"),
     ],
 )

@@ -144,7 +144,8 @@ def heads() -> dict[str, str]:
         name: [each for column in columns if column.flat for each in column.names]
         for name, columns in column_tables.TABLES.items()
     }
-    parts = ("moment of the force", "tilting films")  # columns that are added to those of another table
+    # columns that are added to those of another table
+    parts = ("moment of the force", "tilting films", "mixed friction", "collar")
     return {name: ",".join(names) for name, names in flat.items() if names and name not in parts}
 
 

@@ -28,6 +28,7 @@ ROUGH = (
     "contact.summit_density=5e9 1/m^2",
     "contact.friction=0.12",
 )
+WEAR = "contact.wear=1e-7", "contact.hardness=2 GPa"
 STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
 
 
@@ -96,6 +97,22 @@ def test_a_slow_rotor_stays_where_the_sheet_has_it(tmp_path: Path) -> None:
     assert run["power_W"][-1] == pytest.approx(state.power, rel=5e-3)  # the sheet solves its film on cells
 
 
+def test_wear_is_its_rate_times_pressure_and_path(tmp_path: Path) -> None:
+    """The volume is that of the work of friction over its coefficient, the deepest place where the gap is narrowest."""
+    speeds = 'speed={points=[["0 s", "0.2 Hz"], ["0.2 s", "0.2 Hz"]]}'
+    case = rigid(speeds, "output.step=1e-3 s", *WEAR)
+    run = runup(case, tmp_path / "run.h5")
+    assert run.checkpoint is not None
+    (depths,) = run.checkpoint["wear"]
+    work = 1e-3 * run["contact_power_W"].sum()
+    assert len(depths) == 72
+    volume = depths.sum() * 12.5e-3 * 20e-3 * 2.0 * np.pi / len(depths)
+    assert volume == pytest.approx(1e-7 / 2e9 * work / 0.12, rel=2e-2)
+    lowest = np.degrees(np.arctan2(-run["journal_x_m"][0], run["journal_y_m"][0])) % 360.0
+    assert run.cost["wear_angle_deg"] == pytest.approx(lowest, abs=2.5)
+    assert run.cost["wear_depth_m"] == depths.max() > 0.0
+
+
 def test_a_run_down_ends_on_the_shell(tmp_path: Path) -> None:
     settings = "speed.to=20 Hz", "speed.duration=0.2 s", "speed.hold=0.1 s", "output.step=1e-3 s"
     case = rigid(*settings, "speed.down_duration=0.6 s", "oil.viscosity=1 mPa*s")  # thin oil is soon squeezed out
@@ -111,7 +128,8 @@ def test_an_interrupted_run_goes_on_in_contact_as_if_it_had_not_stopped(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(march, "BUDGET", 30)  # steps between two looks at the clock
-    case = rigid("speed.to=6 Hz", "speed.duration=0.4 s", "output.step=1e-4 s", "accuracy.tolerance=1e-8")
+    settings = "speed.to=6 Hz", "speed.duration=0.4 s", "output.step=1e-4 s", "accuracy.tolerance=1e-8"
+    case = rigid(*settings, *WEAR)
     whole = runup(case, tmp_path / "whole.h5")
     calls = iter(range(4))
 
@@ -126,3 +144,34 @@ def test_an_interrupted_run_goes_on_in_contact_as_if_it_had_not_stopped(
     for name in whole.signals:
         np.testing.assert_array_equal(again[name], whole[name])
     assert again.events == whole.events
+    assert again.checkpoint is not None
+    assert whole.checkpoint is not None
+    np.testing.assert_array_equal(again.checkpoint["wear"], whole.checkpoint["wear"])
+
+
+@pytest.mark.nightly  # half a minute of compilation
+def test_friction_heats_the_film(tmp_path: Path) -> None:
+    heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
+    case = rigid("speed.to=6 Hz", "speed.duration=0.4 s", "output.step=1e-4 s", *heat)
+    run = runup(case, tmp_path / "run.h5")
+    whole, friction = (1e-4 * run[f"{name}power_W"].sum() for name in ("", "contact_"))
+    assert friction > 0.2 * whole
+    assert run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
+    assert run.error["heat_balance_relative"] < 1e-12
+
+
+@pytest.mark.nightly  # likewise
+def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Path) -> None:
+    """Friction inside turns a ring, friction outside, under its own weight too and with a longer arm, holds it."""
+    settings = ("film.cavitation=half-sommerfeld", "speed.from=0 Hz", "speed.to=30 Hz", "speed.duration=0.3 s")
+    case = load_case("floating-ring", [*ROUGH, *STARTS, *settings, "output.step=1e-4 s"])
+    run = runup(case, tmp_path / "run.h5")
+    sliding = run["asperity_share_inner"] > 0.5
+    assert sliding[:400].all()
+    creep = 1e-3 / (2.0 * np.pi * 0.5 * case.films[1].diameter)  # Hz, of a surface that sticks
+    assert np.abs(run["ring_speed_Hz"]).max() < 2.0 * creep
+    held = run["torque_inner_N_m"] - run["torque_outer_N_m"]  # what is left over for the ring
+    assert np.abs(held[100:]).max() < 0.05 * np.abs(run["torque_outer_N_m"]).max()
+    assert [(event["kind"], event["film"]) for event in run.events if event["kind"] != "critical-speed"] == [
+        ("touch", "inner"), ("touch", "outer"), ("lift-off", "inner"),
+    ]  # fmt: skip

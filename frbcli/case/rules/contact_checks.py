@@ -9,7 +9,7 @@ from frbcli.case.reading.tables import Breach, number, table
 
 OF_SPRING = ("policy", "stiffness")
 OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
-WITH_DEFAULT = ("modulus", "hardness", "friction")  # of asperities, too
+WITH_DEFAULT = ("modulus", "hardness", "friction", "wear", "flow_factors")  # of asperities, too
 STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
 
 
@@ -30,6 +30,8 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     for key, example in OF_ASPERITIES.items():
         if key not in contact:
             yield Breach(("contact", key), "is missing; asperities need it.", f"Add {key} = {example}.")
+    if "wear" in contact and "hardness" not in contact:
+        yield Breach(("contact", "hardness"), "is missing; wear goes with 1 / hardness.", 'Add hardness = "2 GPa".')
     roughness, radius = number(contact, "roughness", "m"), number(contact, "summit_radius", "m")
     if roughness and radius and roughness > STEEPEST * radius > 0.0:
         problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."

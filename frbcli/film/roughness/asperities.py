@@ -186,6 +186,29 @@ def standing_eccentricity(asperities: Asperities, f: int, clearance: float, load
 
 
 @compiled()
+def wear_along(
+    asperities: Asperities, f: int, clearances: Array, motions: Array, scale: float, depths: Array
+) -> None:
+    """Add the depth in m that each place around the shell of film f loses at every sample; clearances, motions: see
+    rub_along; scale: wear rate in m^2/N times the time between samples; depths: (m,) at even angles, from the top on
+    counter-clockwise."""
+    for k in range(motions.shape[0]):
+        e_x, e_y, v_x, v_y, slip, shell_speed = motions[k]
+        eccentricity = math.sqrt(e_x * e_x + e_y * e_y)
+        if eccentricity == 0.0 or not meets(asperities, clearances[k], eccentricity):
+            continue
+        normal, radial, _, _ = touch(asperities, f, clearances[k], eccentricity)
+        if normal == 0.0:
+            continue
+        across = (e_x * v_y - e_y * v_x) / eccentricity - shell_speed * eccentricity
+        path = scale * abs(asperities.radii[f] * slip + radial / normal * across)
+        for j in range(depths.shape[0]):
+            phi = 2.0 * math.pi * j / depths.shape[0]
+            gap = clearances[k] + e_x * math.sin(phi) - e_y * math.cos(phi)
+            depths[j] += path * summit_pressure(gap / asperities.roughness, asperities.elastic, asperities.plastic)[0]
+
+
+@compiled()
 def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array, found: Array) -> None:
     """Force (x, y) on the journal in N, torque on it in N m and power of friction in W of film f: found (k, 4), by
     clearances (k,) and motions (k, 6), the arguments of `rub` from e_x on."""

@@ -19,7 +19,7 @@ SLOW_WORDS = (
 
 
 def account(run: Run) -> list[tuple[str, str, str]]:
-    """Rows of a table, what and how much and a remark: cost, oil that passed, stated errors."""
+    """Rows of a table, what and how much and a remark: cost, oil that passed, heat, wear, stated errors."""
     cost, error = run.cost, run.error
     film = error.get("film_force_relative")
     in_films = "length_m" not in run.references
@@ -39,6 +39,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
         *kept(("film solves", f"{cost['film_solves']}", f"{1e3 * cost['ms_per_film_solve']:.3g} us each")),
         *_oil_rows(run),
         *_heat_rows(run),
+        *_wear_rows(run),
         *_second_run(cost),
         *kept(("CPU time of the error", f"{cost.get('error_cpu_s', 0.0):.3g} s", "films on other meshes")),
         ("error, time integration", f"{error['time_integration']:.1e}", _of(run)),
@@ -98,6 +99,14 @@ def _heat_rows(run: Run) -> list[tuple[str, str, str]]:
     defect = "" if off is None else f", unaccounted for {off:.0e}"
     parts = f"{oil:.4g} J with the oil, {walls:.4g} J into walls, {kept:.4g} J kept"
     return [("heat", f"{whole:.4g} J", f"{parts}{defect}")]
+
+
+def _wear_rows(run: Run) -> list[tuple[str, str, str]]:
+    """The largest depth that a shell has lost, of one bearing."""
+    if "wear_depth_m" not in run.cost:
+        return []
+    depth, angle = 1e9 * run.cost["wear_depth_m"], run.cost["wear_angle_deg"]
+    return [("wear, an estimate", f"{depth:.3g} nm", f"by Archard, of a shell at phi = {angle:.0f} deg")]
 
 
 def _predicted(cost: dict[str, Any]) -> str:

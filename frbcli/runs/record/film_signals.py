@@ -85,15 +85,22 @@ def _summits(system: System, films: FilmNumbers, profile: SpeedProfile, samples:
     found = np.zeros((len(samples.times), len(system.names), 4))
     if system.asperities is None:
         return found
-    total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
-    for i, selection in enumerate(system.rotor.journals):
-        turning = np.column_stack([slip[:, i], 0.5 * (total[:, i] - slip[:, i])])
-        motions = np.hstack([samples.q @ selection.T, samples.v @ selection.T, turning])
-        clearances = np.ascontiguousarray(np.broadcast_to(films.clearances[:, i], len(motions)))
+    for i in range(len(system.names)):
+        clearances, motions = film_motions(system, films, profile, samples, i)
         own = np.zeros((len(motions), 4))
         rub_along(system.asperities, i, clearances, motions, own)
         found[:, i] = own
     return found
+
+
+def film_motions(
+    system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples, i: int
+) -> tuple[Array, Array]:
+    """(k,) clearances in m of film i, and (k, 6) the motions of its surfaces: the arguments of `rub` from e_x on."""
+    total, slip = (_speeds(system, profile, samples, row)[:, i] for row in (SUM, SLIP))
+    selection = system.rotor.journals[i]
+    motions = np.column_stack([samples.q @ selection.T, samples.v @ selection.T, slip, 0.5 * (total - slip)])
+    return np.ascontiguousarray(np.broadcast_to(films.clearances[:, i], len(motions))), motions
 
 
 def _shares(forces: Array, summits: Array) -> Array:

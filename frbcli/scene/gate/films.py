@@ -95,6 +95,9 @@ def rough_faults(case: Case) -> Iterator[Fault]:
             problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
             remedy = f"Give less than {display(film.clearance / LAST, 'm')}."
             yield Fault("contact.roughness", display(contact.roughness, "m"), None, problem, remedy)
+    if contact.flow_factors:
+        problem = "is not modelled: films flow as between smooth surfaces, with factors 0.83 of that at 3 roughnesses."
+        yield Fault("contact.flow_factors", "true", None, problem, "Write false.")
     for key, value in misaligned(case):
         problem = "is not modelled with asperities, whose gap is the same along the axis."
         yield Fault(key, value, None, problem, f"{SMOOTH}, or leave it out.")
