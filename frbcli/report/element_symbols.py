@@ -14,19 +14,26 @@ SHELL, FLAT = 22.0, 5.0  # width and height of a shell without dimensions
 
 def height(symbols: Sequence[str]) -> float:
     """Height of a stack of symbols with the bodies between them."""
-    return len(symbols) * (HIGH + FLAT) - FLAT
+    return len(symbols) * (HIGH + FLAT) - FLAT * bool(symbols)
 
 
-def stack(symbols: Sequence[str], x: float, middle: float, radius: float) -> Iterator[str]:
+def stack(
+    symbols: Sequence[str], x: float, middle: float, radius: float, housing: float | None = None
+) -> Iterator[str]:
     """Symbols at x, above and below the axis at `middle`, from a radius outwards to the ground, with the bodies between
-    them."""
+    them; housing: distance from the axis of what they are fixed to in place of the ground."""
     for sign in (-1.0, 1.0):
         for number, symbol in enumerate(symbols, start=1):
             start = middle + sign * (radius + (number - 1) * (HIGH + FLAT))
             end = start + sign * HIGH
             yield from SYMBOLS[symbol](x, start, sign)
             body = box(x - 0.5 * SHELL, min(end, end + sign * FLAT), SHELL, FLAT, "shell")
-            yield body if number < len(symbols) else _ground(x, end)
+            if number < len(symbols):
+                yield body
+            elif housing is None:
+                yield _ground(x, end)
+        if housing is not None:
+            yield line(x, middle + sign * (radius + height(symbols)), x, middle + sign * housing, "spring")
 
 
 def _spring(x: float, start: float, sign: float) -> Iterator[str]:

@@ -30,6 +30,7 @@ HOUSING = 0.45  # thickness of a shell over the radius of its film
 SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
 ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
 AROUND = 181  # points of a circle
+NAMES = 24.0  # room for a line of names above a disk, in the drawing's units
 FORCE = 30.0  # length of the arrow of a force, in the drawing's units
 NO_WIDTH, NO_RADIUS = 0.02, 0.0125  # of journals that have no dimensions, m
 DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertias
@@ -126,29 +127,33 @@ def _largest_radius(case: Case) -> float:
     return max((bearing.shell_radius for bearing in _bearings(case)), default=0.0)
 
 
-def _with_supports(case: Case, half: float, per_m: float, shaft: float) -> float:
-    """Half the height of a drawing that has room for its supports. shaft: largest radius of the elements, m."""
-    return max(half, *(
+def _heights(case: Case, half: float, per_m: float, shaft: float) -> tuple[float, float]:
+    """Distance of a housing from the axis, and half the height of a drawing that has room for it and for supports.
+    half: of the rotor alone; shaft: largest radius of the elements, m."""
+    inner = max(half + (0.0 if case.housing is None else NAMES), *(
         per_m * (bearing.shell_radius or shaft) + height(bearing.symbols)
         for bearing in _bearings(case) if len(bearing.symbols) > (0 if bearing.films else 1)
     ), 0.0)  # fmt: skip
+    return inner, inner if case.housing is None else inner + FLAT + HIGH
+
+
+def _held(case: Case, bearings: list[float]) -> list[float]:
+    """Where springs to the ground hold a housing, m; one that is given by its modes, in its middle."""
+    if case.housing is None:
+        return []
+    mounts = [mount.position for mount in case.housing.mounts if mount.position is not None]
+    return mounts or (bearings if case.housing.mounts else [0.5 * (min(bearings) + max(bearings))])
 
 
 def _housing(case: Case, scale: _SketchScale, inner: float, bearings: list[float]) -> Iterator[str]:
-    """The housing as a bar above and below the axis, `inner` from it, with its mounts; nothing without one. bearings:
-    their positions in m, to which the bar is joined."""
-    if case.housing is None:
-        return
-    mounts = [mount.position for mount in case.housing.mounts if mount.position is not None]
-    mounts = mounts or (bearings if case.housing.mounts else [])
-    ends = [scale.left + scale.per_m * place for place in (min(bearings + mounts), max(bearings + mounts))]
-    for sign in (-1.0, 1.0):
+    """The housing as a bar above and below the axis, `inner` from it, with what holds it; nothing without one.
+    bearings: their positions in m."""
+    held = _held(case, bearings)
+    ends = [scale.left + scale.per_m * place for place in (min(bearings + held), max(bearings + held))]
+    for sign in (-1.0, 1.0) if held else ():
         top = scale.middle + sign * inner - (FLAT if sign < 0.0 else 0.0)
         yield box(ends[0], top, ends[1] - ends[0], FLAT, "shell")
-        for place in bearings:
-            x = scale.left + scale.per_m * place
-            yield line(x, scale.middle, x, scale.middle + sign * inner, "spring")
-    for place in mounts:
+    for place in held:
         yield from stack((SupportElement.symbol,), scale.left + scale.per_m * place, scale.middle, inner + FLAT)
 
 
@@ -156,14 +161,15 @@ def _of_sections(case: Case) -> str:
     length = sum(section.length for section in case.shaft)
     disks = [(disk, *_cylinder(disk.mass, disk.polar_inertia, disk.diametral_inertia)) for disk in case.disks]
     reach = max([_largest_radius(case), *(radius for _, radius, _ in disks), *(0.5 * s.diameter for s in case.shaft)])
-    left = min([0.0, *(disk.position - 0.5 * width for disk, _, width in disks)])
-    right = max([length, *(disk.position + 0.5 * width for disk, _, width in disks)])
+    bearings = [bearing.position or 0.0 for bearing in case.given_bearings]
+    held = _held(case, bearings)
+    left = min([0.0, *held, *(disk.position - 0.5 * width for disk, _, width in disks)])
+    right = max([length, *held, *(disk.position + 0.5 * width for disk, _, width in disks)])
     per_m = min((WIDTH - 2.0 * MARGIN) / (right - left), HIGHEST / reach)
     thickest = max(0.5 * section.diameter for section in case.shaft)
-    inner = _with_supports(case, per_m * reach, per_m, thickest)
-    half = inner if case.housing is None else inner + FLAT + HIGH
+    inner, half = _heights(case, per_m * reach, per_m, thickest)
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * (right + left)), half + 30.0)
-    parts, z = [*_housing(case, scale, inner, [bearing.position or 0.0 for bearing in case.given_bearings])], 0.0
+    parts, z = [*_housing(case, scale, inner, bearings)], 0.0
     for disk, radius, width in disks:
         parts.append(scale.box(disk.position - 0.5 * width, disk.position + 0.5 * width, 0.0, radius, "disk"))
     for section in case.shaft:
@@ -173,7 +179,7 @@ def _of_sections(case: Case) -> str:
     for bearing in _bearings(case):
         at = bearing.position
         radius = bearing.shell_radius or _radius_at(case, at)
-        parts += stack(bearing.symbols, scale.left + per_m * at, scale.middle, per_m * radius)
+        parts += stack(bearing.symbols, scale.left + per_m * at, scale.middle, per_m * radius, inner if held else None)
         parts += _film_parts(bearing.films, at, scale)
         parts.append(_named(bearing.name, at, scale, half + 16.0))
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
@@ -193,8 +199,7 @@ def _symmetric(case: Case) -> str:
     half_width = 0.5 * max(width, *(bearing.films[-1].width for bearing in bearings if bearing.films), 0.0)
     elements = [bearing for bearing in bearings if not bearing.films]
     per_m = min((WIDTH - 2.0 * MARGIN) / (span + 2.0 * half_width), HIGHEST / disk)
-    inner = _with_supports(case, per_m * disk, per_m, journal)
-    half = inner if case.housing is None else inner + FLAT + HIGH
+    inner, half = _heights(case, per_m * disk, per_m, journal)
     scale = _SketchScale(per_m, 0.5 * (WIDTH - per_m * span), half + 30.0)
     thin = 0.45 * journal if shaft_of(case).elastic else journal
     parts = [scale.box(0.0, span, 0.0, thin, "vague")]
@@ -206,7 +211,8 @@ def _symmetric(case: Case) -> str:
             place, radius = at, bearing.shell_radius or journal
             if not bearing.films:
                 place += half_width * _place(case, elements.index(bearing)) * (1.0 if at else -1.0)
-            parts += stack(bearing.symbols, scale.left + per_m * place, scale.middle, per_m * radius)
+            carried = None if case.housing is None else inner
+            parts += stack(bearing.symbols, scale.left + per_m * place, scale.middle, per_m * radius, carried)
             parts += _film_parts(bearing.films, at, scale)
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts += _forces(case, scale, lambda node: (0.5 * span,) if node == "disk" else (0.0, span))

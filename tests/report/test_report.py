@@ -157,7 +157,8 @@ def test_every_shipped_machine_is_drawn(name: str) -> None:
         assert parser.wrong == []
         assert note.endswith(".")
         assert "nan" not in drawing
-        assert drawing.count('class="ground"') == 2 * len(case.elements) * (1 if case.shaft else 2)
+        grounds = 2 * len(case.elements) * (1 if case.shaft else 2) + 2 * (case.housing is not None)
+        assert drawing.count('class="ground"') == grounds
     assert bool(film_sketches(case)) == bool(case.films)
 
 
