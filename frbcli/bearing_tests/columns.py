@@ -10,12 +10,20 @@ from typing import Any
 
 from frbcli.columns import Column, Columns, Shown, named
 
-FORCES, OIL = "forces", "oil"  # tables of the terminal
+FORCES, OIL, GASES = "forces", "oil", "gas"  # tables of the terminal
 
 
 def _loads(path: str) -> Callable[[Any], Any]:
     get = attrgetter(path)
     return lambda result: math.nan if result.loads is None else get(result.loads)
+
+
+def _gas(name: str) -> Callable[[Any], Any]:
+    def value(result: Any) -> Any:
+        gas = None if result.loads is None else result.loads.gas
+        return math.nan if gas is None else getattr(gas, name)
+
+    return value
 
 
 def _moment(result: Any) -> Any:
@@ -52,7 +60,8 @@ HEAD = (
 
 # Of a KinematicResult; of a squeeze or a whirl at the moment of the largest force
 RESULT = (
-    Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL)), key="", flat=False),
+    Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL),
+                                       Shown("cavitation", table=GASES)), key="", flat=False),
     *HEAD,
     Column("displacement", "", "displacement of the journal over the clearance", shape=(2,)),
     Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
@@ -95,9 +104,24 @@ MOMENT = (
 )  # fmt: skip
 
 
-def result_columns(moment: bool) -> Columns:
-    """Columns of a KinematicResult; moment: whether it states the moment of the force."""
-    return (*RESULT, *MOMENT) if moment else RESULT
+# Of a KinematicResult of a test with a model whose oil carries gas
+GAS = (
+    Column("free_gas", "", "free gas at the saturation pressure over the oil, in the mean", _gas("share"),
+           shown=(Shown("free gas", ".4f", table=GASES),), key="gas_balance.free"),
+    Column("gas_in", "m^3/s", "free gas that comes in, at the saturation pressure", _gas("in_m3_s"),
+           shown=(Shown("in", ".4g", "mm^3/s", GASES),), key="gas_balance.in_m3_s"),
+    Column("gas_out", "m^3/s", "free gas that leaves", _gas("out_m3_s"),
+           shown=(Shown("out", ".4g", "mm^3/s", GASES),), key="gas_balance.out_m3_s"),
+    Column("gas_released", "m^3/s", "gas that leaves the solution, net", _gas("released_m3_s"),
+           shown=(Shown("released", ".4g", "mm^3/s", GASES),), key="gas_balance.released_m3_s"),
+    Column("gas_defect_relative", "", "what the balance of the gas is off by, over all gas that the oil carries",
+           _gas("defect_relative"), shown=(Shown("balance", ".0e", table=GASES),), key="gas_balance.defect_relative"),
+)  # fmt: skip
+
+
+def result_columns(moment: bool, gas: bool) -> Columns:
+    """Columns of a KinematicResult; moment: whether it states the moment of the force, gas: the balance of its gas."""
+    return (*RESULT, *(MOMENT if moment else ()), *(GAS if gas else ()))
 
 
 # Of a History: whole in JSON, moment by moment in pandas

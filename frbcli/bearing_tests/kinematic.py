@@ -85,10 +85,15 @@ class KinematicTest(Tabular):
     results: tuple[KinematicResult, ...]
     complete: bool = True
 
+    @property
+    def carries_gas(self) -> bool:
+        """Whether the oil of a model carries gas."""
+        return any(result.loads is not None and result.loads.gas is not None for result in self.results)
+
     def table(self) -> Table:
         """One row per model for a rotation; for a squeeze or a whirl one per model and moment."""
         if self.test == "rotation":
-            return table_of(result_columns(states_moment(self.case)), self.results)
+            return table_of(result_columns(states_moment(self.case), self.carries_gas), self.results)
         moments = ((each, 1 if each.history is None else len(each.history.time_s)) for each in self.results)
         return table_of(MOMENTS, ((result, moment) for result, count in moments for moment in range(count)))
 

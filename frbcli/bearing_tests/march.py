@@ -6,7 +6,10 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
+import numpy as np
+
 from frbcli.errors import NotConverged
+from frbcli.film.cells.balance.gas import Carried, KeptGas
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -15,6 +18,7 @@ from frbcli.film.grid import Array
 Path = Callable[[float], Motion]  # of the time in s
 
 RISE_TIME = 0.01  # s, t_1 of (4.49)
+FAST = 1e6  # 1/s: oil that is replaced so fast has no time for an exchange of gas
 MOST_HALVINGS = 6  # of a step whose equations do not converge
 FilmAt = Callable[[float, Motion], VolumeFilm]
 
@@ -76,6 +80,10 @@ class _Steps:
     def __init__(self, film: VolumeFilm, path: Path, w: Array, time: float, film_at: FilmAt | None) -> None:
         self._film_at, self._path, self._solver = film_at, path, FilmSolver(film)
         self._w, self._time, self._content = w, time, film.content(path(time), w)
+        self._gas: KeptGas | None = None  # H theta c, and what was carried last
+        if film.law.carries_gas:
+            free = film.law.free_gas(film.cells(w), film.scales)
+            self._gas = KeptGas(self._content * free, Carried(free, np.full(w.shape, FAST)))
         self._drift: Array | None = None  # how fast w changed in the step before
 
     def to(self, time: float, halvings: int) -> Moment:
@@ -98,7 +106,10 @@ class _Steps:
         flowing = self._path(middle)
         begin = self._w if self._drift is None else self._w + dt * self._drift
         solver = self._at(middle, flowing)
-        solution, content = solver.keep(end, flowing, begin, 1.0 / dt, self._content / dt)
+        kept = None if self._gas is None else KeptGas(self._gas.past / dt, self._gas.guess)
+        solution, content = solver.keep(end, flowing, begin, 1.0 / dt, self._content / dt, kept)
+        if solution.gas is not None:
+            self._gas = KeptGas(content * solution.gas.free, solution.gas.carried)
         self._drift = (solution.w - self._w) / dt
         self._w, self._time, self._content = solution.w, time, content
         return Moment(middle, flowing, solution)

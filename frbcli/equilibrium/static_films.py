@@ -27,6 +27,7 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.gate.analysis import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.machine.warm import warm_case, warm_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH, choose_films, form_of
@@ -158,7 +159,7 @@ def _plan(case: Case) -> Plan:
     if form.static_cells:
         return replace(_films_alone(case, "finite", form, DEFAULT_MESH, ()), cells=form.static_cells[0])
     if case.given_rotor is not None and case.given_speed is not None:
-        plan = make_plan(case)
+        plan = make_plan(case, STILL)
     elif form.fine_when_static:
         plan = _films_alone(case, "finite", ON_CELLS, DEFAULT_MESH, ())
     else:

@@ -22,6 +22,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
+from frbcli.scene.gate.analysis import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -70,7 +71,7 @@ class StaticMachines:
         self._static = films.coarse if coarse else films
         self._memory = memory and self._static.system.remembers
         if case.heat is not None:
-            plan = make_plan(case)
+            plan = make_plan(case, STILL)
             self._heat = WarmMachines(case, plan, make_system(case, plan))
 
     @property

@@ -77,6 +77,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Reynolds": ("jeffcott", ("film.cavitation=reynolds",)),
     "penalty": ("jeffcott", ("film.cavitation=penalty",)),
     "Peeken": ("jeffcott", ("film.cavitation=peeken",)),
+    "bubbly": ("jeffcott", ("film.cavitation=bubbly",)),
     "Elrod": ("jeffcott", ("film.cavitation=elrod",)),
     "two-phase": ("jeffcott", (TWO_PHASE,)),
     "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),

@@ -11,7 +11,7 @@ from pathlib import Path
 
 from paths import DOCS
 
-from frbcli.bearing_tests.columns import MOMENT, MOMENTS, RESULT
+from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENTS, RESULT
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     cycle_columns,
@@ -76,6 +76,7 @@ TABLES: dict[str, Columns] = {
     "response": RESPONSE_POINTS,
     "kinematic tests": RESULT,
     "moment of the force": MOMENT,
+    "gas of the oil": GAS,
     "moments": MOMENTS,
     "accuracy": LADDER,
     "comparison": VARIANT,

@@ -60,7 +60,7 @@ def run_test(
     _report(found, terminal)
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
     whole = {} if found.complete else {"status": "interrupted"}
-    terminal.emit({**head, **whole, "results": [_document(found.case, result) for result in found.results]})
+    terminal.emit({**head, **whole, "results": [_document(found, result) for result in found.results]})
     if not _can_draw(found, terminal):
         outputs = replace(outputs, picture=None)
     outputs.write(terminal, found.to_pandas, lambda: _figure(found))
@@ -87,12 +87,12 @@ def _figure(found: KinematicTest) -> Picture:
 
 def _report(found: KinematicTest, terminal: Terminal) -> None:
     """Two tables: forces and oil."""
-    from frbcli.bearing_tests.columns import FORCES, OIL, error_column, force_size, result_columns
+    from frbcli.bearing_tests.columns import FORCES, GASES, OIL, error_column, force_size, result_columns
     from frbcli.columns import table_of
     from frbcli.scene.tilt import states_moment
 
     largest = max(map(force_size, found.results), default=0.0)
-    columns = (*result_columns(states_moment(found.case)), error_column(largest))
+    columns = (*result_columns(states_moment(found.case), found.carries_gas), error_column(largest))
     table = table_of(columns, found.results)
     rows: dict[str, list[Sequence[str]]] = {FORCES: [], OIL: []}
     for result, forces, oil in zip(found.results, table.cells(FORCES), table.cells(OIL), strict=True):
@@ -102,6 +102,9 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
     for name, heading in ((FORCES, f"{found.case.heading}: {found.test}"), (OIL, "")):
         terminal.table(heading, table.heads(name), rows[name])
     terminal.sentence(f"{table.legend(FORCES)}; {table.legend(OIL)}.")
+    if found.carries_gas:
+        terminal.show("", table, GASES)
+        terminal.sentence(f"{table.legend(GASES)}.")
     for result in found.results:
         if result.heat is not None:
             tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
@@ -114,12 +117,12 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
         terminal.result("Interrupted: the other models were not computed.")
 
 
-def _document(case: Case, result: KinematicResult) -> dict[str, Any]:
+def _document(test: KinematicTest, result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
     from frbcli.bearing_tests.columns import HISTORY, result_columns
     from frbcli.columns import document, named
     from frbcli.scene.tilt import states_moment
 
     history = () if result.plan.test == "rotation" else named(HISTORY, "", attrgetter("history"))
-    found = document((*result_columns(states_moment(case)), *history), result)
+    found = document((*result_columns(states_moment(test.case), test.carries_gas), *history), result)
     return found if result.heat is None else found | {"thermal": film_document(result.heat)}

@@ -33,6 +33,7 @@ EMPTY = LARGEST_PARAMETERS
 LAW_NUMBERS = LARGEST_PARAMETERS + 1
 ECCENTRICITY, SPEED, WHIRL, MOTION = range(4)  # what a law may follow
 STATES = 6  # of a cell, see Law.cell
+CARRIED_GAS, TURNOVER, LAYERS = 6, 7, 8  # behind them stand the two parameters of a cell whose oil carries gas
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _FOLLOW = types.void(_POINTER, _POINTER, _POINTER, _POINTER)
@@ -40,12 +41,13 @@ _CELLS = types.void(types.intp, _POINTER, _POINTER, _POINTER, _POINTER)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
 # Stand in the templates below for those of one law.
-cell, follow, empty, COUNT = Law.cell, Law.follow, Law.empty, 1
+cell, follow, empty, COUNT, GAS = Law.cell, Law.follow, Law.empty, 1, False
 
 
 class CompiledLaw(NamedTuple):
     """C functions of a law. follow(given, motion, scales, law) fills law (LAW_NUMBERS,) from the parameters of the
-    centred journal; cells(n, law, scales, w, states) fills states (6, n) of the unknowns w (n,)."""
+    centred journal; cells(n, law, scales, w, states) fills the first six of
+    states (LAYERS, n) of the unknowns w (n,)."""
 
     follow: Any
     cells: Any
@@ -54,7 +56,7 @@ class CompiledLaw(NamedTuple):
 @cache
 def compiled_law(law: Any) -> CompiledLaw:
     """The functions of a law, compiled in this process or found where numba keeps them."""
-    shared = {"COUNT": max(len(fields(law)), 1), "cell": compiled_cell(law)}
+    shared = {"COUNT": max(len(fields(law)), 1), "GAS": law.carries_gas, "cell": compiled_cell(law)}
     shared |= {name: jitted(getattr(law, name)) for name in ("follow", "empty")}
     return CompiledLaw(_for_law(law, _follow, _FOLLOW, shared), _for_law(law, _cells, _CELLS, shared))
 
@@ -81,11 +83,11 @@ def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
 def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: Scales) -> CellState:
     """Law.cells by the compiled form."""
     unknowns = np.ascontiguousarray(w, dtype=np.float64)
-    numbers, pressures, states = given_parameters(law), np.array(scales), np.empty((STATES, *unknowns.shape))
+    numbers, pressures, states = given_parameters(law), np.array(scales), np.zeros((LAYERS, *unknowns.shape))
     arrays = (array.ctypes.data_as(_DOUBLES) for array in (numbers, pressures, unknowns, states))
     kind: Any = type(law)
     compiled_law(kind).cells.ctypes(unknowns.size, *arrays)
-    return CellState(*states)
+    return CellState(*states[:STATES])
 
 
 def _call_follow(typingctx, address, given, motion, scales, law):  # type: ignore[no-untyped-def]
@@ -115,9 +117,10 @@ def _cells(n, law, scales, w, states):  # type: ignore[no-untyped-def]
     """CompiledLaw.cells of the law whose function stands for cell."""
     parameters, pressures = _first(carray(law, (COUNT,)), COUNT), carray(scales, (3,))
     at = Scales(pressures[0], pressures[1], pressures[2])
-    unknowns, out = carray(w, (n,)), carray(states, (STATES, n))
+    unknowns, out = carray(w, (n,)), carray(states, (LAYERS, n))
     for i in range(n):
-        out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i] = cell(unknowns[i], parameters, at)
+        own = (*parameters, out[CARRIED_GAS, i], out[TURNOVER, i]) if GAS else parameters
+        out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i] = cell(unknowns[i], own, at)
 
 
 def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, Any]) -> Any:

@@ -81,7 +81,8 @@ class Law:
     films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn in;
     empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
     whether a source keeps the pressure from falling below p_cav; published_form: whether it has a published form, on
-    quadratic elements.
+    quadratic elements; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
+    exchanged of the law, and of which `cell` takes two more parameters, see bubbly.py.
     order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
     fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.
     heavy: static load over width and diameter, Pa, above which errors of steps grow in its films.
@@ -104,6 +105,7 @@ class Law:
     empties: ClassVar[bool] = False
     holds_cavity: ClassVar[bool] = False
     published_form: ClassVar[bool] = False
+    carries_gas: ClassVar[bool] = False
     order: ClassVar[float] = FRONTS
     cost: ClassVar[float] = 1.0
     fronts: ClassVar[float] = 1.0
@@ -143,6 +145,34 @@ class Law:
         from frbcli.film.cavitation.compiled import compiled_cells
 
         return compiled_cells(self, w, scales)
+
+    def cells_with_gas(self, w: Array, scales: Scales, carried: Array, turnover: Array) -> CellState:
+        """The plain form of a law that carries gas. carried, turnover: arrays of the shape of w, the two
+        parameters that `cell` takes behind its own."""
+        raise NotImplementedError
+
+    @property
+    def supplied_gas(self) -> float:
+        """Free gas over the oil that is supplied, of a law that carries gas."""
+        raise NotImplementedError
+
+    @property
+    def gas_content(self) -> float:
+        """Free and dissolved gas over the oil, of a law that carries gas."""
+        raise NotImplementedError
+
+    def standing(self, scales: Scales) -> float:
+        """w of oil at the ambient pressure whose gas is in equilibrium, of a law that carries gas."""
+        raise NotImplementedError
+
+    def free_gas(self, state: CellState, scales: Scales) -> Array:
+        """Free gas of cells over their oil, of a law that carries gas."""
+        raise NotImplementedError
+
+    def exchanged(self, pressure: Array, carried: Array, scales: Scales) -> tuple[Array, Array]:
+        """Free gas in equilibrium at scaled gauge pressures, and the time constant in s with which the gas that comes
+        into a cell, `carried`, tends to it; of a law that carries gas."""
+        raise NotImplementedError
 
     def curve(self, ratio: Array) -> Array:
         """theta at p / p_cav (n,), of a law that keeps oil and whose pressures are scaled with p_cav. Raises

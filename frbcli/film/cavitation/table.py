@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import fields, is_dataclass
 
 from frbcli.film.cavitation.barotropic import Barotropic
+from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
@@ -23,6 +24,7 @@ SHIPPED: tuple[type[Law], ...] = (
     Elrod,
     TwoPhase,
     Barotropic,
+    Bubbly,
 )
 LARGEST_PARAMETERS = 8  # of a law, as the compiled films keep them
 _own: dict[str, type[Law]] = {}  # those that a user has added in this process

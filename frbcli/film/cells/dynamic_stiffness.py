@@ -77,7 +77,7 @@ def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> Dynamic
             kept += [found.real] if s == 0.0 else [found.real, found.imag]
     right, left = (np.linalg.qr(np.concatenate(kept, axis=1))[0] for kept in (rights, lefts))
     flow = left.T @ (film.flow @ right)
-    storage = left.T @ (film.storage[:, None] * right)
+    storage = left.T @ (film.storage @ right)
     delays, shapes = np.linalg.eig(np.linalg.solve(flow, storage))
     moved = np.linalg.solve(flow, left.T @ np.concatenate([film.by_place, film.by_rate], axis=1))
     amplitudes = np.linalg.solve(shapes, moved.astype(complex))
@@ -89,9 +89,8 @@ def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> Dynamic
 
 def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
     """(n, 2) changes of the cells for a unit motion of the journal, and what the force takes of their balances."""
-    from scipy.sparse import diags  # takes long to load
-    from scipy.sparse.linalg import splu
+    from scipy.sparse.linalg import splu  # takes long to load
 
-    solver = splu((film.flow + s * diags(film.storage)).astype(complex).tocsc())
+    solver = splu((film.flow + s * film.storage).astype(complex).tocsc())
     right = solver.solve((film.by_place + s * film.by_rate).astype(complex))
     return right, solver.solve(film.push.T.astype(complex), "T")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,6 +14,9 @@ from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
+
+if TYPE_CHECKING:
+    from frbcli.film.cells.balance.gas import Carried, FreeGas
 
 ABOVE_KINK = 1e-300  # of an unknown: a negligible pressure, but a full cell
 HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies
@@ -53,13 +57,15 @@ class Flows:
 @dataclass(frozen=True)
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
-    before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py."""
+    before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
+    oil carries any."""
 
     w: Array
     state: CellState
     iterations: int
     flows: Flows
     before: Array
+    gas: FreeGas | None = None
 
 
 def reference_pressure(section: Section, motion: Motion) -> float:
@@ -83,18 +89,22 @@ class VolumeFilm:
         """(m, k) unknown of a full film at the ambient pressure.
 
         Where that is p_cav, it stands on the kink of the law, and on its full side: from there one step of Newton's
-        method finds the pressures of the whole film, from the other side those of one more column of cells.
+        method finds the pressures of the whole film, from the other side those of one more column of cells. Oil that
+        carries gas has this in equilibrium.
         """
+        if self.law.carries_gas:
+            return np.full(self.grid.shape, self.law.standing(self.scales))
         return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
 
     def gap(self, d: tuple[float, float], phi: Array) -> Array:
         """H (4.4) at the angles phi (n,)."""
         return gap_height(self.section, d, phi)
 
-    def cells(self, w: Array) -> CellState:
-        """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes."""
+    def cells(self, w: Array, carried: Carried | None = None) -> CellState:
+        """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes; carried: the gas
+        that comes into them, else it is in equilibrium."""
         grid = self.grid
-        state = self.law.cells(w, self.scales)
+        state = self.law.cells(w, self.scales) if carried is None else self.law.cells_with_gas(w, self.scales, *carried)
         return CellState(
             pressure=np.where(grid.fixed, grid.fixed_pressure, state.pressure),
             fraction=np.where(grid.fixed, 1.0, state.fraction),

@@ -5,7 +5,8 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
     storage w' + flow w + by_place d + by_rate d' = 0,        F = push w,
 
 in the frame at rest, where the settled film does not change. Oil is carried upwind, whose derivatives are exact on
-neighbouring cells, and laws with kinks count with the derivative on the side on which each cell is.
+neighbouring cells, and laws with kinks count with the derivative on the side on which each cell is. Free gas that the
+oil carries is one more state per cell, see linear_gas.py.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION_SLOPE, PR
 from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UNKNOWN, volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.linear_gas import linear_states
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -37,12 +39,12 @@ NEIGHBOURS = ((CENTRE, 0, 0), (BEFORE, 1, 0), (BEHIND, -1, 0), (BELOW, 0, 1), (A
 
 @dataclass(frozen=True)
 class LinearFilm:
-    """A film of n cells at rest, see above. SI units but for the cells' own: flow (n, n) sparse; storage (n,) of each
-    cell; by_place (n, 2) per m; by_rate (n, 2) per m/s; push (2, n) N on the journal; w: (m, k) unknown of the settled
+    """A film of n states at rest, see above. SI units but for the cells' own: flow and storage (n, n) sparse;
+    by_place (n, 2) per m; by_rate (n, 2) per m/s; push (2, n) N on the journal; w: (m, k) unknown of the settled
     film."""
 
     flow: csc_matrix
-    storage: Array
+    storage: csc_matrix
     by_place: Array
     by_rate: Array
     push: Array
@@ -59,12 +61,17 @@ def lying(film: VolumeFilm, share: float) -> VolumeFilm:
 def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | None = None) -> LinearFilm:
     """The film with its journal at rest at `place` (2,) in m. film: of a law whose forces are the pressures of its
     cells; total: omega_J + omega_S in rad/s; start: (m, k) unknown to begin from. Raises NotConverged."""
-    from scipy.sparse import csc_matrix  # takes long to load
+    from scipy.sparse import csc_matrix, diags  # takes long to load
 
     clearance = film.section.clearance
     x, y = (place / clearance).tolist()
     at = film_at(film, math.hypot(x, y), total)
-    solution = FilmSolver(at).steady(Motion((x, y), (0.0, 0.0), total), start, upwind=True)
+    motion = Motion((x, y), (0.0, 0.0), total)
+    solution = FilmSolver(at).steady(motion, start, upwind=True)
+    if at.law.carries_gas:
+        found = linear_states(at, motion, solution)
+        moved = found.by_place / clearance, found.by_rate / clearance
+        return LinearFilm(found.flow, found.storage, *moved, found.push, solution.w)
     data, (m, k) = volume_films([at]), film.grid.shape
     own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
     states, nothing = np.zeros((STATES, m, k)), np.zeros((m, k))
@@ -88,7 +95,7 @@ def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | Non
     weight = own.force_scale * cells[LOAD] * states[PRESSURE_SLOPE]
     return LinearFilm(
         flow=csc_matrix((entries, (np.tile(number.ravel(), len(NEIGHBOURS)), columns)), shape=(m * k, m * k)),
-        storage=storage.ravel(),
+        storage=diags(storage.ravel(), format="csc"),
         by_place=by_place / clearance,
         by_rate=by_rate / clearance,
         push=np.stack([(ring[row][:, None] * weight).ravel() for row in (PUSH_X, PUSH_Y)]),

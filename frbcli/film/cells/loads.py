@@ -32,6 +32,19 @@ class OilBalance:
 
 
 @dataclass(frozen=True)
+class GasBalance:
+    """Free gas of the whole bearing. share: its volume at the saturation pressure over that of the oil, in the mean; in
+    m^3/s at that pressure, in, out and what leaves the solution net; what does not balance over the gas that the oil
+    carries, dissolved or not."""
+
+    share: float
+    in_m3_s: float
+    out_m3_s: float
+    released_m3_s: float
+    defect_relative: float
+
+
+@dataclass(frozen=True)
 class Torque:
     """Torque of the film in N m by its two terms (3.17): added up on the journal, subtracted on the shell."""
 
@@ -52,7 +65,7 @@ class Torque:
 @dataclass(frozen=True)
 class FilmLoads:
     """Loads of the whole bearing. force: on the journal in N; p_max, p_min: absolute, Pa; oil_fraction: mean (4.46);
-    moment: of the force about the middle of the bearing in N m, NaN if not known."""
+    moment: of the force about the middle of the bearing in N m, NaN if not known; gas: None of oil without any."""
 
     force: tuple[float, float]
     torque: Torque
@@ -61,6 +74,7 @@ class FilmLoads:
     oil_fraction: float
     oil: OilBalance
     moment: tuple[float, float] = (math.nan, math.nan)
+    gas: GasBalance | None = None
 
 
 def loads(
@@ -85,6 +99,7 @@ def loads(
         oil_fraction=oil_fraction(film, solution),
         oil=oil_balance(film, solution),
         moment=moment(film, mean),
+        gas=gas_balance(film, solution),
     )
 
 
@@ -146,6 +161,15 @@ def oil_balance(film: VolumeFilm, solution: VolumeSolution) -> OilBalance:
     return OilBalance(
         scale * flows.inflow, scale * flows.outflow, scale * flows.supply, scale * flows.ends, flows.defect
     )
+
+
+def gas_balance(film: VolumeFilm, solution: VolumeSolution) -> GasBalance | None:
+    """The free gas of a solution, by the whole bearing; None if its oil carries none."""
+    section, gas = film.section, solution.gas
+    if gas is None:
+        return None
+    scale = section.copies * section.radius * section.width * section.clearance
+    return GasBalance(gas.mean, scale * gas.inflow, scale * gas.outflow, scale * gas.released, gas.defect)
 
 
 def peak(film: VolumeFilm, pressure: Array) -> float:

@@ -18,14 +18,18 @@ from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.carried import UPWIND, before_upstream
+from frbcli.film.cells.balance.gas import Carried, KeptGas, free_gas
+from frbcli.film.cells.balance.plain import CellBalances, gap_on
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
+    CARRIED_GAS,
     FRACTION,
     FRACTION_SLOPE,
     PRESSURE,
     PRESSURE_SLOPE,
     SOURCE,
     STATES,
+    TURNOVER,
     cell_states,
 )
 from frbcli.film.cells.data import volume_films
@@ -42,6 +46,9 @@ LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 DRY = -1e-6  # an oil fraction below this is none
 REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
+MOST_GAS = 60  # solutions with the free gas of the one before
+GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-10  # what it is off by; the latter where it does not fall any more
+TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
 STILL_MOTION, STILL_STEP = 1e-4, 1e-6
@@ -73,7 +80,7 @@ class FilmSolver:
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
-        self._before = np.full((m, k), UPWIND)
+        self._before, self._carried = np.full((m, k), UPWIND), Carried(np.zeros((m, k)), np.zeros((m, k)))
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
     def steady(self, motion: Motion, start: Array | None = None, upwind: bool = False) -> VolumeSolution:
@@ -91,22 +98,54 @@ class FilmSolver:
         rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
         storage = Storage(rate, np.zeros(grid.shape))
         solution = self._solve(motion, self.film.full() if start is None else start, storage)
-        for _ in range(REPEATED if law.keeps_oil and not law.starves and not upwind else 0):
+        for _ in range(REPEATED if law.keeps_oil and not (law.starves or upwind or law.carries_gas) else 0):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             again = self._solve(motion, solution.w, storage)
             solution = replace(again, iterations=solution.iterations + again.iterations)
+        if law.carries_gas:
+            gap = gap_on(self.film.section, motion, grid.centre, grid.height)
+            held = 0 if upwind else REPEATED
+            solution = self._carrying(motion, solution, storage, gap, np.zeros(grid.shape), held)
         return solution
 
-    def keep(self, motion: Motion, flowing: Motion, w: Array, rate: float, past: Array) -> tuple[VolumeSolution, Array]:
+    def keep(
+        self, motion: Motion, flowing: Motion, w: Array, rate: float, past: Array, gas: KeptGas | None = None
+    ) -> tuple[VolumeSolution, Array]:
         """One step of any implicit formula: d(H theta)/dt = rate H theta - past with past (m, k) from earlier steps.
 
         motion: at the end of the step; flowing: motion whose gap the oil flows through; w: (m, k) unknown to begin
-        from. Returns (solution, content H theta). Raises FilmUnsolved.
+        from; gas: of a law that carries any. Returns (solution, content H theta). Raises
+        FilmUnsolved.
         """
         gap = self.film.gap(motion.d, self.film.grid.centre)[:, None]
-        self._before = before_upstream(self.film.cells(w).fraction, motion.omega)
-        solution = self._solve(flowing, w, Storage(rate * gap, past))
+        storage = Storage(rate * gap, past)
+        if gas is not None:
+            self._carried = gas.guess
+        self._before = before_upstream(self.film.cells(w, gas and gas.guess).fraction, motion.omega)
+        solution = self._solve(flowing, w, storage)
+        if gas is not None:
+            solution = self._carrying(flowing, solution, storage, gap, gas.past)
         return solution, gap * solution.state.fraction
+
+    def _carrying(
+        self, motion: Motion, solution: VolumeSolution, storage: Storage, gap: Array, past: Array, held: int = 0
+    ) -> VolumeSolution:
+        """The solution with the free gas that its own oil carries, solved again until neither changes the other.
+
+        storage, gap, past: see free_gas; held: how often oil fractions are held anew at least, see steady.
+        """
+        film, before = self.film, math.inf
+        for number in range(MOST_GAS):
+            balances = CellBalances(film.section, film.grid, motion, self._before)
+            gas = free_gas(film.law, film.scales, balances, solution.state, storage, gap, past, self._carried)
+            if number >= held and (gas.off < GAS_ROUND_OFF or 0.5 * before <= gas.off < GAS_SETTLED):
+                return replace(solution, gas=gas)
+            before, self._carried = gas.off, gas.carried
+            if held:
+                self._before = before_upstream(solution.state.fraction, motion.omega)
+            again = self._solve(motion, solution.w, storage)
+            solution = replace(again, iterations=solution.iterations + again.iterations)
+        raise FilmUnsolved(f"the free gas did not settle in {MOST_GAS} solutions: it is off by {before:.1e} of the oil")
 
     def _solve(self, motion: Motion, start: Array, storage: Storage) -> VolumeSolution:
         """Solve by the first of ATTEMPTS that converges."""
@@ -149,6 +188,7 @@ class FilmSolver:
 
     def _assemble(self, motion: Motion, w: Array, storage: Storage) -> Array:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
+        self._states[CARRIED_GAS], self._states[TURNOVER] = self._carried
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
         self._states[BEFORE_UPSTREAM] = self._before
         self._flow(motion, storage.past)
@@ -184,13 +224,13 @@ class FilmSolver:
         pressure, fraction = self._states[PRESSURE], self._states[FRACTION]
         kept = np.abs(storage.factor * fraction) + np.abs(storage.past) + self._states[SOURCE]
         size = passed[0] * np.abs(pressure) + passed[1] * np.abs(fraction) + self._area * kept
-        terms: Array = np.maximum(size + np.abs(self._stencil[CENTRE]) * (1.0 + np.abs(w)), np.finfo(float).tiny)
+        terms: Array = np.maximum(size + np.abs(self._stencil[CENTRE]) * (1.0 + np.abs(w)), TINY)
         return terms
 
     def _solution(self, motion: Motion, w: Array, storage: Storage, iterations: int) -> VolumeSolution:
         """The solution that the arrays of the solver hold."""
         film, (pressure, fraction, source) = self.film, self._states[:PRESSURE_SLOPE]
-        state = CellState(*self._states[:BEFORE_UPSTREAM].copy())
+        state = CellState(*self._states[:CARRIED_GAS].copy())
         if film.law.clips:  # so do the flows, as the loads
             pressure[:] = film.pressure(state)
             self._flow(motion, storage.past)

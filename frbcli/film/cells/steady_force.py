@@ -9,7 +9,7 @@ import numpy as np
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.balance.newton_step import film_newton
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, TURNOVER
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
@@ -55,6 +55,8 @@ def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     data, c, (m, k) = volume_films([film]), film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
+    if solution.gas is not None:
+        states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
     slopes = []
     for g in (CARRIED, HELD):
         scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 FILMS = "films"  # whatever needs the films of a case and has no rules of its own
 RUN = "run"  # run-up, run-down, sweep, fit and compare
+STILL = "plan of films at rest"  # has the rules of a run but those of moving films
 ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
 COMPARISON, LADDER = "comparison", "accuracy"
 HEAT = "heat"

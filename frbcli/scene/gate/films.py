@@ -15,7 +15,7 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.gate.analysis import FILMS, RUN, SHEETS
-from frbcli.scene.keys import film_keys
+from frbcli.scene.keys import cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import misaligned
@@ -39,6 +39,14 @@ def supply_faults(case: Case) -> Iterator[Fault]:
         at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
         for found in section_faults(section):
             yield Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy)
+
+
+def gas_faults(case: Case) -> Iterator[Fault]:
+    """Films whose oil carries gas, which is a second state of each cell, in analyses that do not follow it."""
+    for key, name in dict(cavitation_keys(case)).items():
+        if law_named(name).carries_gas and form_of(case).solved:
+            problem = "lets the oil carry free gas, a state that only kinematic tests, stability and response follow."
+            yield Fault(key, name, None, problem, 'Write "peeken" here, which is its limit of fast exchange.')
 
 
 def sealed_faults(case: Case) -> Iterator[Fault]:

@@ -35,6 +35,7 @@ from frbcli.scene.gate.analysis import (
     SHEETS,
     SPEED_CYCLES,
     STABILITY,
+    STILL,
     WHIRLS,
 )
 from frbcli.scene.gate.rule import Faults, Rule
@@ -68,6 +69,7 @@ RULES = (
     Rule(films.unmodelled_rough_faults, tuple(each for each in ALL if each not in films.ROUGH)),
     Rule(films.rough_coupling_faults, (RUN,)),
     Rule(films.rough_sheet_faults, SHEETS),
+    Rule(films.gas_faults, (RUN, LADDER, *SHEETS, *EVERY_CYCLE), moving=True),
     Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.no_film_faults, KINEMATIC),
@@ -123,7 +125,8 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
         found += choice_faults(case, analysis)
         case = tested_case(case)
     for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
-        if analysis in rule.analyses and not (rule.last and found):
+        asked = RUN if analysis == STILL and not rule.moving else analysis
+        if asked in rule.analyses and not (rule.last and found):
             found += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
     return found
 

@@ -15,11 +15,13 @@ Faults = Iterable[Fault]
 @dataclass(frozen=True)
 class Rule:
     """A rule. of: the faults of a case; analyses: that it holds for; last: whether it is asked only of a case that has
-    passed all rules before, since it needs their subjects to be whole."""
+    passed all rules before, since it needs their subjects to be whole; moving: whether it holds for a run, but not for
+    the plan of a run that films at rest are made by."""
 
     of: Callable[[Case], Faults]
     analyses: tuple[str, ...]
     last: bool = False
+    moving: bool = False
 
 
 def refusal(

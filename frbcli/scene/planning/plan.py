@@ -58,13 +58,15 @@ REACHED = 1.2  # expected error over the target that counts as met
 Decide = Callable[[str, object, str], None]
 
 
-def make_plan(case: Case) -> Plan:
+def make_plan(case: Case, analysis: str = RUN) -> Plan:
     """Plan a case: the cheapest models that hold its target, or the most exact within its budget.
 
     Parameters
     ----------
     case : Case
         The machine. Mesh and tolerance that it sets are kept.
+    analysis : str
+        What it is planned for, "run" or "plan of films at rest": not all films that can be at rest can move.
 
     Returns
     -------
@@ -83,7 +85,7 @@ def make_plan(case: Case) -> Plan:
     >>> frbcli.make_plan(case).theory
     'short'
     """
-    require(case, RUN)
+    require(case, analysis)
     target, budget = case.accuracy.target, case.accuracy.budget
     plan = _plan(case, target)
     while budget is not None and _total_s(case, plan) > budget and target < LOOSEST:

@@ -10,6 +10,7 @@ import pytest
 from scipy.special import wrightomega
 
 from frbcli.film.cavitation.barotropic import Barotropic
+from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import LAW_NUMBERS, compiled_cells, wright_omega
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
@@ -43,6 +44,7 @@ LAWS: dict[str, Law] = {
     "elrod, compressible": Elrod(2e4),
     "two-phase 0.9": TwoPhase(0.9),
     "two-phase 0.9999": TwoPhase(0.9999, 1e-6),
+    "bubbly": Bubbly(0.1, 0.0, 5.0, 1e-3, 1e-2),
     "barotropic": Barotropic.scaled(
         SimpleNamespace(liquid_sound_speed=1400.0, vapour_sound_speed=350.0), FilmOil(250.0, 1e5, 0.9e5, 850.0)
     ),
@@ -210,7 +212,7 @@ def test_solved_films_balance_by_the_plain_equations(law: Law, flowing: Motion |
         solution, content = FilmSolver(film).keep(motion, flowing, film.full(), rate, past)
         storage = Storage(rate * gap_height(film.section, motion.d, film.grid.centre)[:, None], past)
         assert np.allclose(content, film.content(motion, solution.w), rtol=1e-12, atol=1e-12)
-    state = film.cells(solution.w)
+    state = film.cells(solution.w, solution.gas and solution.gas.carried)
     if flowing is not None:
         assert np.array_equal(solution.before, np.ones((M, K)))  # held by a step: of where it began, a full film
     elif law.starves or not law.keeps_oil:

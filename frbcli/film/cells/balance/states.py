@@ -10,9 +10,21 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 
-# Layers of the states of the cells: of the law, the slopes by w last; and the oil fraction before the cell upstream of
-# the face after each cell, as it is held, see carried.py.
-PRESSURE, FRACTION, SOURCE, PRESSURE_SLOPE, FRACTION_SLOPE, SOURCE_SLOPE, BEFORE_UPSTREAM, STATES = range(8)
+# Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
+# rate of its oil, as the law takes them, see gas.py; and the oil fraction before the cell upstream of the face after
+# each cell, as it is held, see carried.py.
+(
+    PRESSURE,
+    FRACTION,
+    SOURCE,
+    PRESSURE_SLOPE,
+    FRACTION_SLOPE,
+    SOURCE_SLOPE,
+    CARRIED_GAS,
+    TURNOVER,
+    BEFORE_UPSTREAM,
+    STATES,
+) = range(10)
 CENTRE = 1e-6  # of the clearance, squared: a journal in the centre does not whirl
 WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, and over which it fades
 
@@ -53,7 +65,7 @@ def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array
                     1.0,
                     0.0,
                 )
-                for layer in range(PRESSURE_SLOPE, BEFORE_UPSTREAM):
+                for layer in range(PRESSURE_SLOPE, CARRIED_GAS):
                     states[layer, i, j] = 0.0
 
 
@@ -74,7 +86,7 @@ def hold(states: Array, omega: float) -> None:
 @compiled(makes_arrays=True)
 def pressure_of(film: np.record, law: Array, w: float) -> float:
     """Pressure of one cell with the unknown w."""
-    unknown, state = np.empty(1), np.empty(STATES)
+    unknown, state = np.empty(1), np.zeros(STATES)
     unknown[0] = w
     call_cells(film.cells_at, 1, law, film.scales, unknown, state)
     return float(state[PRESSURE])

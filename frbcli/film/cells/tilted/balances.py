@@ -18,7 +18,7 @@ from frbcli.film.cells.balance.balances import (
     SUPPLY_NET,
 )
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion, Storage
@@ -31,7 +31,7 @@ def tilted_balances(
     """Fill stencil, right and flows as `balances` does, without what is stored now; states: see there."""
     grid, k = film.grid, past.shape[1]
     balance = CellBalances(film.section, grid, motion, states[BEFORE_UPSTREAM])
-    state = CellState(*states[:BEFORE_UPSTREAM])
+    state = CellState(*states[:CARRIED_GAS])
     residual, entries = balance.residual(state, Storage(np.zeros((1, 1)), past))
     right[:] = 0.0
     right[:, :, k + BY_ITSELF] = -residual

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
+from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import Section
 
@@ -81,6 +81,20 @@ def summed(films: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
             lost / sum(passed) if sum(passed) > 0.0 else 0.0,
         ),
         moment=_sum(moments),
+        gas=_gas([each.gas for each in loads if each.gas is not None]),
+    )
+
+
+def _gas(parts: Sequence[GasBalance]) -> GasBalance | None:
+    """The gas of a bearing from that of its lands, which hold about as much oil."""
+    if not parts:
+        return None
+    return GasBalance(
+        sum(each.share for each in parts) / len(parts),
+        sum(each.in_m3_s for each in parts),
+        sum(each.out_m3_s for each in parts),
+        sum(each.released_m3_s for each in parts),
+        max(each.defect_relative for each in parts),
     )
 
 

@@ -1,0 +1,178 @@
+"""Bubbly oil: free gas goes with the oil, leaves the solution and goes back into it, each at its own rate.
+
+The oil is incompressible, its free gas ideal and isothermal. With c the volume of free gas at the saturation pressure
+p_s over the volume of the oil, and u = p / p_s absolute,
+
+    theta = u / (u + c).
+
+Henry's law: the oil dissolves the volume alpha u, alpha being Bunsen's coefficient; with all the gas that it carries,
+C = alpha + c_0 (it is supplied saturated at p_s, with the free gas c_0), the free gas in equilibrium is c_e = max(C -
+alpha u, 0). It approaches this with the oil,
+
+    dc/dt = (c_e - c) / tau,   tau = tau_release where c < c_e, tau_absorption where c > c_e.
+
+An implicit balance of the free gas of a cell has the one solution
+
+    c = c_in + (c_e - c_in) / (1 + tau r),
+
+c_in being what the balance would give without exchange and r the rate in 1/s at which the oil of the cell is replaced
+or stored anew (gas.py). So c follows from the pressure of the cell, and a film has one unknown per cell, as with any
+other law. tau = 0 is Peeken's model: c = c_e. With tau = oo the film is barotropic, of a constant c.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, Self
+
+import numpy as np
+
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+
+TINY = 1e-300  # a coefficient or a root that is no divisor
+INSTANT = 1e-25  # s, as good as none
+
+
+@dataclass(frozen=True)
+class Bubbly(Law):
+    """bunsen: alpha; supplied: c_0; saturation: p_s in 1/s; release_time, absorption_time: in s."""
+
+    bunsen: float
+    supplied: float
+    saturation: float
+    release_time: float
+    absorption_time: float
+
+    name = "bubbly"
+    label = "bubbly"
+    equation = "(Henry's law with rates)"
+    meaning = "Bubbles that last: gas is released and absorbed at rates, and goes with the oil."
+    cell_words = "free gas goes with the oil, and is released and absorbed in time"
+    keys = (
+        Key("bunsen", 0.1, "Bunsen's coefficient, the share of dissolved gas", "0.1", least=0.0),
+        Key("entrained", 0.0, "free gas of the supplied oil over its volume, at saturation_pressure", "0.02",
+            least=0.0),
+        Key("saturation_pressure", None, "absolute, at which the supplied oil is saturated; oil.cavitation_pressure if "
+            "not given", "1 bar", unit="Pa", above=0.0),
+        Key("release_time", 1e-3, "time constant with which gas leaves the solution", "1 ms", unit="s", least=0.0),
+        Key("absorption_time", 1.0, "time constant with which gas is dissolved again", "1 s", unit="s", least=0.0),
+    )  # fmt: skip
+    carries_gas = True
+    cost = 1.5
+
+    @classmethod
+    def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        pressure = oil.cavitation if given.saturation_pressure is None else given.saturation_pressure
+        return cls(given.bunsen, given.entrained, pressure / oil.scale, given.release_time, given.absorption_time)
+
+    @classmethod
+    def legend(cls, given: Any) -> str:
+        return f"bubbly, $\\alpha_B$ = {given.bunsen:g}, in equilibrium"
+
+    def cells(self, w: Array, scales: Scales) -> CellState:
+        """The state of cells whose gas is in equilibrium."""
+        return self.cells_with_gas(w, scales, np.zeros_like(w), np.zeros_like(w))
+
+    def cells_with_gas(self, w: Array, scales: Scales, carried: Array, turnover: Array) -> CellState:
+        """The state of cells with free gas of their own; carried: c_in; turnover: r.
+
+        w + 1 + p_cav / reference = theta + p / reference is a quadratic in u where c = a - b u, which holds with other
+        a and b for release, absorption, and absorption of all gas. Below p = 0 the law goes on linearly.
+        """
+        ratio, total = self.saturation / scales.reference, self.bunsen + self.supplied
+        level = w + 1.0 + (scales.cavitation + scales.ambient) / scales.reference
+        release, absorb = (
+            1.0 / (1.0 + max(time, INSTANT) * turnover) for time in (self.release_time, self.absorption_time)
+        )
+        kept = (1.0 - absorb) * carried  # where the oil dissolves as much as it can
+        slope = max(self.bunsen, TINY)
+        balanced, clear = (total - carried) / slope, np.full_like(w, total / slope)
+        releases = level < _level(balanced, carried, ratio)
+        clears = ~releases & (level >= _level(clear, kept, ratio))
+        share = np.where(releases, release, np.where(clears, 0.0, absorb))
+        a = np.where(clears, kept, carried + share * (total - carried))
+        e = 1.0 - share * self.bunsen
+        inside = np.maximum(level, 0.0)
+        b = ratio * a + 1.0 - inside * e
+        root = np.sqrt(np.maximum(b * b + 4.0 * ratio * e * inside * a, TINY))
+        high = (root - b) / np.where(b > 0.0, 1.0, 2.0 * ratio * e)
+        u = np.where(b > 0.0, 2.0 * inside * a / np.maximum(b + root, TINY), high)
+        by_w = (a + e * u) / root
+        u = u + np.minimum(level, 0.0) * by_w
+        zero = np.zeros_like(w)
+        return CellState(
+            pressure=u * self.saturation - scales.ambient,
+            fraction=level - ratio * u,
+            source=zero,
+            pressure_slope=self.saturation * by_w,
+            fraction_slope=1.0 - ratio * by_w,
+            source_slope=zero,
+        )
+
+    @staticmethod
+    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """State of one cell, see `cells_with_gas`; its c_in and r are the last two parameters."""
+        bunsen, supplied, saturation, release_time, absorption_time, carried, turnover = parameters
+        ratio, total = saturation / scales.reference, bunsen + supplied
+        level = w + 1.0 + (scales.cavitation + scales.ambient) / scales.reference
+        slope = max(bunsen, 1e-300)
+        balanced = (total - carried) / slope
+        if balanced > 0.0 and level < ratio * balanced + balanced / (balanced + carried):
+            share = 1.0 / (1.0 + release_time * turnover)
+            a = carried + share * (total - carried)
+        else:
+            share = 1.0 / (1.0 + absorption_time * turnover)
+            kept, clear = (1.0 - share) * carried, total / slope
+            if clear > 0.0 and level < ratio * clear + clear / (clear + kept):
+                a = carried + share * (total - carried)
+            else:
+                share, a = 0.0, kept
+        e, inside = 1.0 - share * bunsen, max(level, 0.0)
+        b = ratio * a + 1.0 - inside * e
+        root = math.sqrt(max(b * b + 4.0 * ratio * e * inside * a, 1e-300))
+        u = 2.0 * inside * a / (b + root) if b > 0.0 else (root - b) / (2.0 * ratio * e)
+        by_w = (a + e * u) / root
+        u += min(level, 0.0) * by_w
+        return (
+            u * saturation - scales.ambient, level - ratio * u, 0.0, saturation * by_w, 1.0 - ratio * by_w, 0.0
+        )  # fmt: skip
+
+    @property
+    def supplied_gas(self) -> float:
+        """See Law.supplied_gas: c_0."""
+        return self.supplied
+
+    @property
+    def gas_content(self) -> float:
+        """See Law.gas_content: C."""
+        return self.bunsen + self.supplied
+
+    def standing(self, scales: Scales) -> float:
+        """See Law.standing."""
+        u = scales.ambient / self.saturation
+        free = max(self.gas_content - self.bunsen * u, 0.0)
+        return -free / (u + free) - scales.cavitation / scales.reference
+
+    def free_gas(self, state: CellState, scales: Scales) -> Array:
+        """See Law.free_gas: c."""
+        u = (state.pressure + scales.ambient) / self.saturation
+        return np.asarray(u * (1.0 / state.fraction - 1.0))
+
+    def exchanged(self, pressure: Array, carried: Array, scales: Scales) -> tuple[Array, Array]:
+        """See Law.exchanged: c_e and tau."""
+        settled = self.bunsen + self.supplied - self.bunsen * (pressure + scales.ambient) / self.saturation
+        settled = np.maximum(settled, 0.0)
+        return settled, np.where(carried < settled, self.release_time, self.absorption_time)
+
+    def curve(self, ratio: Array) -> Array:
+        """theta at p / p_cav of oil whose gas is in equilibrium; the ratio is above 0."""
+        u = ratio / self.saturation
+        free = np.maximum(self.bunsen + self.supplied - self.bunsen * u, 0.0)
+        return np.asarray(u / (u + free), dtype=np.float64)
+
+
+def _level(u: Array, free: Array, ratio: float) -> Array:
+    """theta + p / reference at the pressure u of cells with the free gas c; below all others where u is not above 0."""
+    inside = np.maximum(u, TINY)
+    return np.where(u > 0.0, ratio * inside + inside / (inside + free), -np.inf)

@@ -1,0 +1,95 @@
+"""Films whose oil carries gas, linearised: against Peeken's model, differences of the static force, a closed form."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from volume_films import section_of
+
+from frbcli.bearing_tests.march import march
+from frbcli.film.cavitation.bubbly import Bubbly
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at
+from frbcli.film.cells.film import VolumeFilm, fitted_grid
+from frbcli.film.cells.linear_gas import linear_states
+from frbcli.film.cells.linearised import LinearFilm, linear_film
+from frbcli.film.cells.loads import force, pushed
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.gap import Section
+
+OMEGA, PLACE = 600.0, (0.3, -0.5)
+RATES = [(1e-3, 3e-3), (1e-4, 1.0), (0.0, 1e-2)]
+
+
+def film_of(law: Law, supply: str) -> VolumeFilm:
+    section = section_of(supply, 2e5)
+    return VolumeFilm(section, fitted_grid(section, (0.0, 0.0), 32, 4), law, 500.0)
+
+
+def air(section: Section) -> float:
+    return 1e5 / section.pressure_scale
+
+
+def linear(law: Law, supply: str) -> LinearFilm:
+    film = film_of(law, supply)
+    return linear_film(film, film.section.clearance * np.array(PLACE), OMEGA)
+
+
+@pytest.mark.parametrize("supply", ["circumferential-groove", "axial-groove"])
+def test_at_once_the_dynamic_stiffness_is_that_of_peekens_model(supply: str) -> None:
+    """Whose derivatives are the compiled ones, on one state per cell."""
+    saturation = air(section_of(supply))
+    bubbly, peeken = linear(Bubbly(0.1, 0.0, saturation, 0.0, 0.0), supply), linear(Peeken(0.1), supply)
+    for s in (0.0, 300j, 20.0 + 1000j):
+        exact = stiffness_at(peeken, s)
+        assert stiffness_at(bubbly, s) == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())
+
+
+@pytest.mark.parametrize("supply", ["circumferential-groove", "axial-groove"])
+@pytest.mark.parametrize("times", RATES)
+def test_at_rest_it_is_the_derivative_of_the_force_of_films_that_have_settled(
+    times: tuple[float, float], supply: str
+) -> None:
+    film = film_of(Bubbly(0.1, 0.02, air(section_of(supply)), *times), supply)
+
+    def settled(x: float, y: float) -> np.ndarray:
+        found = FilmSolver(film).steady(Motion((x, y), (0.0, 0.0), OMEGA), upwind=True)
+        return np.array(force(film, found.state.pressure))
+
+    (x, y), step = PLACE, 1e-5
+    by_x, by_y = settled(x + step, y) - settled(x - step, y), settled(x, y + step) - settled(x, y - step)
+    expected = -np.stack([by_x, by_y], axis=1) / (2.0 * step * film.section.clearance)
+    found = stiffness_at(linear_film(film, film.section.clearance * np.array(PLACE), OMEGA), 0.0)
+    assert found == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("rate_times_tau", [0.0, 0.1, 1.0, 10.0])
+def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_tau: float) -> None:
+    """Of the mode cos(phi) on equal cells: s (theta_0 H + K p / p_s) + P lambda p / p_s = 0, see docs/theory.md."""
+    bunsen, free, cells, rate = 0.1, 0.05, 24, 500.0
+    section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 1e5, 1, "symmetry", "symmetry")
+    grid, angle = fitted_grid(section, (0.0, 0.0), cells, 1), 2.0 * math.pi / cells
+    saturation, time = air(section), rate_times_tau / rate
+    film = VolumeFilm(section, grid, Bubbly(bunsen, free, saturation, time, time), 500.0)
+    still = Motion((0.0, 0.0), (0.0, 0.0), 0.0)
+    settled = next(march(film, lambda _: still, np.array([0.0, 1e-3]))).solution
+    found, s = linear_states(film, still, settled), 1j * rate
+    compliance = (free + bunsen / (1.0 + s * time)) / (1.0 + free) ** 2
+    stiffness = saturation * (2.0 - 2.0 * math.cos(angle)) / angle**2
+    mode = s / (1.0 + free) / (stiffness + s * compliance)  # p / p_s per displacement, of H = 1 - d cos(phi)
+    unit = saturation * np.cos(grid.centre)[:, None]
+    expected = -mode * pushed(film, unit)[1]
+    whole = LinearFilm(found.flow, found.storage, found.by_place, found.by_rate, found.push, settled.w)
+    assert stiffness_at(whole, s)[1, 1] == pytest.approx(expected, rel=1e-6)
+
+
+def test_projection_is_exact_where_it_is_made() -> None:
+    film = linear(Bubbly(0.1, 0.0, air(section_of("circumferential-groove")), 1e-3, 1.0), "circumferential-groove")
+    few = dynamic_stiffness(film, [150.0, 600.0])
+    for s in (0.0, 150j, 600j):
+        exact = stiffness_at(film, s)
+        assert few.at(s)[0] == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())
