@@ -64,11 +64,12 @@ from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.html import html_table
-from frbcli.units import NUMBER
+from frbcli.units import NUMBER, display
 
 DEFAULT_HOLD = 0.5
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
 COMPOSITE_MODULUS, BOUNDARY_FRICTION = 115e9, 0.1  # steel on steel, with a boundary layer of oil
+FEW_TOUCH = 3.0  # roughnesses between two surfaces, beyond which few of their summits touch
 CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of the films
 STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
@@ -242,6 +243,15 @@ class Contact(Model):
     def rough(self) -> bool:
         """Whether summits of rough surfaces touch."""
         return self.model == "asperities"
+
+    @property
+    def about_summits(self) -> tuple[str, str] | None:
+        """The line of the plan on rough surfaces: their roughness, and what they do; None between smooth ones."""
+        if self.roughness is None:
+            return None
+        close = display(FEW_TOUCH * self.roughness, "m")
+        reason = f"asperities carry beside the film in gaps below some {close}, with friction {self.friction:g}"
+        return f"rough, {display(self.roughness, 'm')}", reason
 
     @property
     def wear_rate(self) -> float | None:

@@ -122,6 +122,13 @@ def test_what_rough_surfaces_are_not_modelled_with(settings: tuple[str, ...], ke
     assert problem in faults[key]
 
 
+def test_the_plan_tells_what_rough_surfaces_do() -> None:
+    (told,) = (decision for decision in make_plan(rigid()).decisions if decision.choice == "contact")
+    assert told.value == "rough, 0.4 um"
+    assert "below some 1.2 um" in told.reason
+    assert not any(decision.choice == "contact" for decision in make_plan(load_case("rigid")).decisions)
+
+
 def test_rough_shells_are_in_line() -> None:
     with pytest.raises(InputError, match="same along the axis"):
         require(rigid('bearing.misalignment=["0.1 mrad", "0 mrad"]'), BEARING)

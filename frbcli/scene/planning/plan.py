@@ -224,6 +224,8 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for place in places:
         if (sealing := place.geometry.sealing) and form_of(case).solved:
             decide(f"{place.name} ends".strip().replace("_", " "), *sealing)
+    if summits := case.contact.about_summits:
+        decide("contact", *summits)
     for decided in (*clearance_decisions(case), *input_decisions(case)):
         decide(*decided)
     if case.heat is not None:
