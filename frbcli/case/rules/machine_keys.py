@@ -7,12 +7,14 @@ import re
 from frbcli.errors import Fault
 
 TABLES = (
-    "rotor", "shaft", "disk", "bearing", "housing", "magnetic_pull", "thrust_bearing", "axial", "oil", "film", "thermal"
+    "rotor", "shaft", "disk", "bearing", "housing", "magnetic_pull", "thrust_bearing", "axial", "oil", "film",
+    "thermal", "contact",
 )  # fmt: skip
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
-# course and the end of a run. And the one number of the machine in another table.
-OTHERS = re.compile(r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|thermal\.hottest_film")
-CONTACT_STIFFNESS = "contact.stiffness"
+# course and the end of a run.
+OTHERS = re.compile(
+    r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|thermal\.hottest_film|contact\.eccentricity"
+)
 
 _NUMBERED = re.compile(r"\.\d+(?=\.|$)")
 
@@ -20,7 +22,7 @@ _NUMBERED = re.compile(r"\.\d+(?=\.|$)")
 def machine_fault(key: str, option: str) -> Fault | None:
     """Why a key cannot be varied as a number of the machine; None if it is one. option: where it was given."""
     table = key.partition(".")[0].strip()
-    if key == CONTACT_STIFFNESS or (table in TABLES and not OTHERS.fullmatch(_NUMBERED.sub(".0", key.strip()))):
+    if table in TABLES and not OTHERS.fullmatch(_NUMBERED.sub(".0", key.strip())):
         return None
     problem = "is no number of the machine: it is a setting of the run or of its computation."
     tables = ", ".join(f"[{name}]" for name in TABLES[:-1])
