@@ -71,6 +71,8 @@ MORE = [
      "A turbocharger in an elastic housing, shaken by orders 2, 4 and 6 of its engine."),
     (["runup", "cold-start", "-o", "cold.h5"], "cold-summary.png",
      "A cold start: the rotor idles while its oil warms up, and runs up on warm oil."),
+    (["thrust", "turbocharger-car-thrust"], "turbocharger-car-thrust-thrust.png",
+     "The thrust bearing of a turbocharger where it carries its axial load."),
     (["bearing", "bearing", "--over", "eccentricity"], "bearing-bearing.png", "A bearing over its eccentricity."),
 ]  # fmt: skip
 LONGEST = 40  # lines of output on a page

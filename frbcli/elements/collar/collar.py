@@ -23,7 +23,6 @@ from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime, largest
 from frbcli.case.thermal import Thermal
-from frbcli.elements.collar.heat import PadHeat
 from frbcli.errors import Fault, NotConverged
 from frbcli.film.pads.geometry import Pad
 from frbcli.film.pads.table import GapTable, ScaledPads, gap_table
@@ -202,6 +201,8 @@ class Collar:
 
         def loss_and_flow(viscosity: float) -> tuple[float, float]:
             return viscosity * omega**2 * films.torque, omega * films.side_flow
+
+        from frbcli.elements.collar.heat import PadHeat  # its kernels are compiled
 
         heat = PadHeat(self.oil, self.thermal)
         return _Side(films, heat.warm(loss_and_flow, omega, gap, films.inverse_gap)[0])

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.elements import ThrustBearing
+from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
+from frbcli.case.thermal import Thermal
 from frbcli.elements.collar.collar import BOTH, pad_of
-from frbcli.elements.collar.heat import PadHeat
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import COARSE, MESH, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
+
+if TYPE_CHECKING:
+    from frbcli.elements.collar.heat import PadHeat
 
 Floats = NDArray[np.float64]
 
@@ -136,8 +141,14 @@ def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
     pressure = oil.cavitation_pressure - oil.ambient_pressure
     film_oil = PadOil(case.oil_viscosity, case.film.cavitation, pressure)
     meshes = pad_mesh(pad, *MESH), pad_mesh(pad, *COARSE)
-    heat = None if case.heat is None else PadHeat(case.oil, case.heat)
+    heat = None if case.heat is None else _heat(case.oil, case.heat)
     return ThrustFilms(bearing, pad, *meshes, film_oil, oil.ambient_pressure, oil.temperature, heat)
+
+
+def _heat(oil: Oil, thermal: Thermal) -> PadHeat:
+    from frbcli.elements.collar.heat import PadHeat  # its kernels are compiled
+
+    return PadHeat(oil, thermal)
 
 
 def _sum(films: tuple[PadFilm, ...], read: Callable[[PadFilm], float], opposed: bool = False) -> float:
