@@ -46,8 +46,8 @@ LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 DRY = -1e-6  # an oil fraction below this is none
 REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
-MOST_GAS = 60  # solutions with the free gas of the one before
-GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-10  # what it is off by; the latter where it does not fall any more
+MOST_GAS = 100  # solutions with the free gas of the one before
+GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what it is off by; the latter where it does not fall any more
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -138,7 +138,7 @@ class FilmSolver:
         for number in range(MOST_GAS):
             balances = CellBalances(film.section, film.grid, motion, self._before)
             gas = free_gas(film.law, film.scales, balances, solution.state, storage, gap, past, self._carried)
-            if number >= held and (gas.off < GAS_ROUND_OFF or 0.5 * before <= gas.off < GAS_SETTLED):
+            if number >= held and (gas.off < GAS_ROUND_OFF or before <= gas.off < GAS_SETTLED):
                 return replace(solution, gas=gas)
             before, self._carried = gas.off, gas.carried
             if held:

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from volume_films import ROTATION, section_of
 
+import frbcli
 from frbcli.bearing_tests.march import Moment, march, squeeze_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import CARRIED_GAS, LAW_NUMBERS, TURNOVER
@@ -22,6 +23,8 @@ from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
+from frbcli.scene.gate.analysis import STABILITY
+from frbcli.scene.gate.gate import require
 
 NEVER = 1e12  # s
 SUPPLIES = ("circumferential-groove", "axial-groove")
@@ -138,6 +141,26 @@ def test_gas_that_is_absorbed_slowly_goes_round_with_the_oil() -> None:
     assert slow is not None
     assert slow.mean > 1.1 * fast.mean
     assert slow.outflow > 2.0 * fast.outflow
+
+
+def test_rotation_states_the_balance_of_the_gas() -> None:
+    """Of a shipped case whose gas settles slowly: a stop where it falls by less than a half leaves 2e-9."""
+    found = frbcli.rotation(frbcli.load_case("bearing-axial-groove"), ["peeken", "bubbly"])
+    table = found.to_pandas()
+    gas = found.results[1].loads.gas  # type: ignore[union-attr]
+    assert gas is not None
+    assert abs(gas.defect_relative) < 1e-10
+    assert gas.released_m3_s == pytest.approx(gas.out_m3_s, rel=1e-9)
+    assert np.isnan(table["free_gas"][0])
+    assert table["free_gas"][1] == gas.share > 0.0
+
+
+def test_runs_are_refused_with_the_limit_that_can_be_run() -> None:
+    case = frbcli.load_case("rigid", ["film.cavitation=bubbly"])
+    with pytest.raises(frbcli.InputError, match="bubbly: lets the oil carry free gas"):
+        frbcli.make_plan(case)
+    frbcli.make_plan(frbcli.load_case("rigid", ["film.cavitation=peeken"]))
+    assert require(case, STABILITY) is None  # type: ignore[func-returns-value]
 
 
 # An enclosed film, closed at both ends; its journal is squeezed by a small amplitude.
