@@ -161,11 +161,11 @@ def test_a_small_unbalance_acts_linearly(short: tuple[Machine, CyclePoint]) -> N
     assert (two.nu - rest.nu) / (one.nu - rest.nu) == pytest.approx(4.0, rel=0.02)
 
 
-def run_at(case: frbcli.Case, speed_Hz: float, duration_s: float, path: Path) -> dict[str, np.ndarray]:
+def run_at(case: frbcli.Case, speed_Hz: float, duration_s: float, path: Path, *more: str) -> dict[str, np.ndarray]:
     """The last half of a run at constant speed."""
     settings = [f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", f"speed.duration={duration_s} s"]
     settings += ["output.step=5e-5 s", "accuracy.tolerance=1e-7", "accuracy.steps_per_revolution=200"]
-    signals = frbcli.runup(load_case_text(case.source_text, settings, "run"), path / "r.h5").signals
+    signals = frbcli.runup(load_case_text(case.source_text, [*settings, *more], "run"), path / "r.h5").signals
     return {name: np.asarray(values)[len(np.asarray(values)) // 2 :] for name, values in signals.items()}
 
 
@@ -212,18 +212,20 @@ def test_a_whirl_that_beats_with_the_unbalance_is_found_and_stable() -> None:
 
 
 @pytest.mark.nightly
-@pytest.mark.parametrize("speed_Hz", [189.4, 193.0, 196.8])
-def test_a_beat_is_that_of_a_run(speed_Hz: float, tmp_path: Path) -> None:
+@pytest.mark.parametrize(("speed_Hz", "beats"), [(193.0, 4.0), (196.8, 4.0)])
+def test_a_beat_is_that_of_a_run(speed_Hz: float, beats: float, tmp_path: Path) -> None:
     """Frequency over whole beats, in which the phase against half the speed gains a turn, and eccentricity."""
     whirl = beating_at(speed_Hz)
     beat_s = 1.0 / abs(2.0 * whirl.frequency_Hz - speed_Hz)
-    signals = run_at(jeffcott(1.0, SHORT, "start.displacement=[0.3, -0.3]"), speed_Hz, 5.0 * beat_s, tmp_path)
+    case = jeffcott(1.0, SHORT, "start.displacement=[0.3, -0.3]")
+    signals = run_at(case, speed_Hz, beats * beat_s, tmp_path, "output.step=0.5 ms", "accuracy.tolerance=1e-5",
+                     "accuracy.steps_per_revolution=50")  # fmt: skip
     t, z = signals["time_s"], signals["journal_x_m"] + 1j * signals["journal_y_m"]
     phase = np.unwrap(np.angle((z - z.mean()) * np.exp(-1j * np.pi * speed_Hz * t)))
-    smooth = np.convolve(phase, np.ones(4001) / 4001, "valid")
-    beats = np.flatnonzero(np.diff(np.floor(smooth / np.pi)))
-    seen = 0.5 * speed_Hz + 0.5 / np.diff(t[beats]).mean()
-    assert len(beats) > 1
+    smooth = np.convolve(phase, np.ones(401) / 401, "valid")
+    passed = np.flatnonzero(np.diff(np.floor(smooth / np.pi)))
+    seen = 0.5 * speed_Hz + 0.5 / np.diff(t[passed]).mean()
+    assert len(passed) > 1
     assert whirl.frequency_Hz == pytest.approx(seen, abs=1e-4)
     assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=1e-5)
     assert whirl.stable

@@ -20,14 +20,14 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 PERIODS = 100  # of the whirl, and at least one of the beat between it and half of the rotor's, before an answer
-MOST_INTERVALS = 300_000
+MOST_INTERVALS = 1_000_000
 AT_ONCE = 25  # periods
 SEEN = 3.0  # natural logarithm of a growth beyond what a motion that comes and goes makes of a disturbance
 DRIFT = 0.3  # logarithm of what the integration may make of the disturbance that neither grows nor decays
 
 
 def is_stable(machine: Machine, space: StateSpace, torus: Torus, cycle: Array) -> bool | None:
-    """Whether all disturbances of a motion decay; None where that is not seen in 300 000 intervals. cycle: y of the
+    """Whether all disturbances of a motion decay; None where that is not seen in a million intervals. cycle: y of the
     cycle that the motion is next to, see balance.py, whose multipliers tell how short the intervals have to be."""
     beat = abs(2.0 * torus.nu - torus.omega)
     fewest = PERIODS if beat == 0.0 else max(PERIODS, math.ceil(torus.nu / beat))
