@@ -38,8 +38,8 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
         return data, [Breach(("speed", *given), *fault.args)]
     follows = {"from": speeds[0], "to": max(speeds, key=abs), "duration": times[-1]}
     found = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
-    kept = {key: value for key, value in speed.items() if key not in ("points", "file", "tacho", "pulses", *RAMP)}
-    ramp = {key: f"{value!r} {RAMP[key]}" for key, value in follows.items()}
+    kept = {key: value for key, value in speed.items() if key not in ("points", "file", "tacho", "pulses")}
+    ramp = {key: f"{value!r} {RAMP[key]}" for key, value in follows.items() if key not in kept}
     columns = dict(zip((TIMES, SPEEDS), written, strict=True))
     return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in found if breach]
 
