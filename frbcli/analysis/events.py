@@ -129,7 +129,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     seen = [joined(*node) for node in nodes]
     events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, before)
     named = list(signals.films(run.signals))
-    last = {film: signals.piece(run, joined("eccentricity", film), len(run) - 1, len(run))[0] for film in named}
+    last = {film: signals.piece(run, _nearest(run, film), len(run) - 1, len(run))[0] for film in named}
     touching = max(named, key=lambda film: float(last[film]), default="")
     on_pads = list(_collar_contact(run))
     for film in named:
@@ -270,12 +270,18 @@ def _collar_contact(run: RunLike) -> Iterator[Event]:
         yield Event("contact", None, t, speed, None, None, point="collar")
 
 
+def _nearest(run: RunLike, film: str) -> str:
+    """The signal that tells how near a journal is to its shell: of one that tilts, at an end."""
+    at_end = joined("end_eccentricity", film)
+    return at_end if at_end in run.signals else joined("eccentricity", film)
+
+
 def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
     """The first touch of each contact; `ended`: the run stopped because of one, which then is its last sample."""
     limit = run.references.get("contact_eccentricity", CONTACT_ECCENTRICITY)
     touched, count = -np.inf, len(run)
     for start, stop in pieces(count):
-        touches = signals.piece(run, joined("eccentricity", film), start, stop) >= limit
+        touches = signals.piece(run, _nearest(run, film), start, stop) >= limit
         if ended and stop == count:
             touches[-1] = True
         samples = np.flatnonzero(touches)

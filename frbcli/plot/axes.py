@@ -232,11 +232,11 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
     run : Run
         A run, see `read_run`, `runup` and `measured_run`.
     kind : str
-        "force", "film-thickness", "power", "torque" or "oil-flow".
+        "force", "film-thickness", "power", "torque", "oil-flow" or "tilt".
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; without it those of a new figure, `ax.figure`.
     part : int
-        0 and 1 are x and y of "force".
+        0 and 1 are x and y of "force" and "tilt".
     over : {"time", "speed"}
         The axis.
 

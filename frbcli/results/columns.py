@@ -71,6 +71,8 @@ MACHINE_SIGNALS = (Column("time", "s", "time"), Column("speed", "Hz", "rotor spe
 # Those of one of several films, bearings or disks have its name behind the quantity: eccentricity_inner, disk_left_x_m
 PART_SIGNALS = (
     Column("eccentricity", "", "relative eccentricity of a journal"),
+    Column("end_eccentricity", "", "larger of the relative eccentricities at both ends of a film whose journal tilts"),
+    Column("tilt", "rad", "tilt of a journal against its shell about x and y", shape=(2,)),
     Column("oil_fraction", "", "mean oil fraction of a film"),
     Column("journal", "m", "displacement of a journal", shape=(2,)),
     Column("disk", "m", "displacement of a disk", shape=(2,)),

@@ -6,8 +6,6 @@ leaves through the ends.
 
 from __future__ import annotations
 
-import math
-
 from frbcli.film.cells.motion import turned
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.cosimulation import in_turn
@@ -19,7 +17,7 @@ from frbcli.solve.state import ERROR_BEFORE, STEP, STEP_BEFORE, STEP_DONE, TIME,
 
 def largest_eccentricity(system: System, state: State) -> float:
     """The largest eccentricity of all journals."""
-    return max(math.hypot(*displacement(system, state, i)) for i in range(len(system.names)))
+    return float(system.eccentricities(state.q).max())
 
 
 def with_clearances(before: System, after: System, profile: SpeedProfile, state: State, apart: bool) -> State:

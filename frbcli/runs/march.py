@@ -21,7 +21,7 @@ from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, su
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
-from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals
+from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals, tilt_signals
 from frbcli.runs.record.header import FLOW, named, recorded, ring_names
 from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
@@ -166,8 +166,9 @@ class March:
     @property
     def _now(self) -> System:
         """The current machine with the clearances that heat has brought about."""
-        films = replace(self._system.films, clearances=tuple(self._rotor.clearances.tolist()))
-        return replace(self._system, films=films)
+        films = self._system.films
+        clearances = self._rotor.clearances[:: films.stations].tolist()
+        return replace(self._system, films=replace(films, clearances=tuple(clearances)))
 
     @property
     def _warm(self) -> System:
@@ -244,12 +245,14 @@ class March:
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
         system = self._system
         clearances = self._heat.clearances(len(times)) or system.clearances
-        for name, selection, clearance in zip(system.names, system.rotor.journals, clearances, strict=True):
-            journal = q @ selection.T
+        films = zip(system.names, system.rotor.journals, clearances, system.films.standing, strict=True)
+        for name, selection, clearance, standing in films:
+            journal = q @ selection.T + standing
             signals[named("eccentricity", name)] = np.hypot(journal[:, 0], journal[:, 1]) / clearance
         for name, selection in system.rotor.points:
             point = q @ selection.T
             signals[f"{name}_x_m"], signals[f"{name}_y_m"] = point[:, 0], point[:, 1]
+        signals |= tilt_signals(system, q)
         for i, name in enumerate(system.names):
             if system.remembering[i]:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
@@ -339,13 +342,13 @@ class March:
         """The progress of the run. until: end in s of a run that is repeated for its error."""
         numbers = self._state.numbers
         t, end = self.time, self._profile.end if until is None else until
-        here = self._system.rotor.journals @ self._state.q / self._rotor.clearances[:, None]
+        here = self._now.eccentricities(self._state.q)
         rate = t / max(self._wall_s, 1e-9)
         return Progress(
             t_s=t,
             end_s=end,
             speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
-            eccentricity=float(np.max(np.hypot(here[:, 0], here[:, 1]))) if len(here) else math.nan,
+            eccentricity=float(np.max(here)) if len(here) else math.nan,
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,
             simulated_ms_per_hour=1e3 * 3600.0 * rate,

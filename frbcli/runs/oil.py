@@ -12,15 +12,17 @@ from frbcli.solve.state import GRID, State
 def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
     """Oil that is not accounted for over what has passed through, see Films.oil_defect; None for films that keep none.
     angle: of the rotor in rad, with which films with feed holes in the journal turn."""
+    stations = system.films.stations
+    seen = system.films.seen(system.journals_of(state.q)) / np.repeat(system.clearances, stations)[:, None]
     places = [
-        turned(displacement(system, state, i), -grid_angle(system, state, i, angle)) for i in range(len(system.names))
+        turned((float(x), float(y)), -grid_angle(system, state, i // stations, angle)) for i, (x, y) in enumerate(seen)
     ]
     return system.films.oil_defect(places, state.wet, state.flows)
 
 
 def displacement(system: System, state: State, film: int) -> tuple[float, float]:
-    """The displacement of a film's journal over the clearance."""
-    x, y = system.rotor.journals[film] @ state.q / system.clearances[film]
+    """The displacement of a film's journal in its middle, over the clearance."""
+    x, y = (system.rotor.journals[film] @ state.q)[:2] / system.clearances[film]
     return float(x), float(y)
 
 

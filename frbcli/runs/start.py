@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from frbcli.case.schema import Start
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
+from frbcli.rotor.body import PLANE
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.loads import loads_at
@@ -29,7 +31,8 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
     rotor = system.rotor
     # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
     observed = np.concatenate([points / system.length for _, points in rotor.points])
-    table = rotor.over_speed or no_part(rotor.size)
+    table, stations = rotor.over_speed or no_part(rotor.size), system.films.stations
+    standing = system.films.seen(system.films.standing)
     return RotorData(
         mass=rotor.mass,
         damping=rotor.damping,
@@ -38,18 +41,18 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         static_load=rotor.static_load,
         unbalance_cos=rotor.unbalance_cos,
         unbalance_sin=rotor.unbalance_sin,
-        journals=rotor.journals,
-        multiplicity=rotor.multiplicity,
-        clearances=np.array(system.clearances),
+        journals=system.films.seen(rotor.journals),
+        multiplicity=np.repeat(rotor.multiplicity, stations),
+        clearances=np.repeat(system.clearances, stations),
         observed=observed,
         has_gyroscopic=bool(np.any(rotor.gyroscopic)),
         profile_times=profile.times,
         profile_speeds=profile.speeds,
         profile_angles=profile.angles,
-        turning=system.turning,
+        turning=np.repeat(system.turning, stations, axis=0),
         spins=np.array(system.spins, dtype=np.int64),
-        ring_of=system.bodies,
-        drag=np.array(system.drags),
+        ring_of=np.repeat(system.bodies, stations, axis=0),
+        drag=np.repeat(system.drags, stations),
         torque_terms=np.array([int(system.torque == "all"), _factor(system)], dtype=np.int64),
         table_speeds=table.speeds,
         table_mass=table.mass,
@@ -58,6 +61,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         follows_speed=rotor.over_speed is not None or (not system.names and bool(np.any(rotor.gyroscopic))),
         loads=varying_loads(rotor.loads),
         inputs=inputs,
+        standing=standing if stations > 1 else (),
     )
 
 
@@ -77,7 +81,8 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
     rotor = system.rotor
     q, v = np.zeros(rotor.size), np.zeros(rotor.size)
     if start.displacement is not None:
-        held = held_rotor(rotor, float(profile.speeds[0]))
+        in_plane = replace(rotor, journals=rotor.journals[:, : len(PLANE)])
+        held = held_rotor(in_plane, float(profile.speeds[0]))
         q = held.shape + held.following @ np.outer(system.clearances, start.displacement).ravel()
     elif start.position == "resting":
         resting = resting_position(system, float(profile.speeds[0]))
@@ -88,33 +93,35 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
 def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:
     """The state at the start of a profile with displacements q (n,) in m and velocities v (n,) in m/s."""
     omegas = system.omegas(float(profile.speeds[0]), v[list(system.spins)])
-    wet, flows = system.films.first_state(system.rotor.journals @ q, omegas)
+    wet, flows = system.films.first_state(system.rotor.journals @ q + system.films.standing, omegas)
     start = float(profile.times[0])
     rotation = profile.rotation(start)
     a = accelerations(system, start, rotation, q, v, settled_forces(system, rotation[1], q, v))
     numbers = np.zeros(NUMBERS)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[RUN_END] = profile.end
-    count = len(system.clearances)
-    past = np.zeros((HISTORY, 1 + 2 * count))
+    velocities = (system.films.seen(system.rotor.journals) @ v).ravel()
+    past = np.zeros((HISTORY, 1 + len(velocities)))
     past[:, 0] = FIRST_STEP * np.arange(1 - HISTORY, 1)
-    past[:, 1:] = (system.rotor.journals @ v).ravel()
+    past[:, 1:] = velocities
     return State(numbers, q.copy(), v.copy(), a, past, wet, flows, np.zeros((2, ERROR_SPANS)))
 
 
 def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
-    """(films, 2) N: forces of the films that have settled where the rotor is, none of those that starve."""
-    forces, omegas = np.zeros((len(system.names), 2)), system.omegas(omega, v[list(system.spins)])
-    for i, selection in enumerate(system.rotor.journals):
+    """(films, coordinates) forces, and moments, of the films that have settled where the rotor is, none of those that
+    starve."""
+    films = system.films
+    forces, omegas = np.zeros((len(system.names), films.coordinates)), system.omegas(omega, v[list(system.spins)])
+    for i, (selection, standing) in enumerate(zip(system.rotor.journals, films.standing, strict=True)):
         with contextlib.suppress(NotConverged):
-            forces[i] = system.force(i, selection @ q, selection @ v, float(omegas[i])).force
+            forces[i] = system.force(i, selection @ q + standing, selection @ v, float(omegas[i])).force
     return forces
 
 
 def accelerations(
     system: System, t: float, rotation: tuple[float, float, float], q: Array, v: Array, film_forces: Array
 ) -> Array:
-    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, 2) of its films in N, at t in s.
+    """(n,) m/s^2 of a rotor with displacements q, velocities v and forces (films, coordinates) of its films, at t in s.
 
     rotation: angular acceleration, speed and angle of the rotor, see SpeedProfile.
     """

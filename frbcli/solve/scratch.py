@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS
+from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING
 from frbcli.solve.stage.inverse import prepare
 from frbcli.solve.stage.loads import prepare_loads
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
@@ -47,6 +47,8 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
         np.zeros((n, stages)),
         np.zeros((n, stages)),
     )
+    if len(rotor.standing):
+        scratch.journal[STANDING] = rotor.standing.ravel()
     if numbers[INVERSE_G] > 0.0:
         prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:6])
         prepare_loads(rotor.loads, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])

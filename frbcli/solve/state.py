@@ -44,6 +44,7 @@ class RotorData(NamedTuple):
     follows_speed: bool  # whether the inverse is renewed at every change of the speed
     loads: Any = ()  # that change with the angle of the rotor or with time, see stage/loads.py
     inputs: Any = ()  # that change with time, see inputs.py
+    standing: Any = ()  # (journals, 2) m, where these are in their shells when the rotor has not moved; empty: centred
 
 
 class Control(NamedTuple):

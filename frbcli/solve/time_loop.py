@@ -12,14 +12,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.solve.films.forces import left_over
+from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.inputs import Inputs, set_inputs
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage.equations import U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
+from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
@@ -80,10 +80,10 @@ def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: An
 
 
 @compiled()
-def _largest_eccentricity(clearances: Array, selection: Array, q: Array) -> float:
+def _largest_eccentricity(clearances: Array, selection: Array, journal: Array, q: Array) -> float:
     largest = 0.0
     for f in range(clearances.shape[0]):
-        x, y = 0.0, 0.0
+        x, y = journal[STANDING, 2 * f], journal[STANDING, 2 * f + 1]
         for i in range(q.shape[0]):
             x += selection[2 * f, i] * q[i]
             y += selection[2 * f + 1, i] * q[i]
@@ -145,7 +145,7 @@ def _solve_stage(
     lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
     for iteration in range(most_iterations(films)):
         forces(films, work, clearances, control, g, s, iteration, journal)
-        numbers[SOLVES] += m // 2
+        numbers[SOLVES] += solved(films, m // 2)
         share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, journal, newton)
         if left == math.inf:
             return False, speed
@@ -215,7 +215,7 @@ def _advance(
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(own.past, past_now)
         done += 1
-        largest = _largest_eccentricity(clearances, scratch.selection, q)
+        largest = _largest_eccentricity(clearances, scratch.selection, journal, q)
         status = count_step(numbers, errors, control, t_new, step, speed, error * control.tolerance, largest)
         if status != RUNNING or hot != RUNNING:
             return status if status != RUNNING else hot, written

@@ -10,6 +10,8 @@ from films import rectangular, system_of
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Link, assembled
@@ -34,6 +36,10 @@ NO_FILM = SHORT_FILM._replace(force_scale=0.0)
 WIDE = replace(BEARING, clearance=1.0)  # m: the shell of a rotor that runs without films is far away
 
 GRAVITY = 9.81
+
+# The shaft of rigid_shaft in m and kg/m^3; mass and inertias of its disk, and a speed in Hz.
+D, WIDTH, SPAN, LENGTH, RHO = 0.01, 0.005, 0.006, 0.02, 7850.0
+DISK, POLAR, DIAMETRAL, SPEED = 0.05, 4e-7, 3e-7, 300.0
 
 
 @dataclass(frozen=True)
@@ -175,3 +181,20 @@ def modal_rotor(films: int, seed: int = 4) -> LinearRotor:
         multiplicity=np.arange(1.0, films + 1.0),
         points=(("journal", chance.normal(size=(2, n)) / math.sqrt(n)),),
     )
+
+
+def rigid_shaft(*more: str) -> Case:
+    """A rigid shaft, symmetric about its middle, in two bearings that are nearly as wide as they are apart."""
+    film = f'{{kind = "single-film", width = "{WIDTH} m", diameter = "{D} m", clearance = "30 um", ends = "oil-bath"'
+    settings = (
+        'rotor={kind = "turbocharger", modes = 2}',
+        f'shaft=[{{length = "{LENGTH} m", diameter = "{D} m", density = "{RHO} kg/m^3", '
+        'youngs_modulus = "2.1e11 Pa"}]',
+        f'bearing=[{film}, name = "left", position = "{0.5 * (LENGTH - SPAN)} m"}}, '
+        f'{film}, name = "right", position = "{0.5 * (LENGTH + SPAN)} m"}}]',
+        f'disk=[{{position = "{0.5 * LENGTH} m", mass = "{DISK} kg", polar_inertia = "{POLAR} kg*m^2", '
+        f'diametral_inertia = "{DIAMETRAL} kg*m^2", unbalance = "1 g*mm"}}]',
+        "film.theory=finite",
+        f"speed.to={SPEED} Hz",
+    )
+    return load_case("jeffcott", [*settings, *more])

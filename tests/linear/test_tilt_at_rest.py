@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from marches import DIAMETRAL, DISK, LENGTH, POLAR, RHO, SPAN, SPEED, WIDTH, D, rigid_shaft
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -24,31 +25,12 @@ from frbcli.rotor.body import COORDINATES
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
 
-D, WIDTH, SPAN, LENGTH, RHO = 0.01, 0.005, 0.006, 0.02, 7850.0
-DISK, POLAR, DIAMETRAL, SPEED = 0.05, 4e-7, 3e-7, 300.0
 FEW = ((24, 8), (16, 6))
 
 
 @pytest.fixture(autouse=True)
 def few_cells(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(TiltedForm, "static_cells", FEW)
-
-
-def rigid_shaft(*more: str) -> Case:
-    """A rigid shaft, symmetric about its middle, in two bearings that are nearly as wide as they are apart."""
-    film = f'{{kind = "single-film", width = "{WIDTH} m", diameter = "{D} m", clearance = "30 um", ends = "oil-bath"'
-    settings = (
-        'rotor={kind = "turbocharger", modes = 2}',
-        f'shaft=[{{length = "{LENGTH} m", diameter = "{D} m", density = "{RHO} kg/m^3", '
-        'youngs_modulus = "2.1e11 Pa"}]',
-        f'bearing=[{film}, name = "left", position = "{0.5 * (LENGTH - SPAN)} m"}}, '
-        f'{film}, name = "right", position = "{0.5 * (LENGTH + SPAN)} m"}}]',
-        f'disk=[{{position = "{0.5 * LENGTH} m", mass = "{DISK} kg", polar_inertia = "{POLAR} kg*m^2", '
-        f'diametral_inertia = "{DIAMETRAL} kg*m^2", unbalance = "1 g*mm"}}]',
-        "film.theory=finite",
-        f"speed.to={SPEED} Hz",
-    )
-    return load_case("jeffcott", [*settings, *more])
 
 
 def at_speed(case: Case) -> StabilityPoint:
@@ -205,8 +187,8 @@ def test_what_does_not_tilt_is_refused(name: str, settings: tuple[str, ...], key
     assert key in [fault.key for fault in refused.value.faults]
 
 
-def test_runs_do_not_follow() -> None:
-    for ask in (frbcli.make_plan, frbcli.limit_cycles, frbcli.bearing_sheet):
+def test_cycles_and_sheets_do_not_follow() -> None:
+    for ask in (frbcli.limit_cycles, frbcli.bearing_sheet, frbcli.accuracy):
         with pytest.raises(InputError) as refused:
             ask(rigid_shaft("film.tilt=follows"))
         assert "film.tilt" in [fault.key for fault in refused.value.faults]

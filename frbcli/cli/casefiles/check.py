@@ -216,16 +216,16 @@ def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
 def _about_tilt(case: Case) -> str:
     """What results make of the tilt of journals, with the setting for it where the case allows it."""
     from frbcli.case.model import altered
-    from frbcli.scene.gate.analysis import STABILITY
+    from frbcli.scene.gate.analysis import RUN, STABILITY
     from frbcli.scene.gate.gate import faults
 
+    if case.film.tilt == "follows":
+        return "The films follow it."
     follows = altered(case, {"film": altered(case.film, {"tilt": "follows"})})
     if faults(follows, STABILITY):
         return "Results take the gap as even along the axis."
-    return (
-        'With film.tilt = "follows" stability, damped modes and response follow it; runs take the gap as even along '
-        "the axis."
-    )
+    runs = "" if faults(follows, RUN) else "runs, "
+    return f'With film.tilt = "follows" {runs}stability, damped modes and response follow it.'
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:

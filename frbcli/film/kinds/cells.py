@@ -21,7 +21,7 @@ from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.compared import FINER
-from frbcli.film.gap import gap_height
+from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
@@ -211,12 +211,7 @@ class CellFilms(Films):
 
     def smallest_gap(self, i: int, d: Array) -> Array:
         """See Films.smallest_gap."""
-        section = self.own[i].section
-        if section.lobes is None:
-            return super().smallest_gap(i, d)
-        phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
-        height = gap_height(section, (0.0, 0.0), phi) + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
-        return np.asarray(height.min(axis=1))
+        return least_gaps(self.own[i].section, d)
 
     @property
     def starving(self) -> bool:
@@ -252,6 +247,15 @@ class CellFilms(Films):
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))
         return tuple(found)
+
+
+def least_gaps(section: Section, d: Array) -> Array:
+    """(k,) least H of a section at displacements d (k, 2) over the clearance."""
+    if section.lobes is None:
+        return np.asarray(1.0 - np.hypot(d[:, 0], d[:, 1]))
+    phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
+    height = gap_height(section, (0.0, 0.0), phi) + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
+    return np.asarray(height.min(axis=1))
 
 
 def _unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:

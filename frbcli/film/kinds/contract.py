@@ -36,6 +36,7 @@ class Films(ABC):
     clearances: tuple[float, ...]
 
     coordinates: ClassVar[int] = 2  # of a journal that its film sees: 2, or 4 with its tilts
+    stations: ClassVar[int] = 1  # places along a film at which the time loop has its journal: the middle, or both ends
     samples: ClassVar[int] = SAMPLES  # states of a run that are kept for the error of its forces
     # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
     # to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
@@ -64,10 +65,15 @@ class Films(ABC):
         """(films, coordinates) of journals in their shells when nothing has moved: other than 0 in shells that tilt."""
         return np.zeros((self.count, self.coordinates))
 
+    def seen(self, journals: Array) -> Array:
+        """(films stations, 2, ...) displacements, or what else of journals (films, coordinates, ...), as the time loop
+        sees it: as it is, or at both ends of bearings in which they tilt."""
+        return journals
+
     def ends(self, places: Array) -> Array:
-        """(k, 2) displacements over the clearance that have to stay within the gap: of journals at places (films,
-        coordinates), or at both ends of bearings in which they tilt."""
-        return np.asarray(places / np.array(self.clearances)[:, None])
+        """(films stations, 2) displacements over the clearance that have to stay within the gap, of journals at places
+        (films, coordinates)."""
+        return np.asarray(self.seen(places) / np.repeat(self.clearances, self.stations)[:, None])
 
     @property
     def remembering(self) -> tuple[bool, ...]:
@@ -93,8 +99,8 @@ class Films(ABC):
         return self.counted if ring_count == 0 else Films.counted
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
-        """wet (WET, films, m, k) and flows (2, films, q) that a run begins with, journals at rest at places (films, 2):
-        settled where that is possible, else full at the ambient pressure."""
+        """wet (WET, films, m, k) and flows (2, films, q) that a run begins with, journals at rest at places (films,
+        coordinates): settled where that is possible, else full at the ambient pressure."""
         return np.zeros((WET, 0, 0, 0)), np.zeros((2, 0, FLOWS))
 
     def refill(
@@ -107,7 +113,7 @@ class Films(ABC):
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         """Oil that is not accounted for, over what has passed through; the largest of all films, None if none keeps
-        oil. displacements: over the clearance, in the frame of their openings."""
+        oil. displacements: (films stations) over the clearance, in the frame of their openings."""
         return None
 
     def oil_passed(self, flows: Array) -> dict[str, float]:

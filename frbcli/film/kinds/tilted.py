@@ -1,31 +1,64 @@
-"""Films whose journals tilt in their shells, for machines at rest."""
+"""Films whose journals tilt in their shells."""
 
 from __future__ import annotations
 
+import contextlib
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, ClassVar
 
 import numpy as np
 
-from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm, tilted_force
+from frbcli.errors import NotConverged
+from frbcli.film.cells.balance.balances import FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.plain import gap_on
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
+from frbcli.film.cells.tilted.force import (
+    COORDINATES,
+    TiltedFilm,
+    TiltedLand,
+    land_solution,
+    settled_force,
+    tilted_force,
+)
+from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
-from frbcli.film.kinds.contract import Films
+from frbcli.film.kinds.cells import least_gaps
+from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.section_faults import is_unfed
+from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
 
 
 @dataclass(frozen=True)
 class TiltedFilms(Films):
-    """own: the films, none of which keeps oil; misalignments: (films, 2) tilts of the shells about x and y, rad."""
+    """own: the films; misalignments: (films, 2) tilts of the shells about x and y, rad; cells:
+    (around, along) over the whole width; settled: see FILM; states: at which forces are compared, of a run. Derivatives
+    are those of films that keep no oil."""
 
     own: tuple[TiltedFilm, ...]
     misalignments: Array
+    cells: tuple[int, int]
+    settled: float
+    states: int
 
     coordinates: ClassVar[int] = COORDINATES
+    stations: ClassVar[int] = 2
+    samples: ClassVar[int] = 192
+    counted: ClassVar[float] = 0.25
+    reach: ClassVar[float] = 3.0
+
+    @cached_property
+    def data(self) -> TiltedVolumes:
+        """The films as arrays."""
+        return tilted_volumes(self.own, self.settled)
 
     @property
     def loop(self) -> Any:
-        """The time loop has no such films."""
-        raise NotImplementedError
+        """See Films.loop."""
+        return self.data
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """See Films.force."""
@@ -36,9 +69,85 @@ class TiltedFilms(Films):
         """See Films.standing."""
         return np.hstack([np.zeros_like(self.misalignments), -self.misalignments])
 
-    def ends(self, places: Array) -> Array:
-        """See Films.ends."""
-        return np.concatenate([film.ends(place) for film, place in zip(self.own, places, strict=True)])
+    def seen(self, journals: Array) -> Array:
+        """See Films.seen."""
+        return np.concatenate([film.at_ends(journal) for film, journal in zip(self.own, journals, strict=True)])
+
+    def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
+        """See Films.first_state."""
+        moves = [place.any() and total != 0.0 for place, total in zip(places, totals, strict=True)]
+        of = self._lands
+        wet = np.zeros((WET, len(of), *of[0][1].film.grid.shape))
+        for number, (i, land) in enumerate(of):
+            w, motion = land.film.full(), land.motion(places[i], np.zeros(COORDINATES), float(totals[i]))
+            if moves[i]:
+                with contextlib.suppress(NotConverged):
+                    w = land_solution(land.film, motion).w
+            wet[W, number] = wet[W_BEFORE, number] = w
+            wet[OIL, number] = _content(land, motion, w)
+        return wet, np.zeros((2, len(of), FLOWS))
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        """See Films.remembering."""
+        return tuple(film.lands[0].film.law.keeps_oil for film in self.own)
+
+    @property
+    def starving(self) -> bool:
+        """See Films.starving."""
+        films = zip(self.own, self.remembering, strict=True)
+        return any(keeps and is_unfed(film.section, type(film.lands[0].film.law)) for film, keeps in films)
+
+    def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
+        """See Films.oil_defect."""
+        if not any(self.remembering):
+            return None
+        worst = 0.0
+        for number, (i, land) in enumerate(self._lands):
+            if self.remembering[i]:
+                now = _content(land, land.motion_of(np.array(displacements[2 * i : 2 * i + 2])), wet[W, number])
+                area = np.where(land.film.grid.fixed, 0.0, land.film.grid.area)
+                passed = max(float(flows[PASSED, number, each]) for each in (INFLOW, OUTFLOW))
+                passed = max(passed, float((area * now).sum()))
+                worst = max(worst, abs(float((area * (now - wet[OIL, number])).sum())) / passed)
+        return worst
+
+    def oil_passed(self, flows: Array) -> dict[str, float]:
+        """See Films.oil_passed."""
+        if not any(self.remembering):
+            return {}
+        sections = [land.film.section for _, land in self._lands]
+        size = [
+            self.remembering[i] * each.radius * each.width * each.clearance
+            for (i, _), each in zip(self._lands, sections, strict=True)
+        ]
+        came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
+        return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+
+    @property
+    def _lands(self) -> list[tuple[int, TiltedLand]]:
+        return [(i, land) for i, film in enumerate(self.own) for land in film.lands]
+
+    @property
+    def compared_states(self) -> int:
+        """See Films.compared_states."""
+        return self.states
+
+    def compared(self) -> Compared:
+        """See Films.compared: on twice the cells each way, forces at both ends (4,) that do the same work."""
+        cells = FINER * self.cells[0], FINER * self.cells[1]
+        fine = [film.finer(cells) for film in self.own]
+
+        def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
+            to_ends = np.linalg.inv(self.own[i].at_ends(np.eye(COORDINATES)).reshape(COORDINATES, COORDINATES)).T
+            better, own = (settled_force(film, place, rate, total) for film in (fine[i], self.own[i]))
+            return to_ends @ better, to_ends @ own
+
+        return forces
+
+    def smallest_gap(self, i: int, d: Array) -> Array:
+        """See Films.smallest_gap."""
+        return least_gaps(self.own[i].section, d)
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         """Not known: cases with heat do not have these films."""
@@ -47,3 +156,9 @@ class TiltedFilms(Films):
     def heat_ends(self) -> Any:
         """As power_and_flow."""
         raise NotImplementedError
+
+
+def _content(land: TiltedLand, motion: Motion, w: Array) -> Array:
+    """(m, k) oil in the cells of a land, H theta."""
+    grid = land.film.grid
+    return np.asarray(gap_on(land.film.section, motion, grid.centre, grid.height) * land.film.cells(w).fraction)

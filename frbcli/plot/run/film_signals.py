@@ -1,4 +1,4 @@
-"""Film signals that a run records on request: forces, film thickness, power, torque, oil flow."""
+"""Film signals that not every run records: forces, film thickness, power, torque, oil flow, tilt of the journals."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from frbcli.analysis.signals import films
 from frbcli.plot.curves import HEIGHT, Over, ScaledSignal, Span, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
-from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TORQUE, signal_names
+from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TILT, TORQUE, signal_names
 
 PANEL_HEIGHT = 2.4  # inches
 # The name of an axis, and its unit in SI units.
@@ -22,14 +22,15 @@ AXES = {
     POWER: ("power in W", 1.0),
     TORQUE: ("torque on the journal in N mm", 1e3),
     FLOW: ("oil flow in cm³/s", 1e6),
+    TILT: ("tilt about {} in mrad", 1e3),
 }
 
 
 def film_signal_figure(
     runs: Sequence[Run], kind: str, from_time: float | None = None, to_time: float | None = None, over: Over = "time"
 ) -> Figure:
-    """One of FILM_SIGNALS of each film, the runs overlaid, from from_time to to_time in s; x and y of a force have a
-    panel each. Raises RunFileError if a run has not recorded it."""
+    """One of FILM_SIGNALS of each film, the runs overlaid, from from_time to to_time in s; x and y of a force or a
+    tilt have a panel each. Raises RunFileError if a run has not recorded it."""
 
     def panel(part: int, axes: Axes) -> None:
         draw_film_signal(axes, runs, kind, part, over, (from_time, to_time))
@@ -41,11 +42,13 @@ def film_signal_figure(
 def draw_film_signal(
     axes: Axes, runs: Sequence[Run], kind: str, part: int = 0, over: Over = "time", span: Span = (None, None)
 ) -> None:
-    """The curves on axes of a figure; part: 0 and 1 are x and y of a force. Raises as film_signal_figure."""
+    """The curves on axes of a figure; part: 0 and 1 are x and y of a force or a tilt. Raises as film_signal_figure."""
     names = list(films(runs[0].signals)) or [""]
     for run in runs:
         if any(signal not in run.signals for name in names for signal in signal_names(kind, name)):
             remedy = f"Run the case with --set 'output.signals=[\"{kind}\"]'."
+            if kind == TILT:
+                remedy = "Run the case with --set film.tilt=follows."
             raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
     words, factor = AXES[kind]
     curves = [

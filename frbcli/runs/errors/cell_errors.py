@@ -45,18 +45,21 @@ class FewerCells:
         """Errors of a run in its samples; None if the run on fewer cells does not reach that far."""
         if len(samples) > len(self.samples):
             return None
-        n, rotor = system.rotor.size, system.rotor
+        n, rotor, stations = system.rotor.size, system.rotor, system.films.stations
+        journals = list(
+            zip(system.films.seen(rotor.journals), np.repeat(system.clearances, stations).tolist(), strict=True)
+        )
         other = self.samples[: len(samples)]
         apart = samples - other
-        films = [_largest(apart[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True)]
+        films = [_largest(apart[:, :n], *film) for film in journals]
         runs = samples[:, :n], other[:, :n]
-        eccentric = [_parted(*runs, *film) for film in zip(rotor.journals, system.clearances, strict=True)]
+        eccentric = [_parted(*runs, *film) for film in journals]
         points = [_largest(apart[:, :n], selection, system.length) for _, selection in rotor.points]
         spins = float(np.abs(apart[:, [n + spin for spin in system.spins]]).max(initial=0.0))
         top = max(float(np.abs(samples[:, 2 * n]).max(initial=0.0)), 1e-300)
         first = 2 * n + 1
         oil = float(np.abs(apart[:, first : first + len(system.names)][:, list(system.remembering)]).max(initial=0.0))
-        reach = max(_largest(samples[:, :n], *film) for film in zip(rotor.journals, system.clearances, strict=True))
+        reach = max(_largest(samples[:, :n], *film) for film in journals)
         closer = 1.0 if self.expected is None else min(gap_ratio(self.expected, reach), CLOSER)
         least = min(closer * self.least, reach)
         eccentricity, displacement = (max(least, self.share * off) for off in (max(eccentric), max([*films, *points])))

@@ -148,14 +148,15 @@ def _springs(case: Case, system: System, sample: Array) -> Array:
     q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
     omegas = system.omegas(omega, v[list(system.spins)])
     forces = (
-        system.force(i, selection @ q, selection @ v, float(omegas[i]))
-        for i, selection in enumerate(system.rotor.journals)
+        system.force(i, place, selection @ v, float(omegas[i]))
+        for i, (selection, place) in enumerate(zip(system.rotor.journals, system.journals_of(q), strict=True))
     )
-    return np.array(bearing_springs(case, (-0.5 * float(np.trace(force.by_displacement)) for force in forces)))
+    return np.array(bearing_springs(case, (-0.5 * float(np.trace(force.by_displacement[:2, :2])) for force in forces)))
 
 
 def _journals(system: System) -> Iterable[tuple[Array, float]]:
-    return zip(system.rotor.journals, system.clearances, strict=True)
+    films = system.films
+    return zip(films.seen(system.rotor.journals), np.repeat(system.clearances, films.stations).tolist(), strict=True)
 
 
 def _points(system: System) -> Iterable[tuple[Array, float]]:

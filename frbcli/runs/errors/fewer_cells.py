@@ -40,7 +40,7 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
     if cells is None:
         return None
     worst = worst_film(march.case, march.plan.eccentricity)
-    own, others = (worst.of(found) for found in (cells_of(march.plan), cells))
+    own, others = (worst.of(march.plan.form.of_half(found)) for found in (cells_of(march.plan), cells))
     tolerance = march.plan.tolerance * _looser(march.case, others / own)
     try:
         other = march.again(replace(march.plan, cells=cells, tolerance=tolerance))

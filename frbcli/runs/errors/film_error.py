@@ -63,19 +63,19 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     for t, sample in zip(times[::every], samples[::every], strict=True):
         q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
         omegas = system.omegas(omega, v[list(system.spins)])
-        for i, selection in enumerate(system.rotor.journals):
-            at, rate, clearance, scale = selection @ q, selection @ v, system.clearances[i], 1.0
+        for i, (selection, place) in enumerate(zip(system.rotor.journals, system.journals_of(q), strict=True)):
+            at, rate, clearance, scale = place, selection @ v, system.clearances[i], 1.0
             if changing:
                 now, scale = (float(sample[column * count + i]) for column in (-2, -1))
                 at, rate = at * clearance / now, rate * clearance / now
             if control.contact_stiffness > 0.0:
                 at, rate = clearance * felt_motion(control, at / clearance, rate / clearance)
-            if np.hypot(*at) >= LARGEST_ECCENTRICITY * clearance:
+            if np.hypot(*at[:2]) >= LARGEST_ECCENTRICITY * clearance:
                 continue
             try:
                 exact, force = forces(i, at, scale * rate, scale * float(omegas[i]))
             except NotConverged:
                 continue
-            found.append((float(t), float(np.hypot(*(force - exact))), float(np.hypot(*exact))))
+            found.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))
     table = np.array(found).reshape(-1, 3)
     return FilmErrors(table[:, 0], table[:, 1], table[:, 2])

@@ -14,11 +14,22 @@ from numpy.typing import NDArray
 
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along
+from frbcli.rotor.body import PLANE
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
-from frbcli.runs.record.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names
+from frbcli.runs.record.header import (
+    FLOW,
+    FORCE,
+    FRICTION,
+    POWER,
+    SHARE,
+    THICKNESS,
+    TORQUE,
+    signal_names,
+    tilt_names,
+)
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.contact import felt_motion, touches
 from frbcli.solve.state import SLIP, SUM, Array, Control
@@ -109,6 +120,17 @@ def _shares(forces: Array, summits: Array) -> Array:
     return np.asarray(np.divide(own, own + film, out=np.zeros_like(own), where=own > 0.0), dtype=np.float64)
 
 
+def tilt_signals(system: System, q: Array) -> dict[str, Array]:
+    """The signals (k,) of films whose journals tilt, of displacements q (k, n): tilts against the shells in rad, and
+    the larger of the eccentricities at both ends."""
+    if system.films.coordinates == len(PLANE):
+        return {}
+    found, ends = dict[str, Array](), system.eccentricities(q.T)
+    for name, journal, at_ends in zip(system.names, system.journals_of(q.T), ends, strict=True):
+        found |= dict(zip(tilt_names(name), (*journal[len(PLANE) :], at_ends), strict=True))
+    return found
+
+
 def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:
     """(k, films, 2) N, on the journal by one bearing: what the equation of the rotor leaves for the films."""
     alpha, omega, angle = np.array([profile.rotation(float(t)) for t in samples.times]).reshape(-1, 3).T
@@ -177,11 +199,15 @@ def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
 
 def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: Array) -> Array:
     """(k,) m: the smallest gap of film i; in contact that which surfaces keep."""
-    clearance = films.clearances[:, i]
-    d = q @ system.rotor.journals[i].T / clearance[:, None]
-    for sample in _touching(control, d):
-        d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
-    return clearance * system.films.smallest_gap(i, d)
+    clearance, least = films.clearances[:, i], np.full(len(q), np.inf)
+    stations = slice(i * system.films.stations, (i + 1) * system.films.stations)
+    seen = (system.films.seen(each)[stations] for each in (system.rotor.journals, system.films.standing))
+    for selection, standing in zip(*seen, strict=True):
+        d = (q @ selection.T + standing) / clearance[:, None]
+        for sample in _touching(control, d):
+            d[sample] = felt_motion(control, d[sample], np.zeros(2))[0]
+        least = np.minimum(least, system.films.smallest_gap(i, d))
+    return np.asarray(clearance * least)
 
 
 def _touching(control: Control, d: Array) -> NDArray[np.int64]:

@@ -9,6 +9,7 @@ from importlib.metadata import PackageNotFoundError, version
 from frbcli.case.schema import Case
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
+from frbcli.rotor.body import PLANE
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.bearing_model_films import model_record
@@ -20,6 +21,7 @@ PROGRAM = "frbcli"
 # Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
 THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
 SHARE, FRICTION = "asperity-share", "contact-power"  # of rough surfaces, always
+TILT = "tilt"  # of every film whose journal tilts
 FILM_SIGNALS = {
     FORCE: ("film_force", "N", "N"),
     THICKNESS: ("film_thickness", "m", "m"),
@@ -28,6 +30,7 @@ FILM_SIGNALS = {
     FLOW: ("oil_flow", "m3_s", "m^3/s"),
     SHARE: ("asperity_share", "", ""),
     FRICTION: ("contact_power", "W", "W"),
+    TILT: ("tilt", "rad", "rad"),
 }
 
 
@@ -43,10 +46,16 @@ def ring_names(system: System) -> list[str]:
 
 
 def signal_names(kind: str, film: str) -> list[str]:
-    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force."""
+    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force and of a tilt."""
     quantity, unit, _ = FILM_SIGNALS[kind]
-    ends = (f"_x_{unit}", f"_y_{unit}") if kind == FORCE else (f"_{unit}" if unit else "",)
+    ends = (f"_x_{unit}", f"_y_{unit}") if kind in (FORCE, TILT) else (f"_{unit}" if unit else "",)
     return [f"{named(quantity, film)}{end}" for end in ends]
+
+
+def tilt_names(film: str) -> tuple[str, str, str]:
+    """The signals of a film whose journal tilts: its tilts about x and y, and the larger eccentricity of its ends."""
+    x, y = signal_names(TILT, film)
+    return x, y, named("end_eccentricity", film)
 
 
 def recorded(case: Case) -> tuple[str, ...]:
@@ -69,6 +78,9 @@ def header(
     lengths = [f"{name}_{axis}_m" for name, _ in system.rotor.points for axis in "xy"]
     eccentricities = [named("eccentricity", name) for name in system.names]
     units = {"time_s": "s", "speed_Hz": "Hz", **dict.fromkeys(eccentricities, ""), **dict.fromkeys(lengths, "m")}
+    if system.films.coordinates > len(PLANE):
+        for name in system.names:
+            units |= dict(zip(tilt_names(name), ("rad", "rad", ""), strict=True))
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")

@@ -80,7 +80,16 @@ class CellForm(FilmForm):
 
     def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
         """See FilmForm."""
-        return coarser_cells(worst_film(case, plan.eccentricity), cells_of(plan))
+        found = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
+        return None if found is None else self.of_whole(found)
+
+    def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
+        """Cells (around, along) of a section, up to a plane of symmetry, of those of a plan."""
+        return cells
+
+    def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
+        """Cells (around, along) of a plan, of those of a section."""
+        return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         """See FilmForm."""

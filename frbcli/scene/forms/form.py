@@ -120,6 +120,10 @@ class FilmForm:
         """Cells (around, along) that a run is repeated on for its error, None where it is not."""
         return None
 
+    def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
+        """Cells (around, along) of a section, up to a plane of symmetry, of those of a plan."""
+        return cells
+
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         """What a plan says of the films: choice, value, reason."""
         told = [("film", self.name, self.why)]

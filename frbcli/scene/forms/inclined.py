@@ -9,7 +9,7 @@ from typing import ClassVar
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.forms.tilted import FOLLOWED, TiltedForm, film_faults, misalignment_faults
+from frbcli.scene.forms.tilted import FOLLOWED, TiltedForm, film_faults, law_faults, misalignment_faults
 from frbcli.scene.gate.analysis import SHEETS
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.shafts.table import shaft_of
@@ -35,6 +35,7 @@ class InclinedForm(TiltedForm):
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(_shaft_faults, AT_REST),
         Rule(lambda case: film_faults(case, WITHOUT), AT_REST),
+        Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
         Rule(misalignment_faults, AT_REST),
     )
 

@@ -1,11 +1,11 @@
-"""Films whose gap follows the tilt of their journals, on cells over the whole width, for machines at rest."""
+"""Films whose gap follows the tilt of their journals, on cells over the whole width."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
-from typing import ClassVar
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.schema import Case
@@ -13,23 +13,28 @@ from frbcli.elements.damper import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.forms.cells import CellForm
+from frbcli.scene.films import film_places
+from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.gate.analysis import ALL, FILMS, RANGE, STABILITY
+from frbcli.scene.gate.analysis import ALL, COMPARISON, FILMS, RANGE, RUN, STABILITY
 from frbcli.scene.gate.rule import Faults, Rule
-from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text
 
+if TYPE_CHECKING:
+    from frbcli.scene.planning.planned import Plan
+
+HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED = (FILMS, STABILITY, RANGE)
-OTHERS = tuple(each for each in ALL if each not in FOLLOWED)
+FOLLOWED, RUNS = (FILMS, STABILITY, RANGE), (RUN, COMPARISON)
+OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
 
 def _analysis_faults(_: Case) -> Faults:
-    problem = "is for machines at rest: stability, damped modes and response."
-    yield Fault(KEY, ASKED, None, problem, 'Write film.tilt = "none" here, or call `frb stability`.')
+    problem = "is for runs, stability, damped modes and response."
+    yield Fault(KEY, ASKED, None, problem, 'Write film.tilt = "none" here, or call `frb runup`.')
 
 
 def _machine_faults(case: Case) -> Iterator[Fault]:
@@ -52,6 +57,16 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     if case.film.theory not in ("auto", "finite"):
         problem = "has a gap that is the same along the axis."
         yield Fault("film.theory", case.film.theory, None, problem, f'Write theory = "finite". {without}')
+    if case.contact.rough:
+        problem = "is not modelled with films that tilt: its gap is the same along the axis."
+        yield Fault("contact.model", "asperities", None, problem, f'Write contact.model = "spring". {without}')
+    if case.heat is not None:
+        problem = "has temperatures of films with a gap that is even along the axis."
+        yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
+
+
+def law_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+    """Laws that are not linearised in a film that tilts. without: see film_faults."""
     for key, name in dict(cavitation_keys(case)).items():
         if law_named(name).keeps_oil:
             problem = "keeps its oil, whose motion in a film that tilts is not linearised."
@@ -59,9 +74,27 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
         elif law_named(name).follow is not Law.follow:
             problem = "changes with the eccentricity, which in a film that tilts differs along the axis."
             yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
-    if case.heat is not None:
-        problem = "has temperatures of films with a gap that is even along the axis."
-        yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
+
+
+def _run_faults(case: Case) -> Iterator[Fault]:
+    """What a run does not follow in films that tilt."""
+    recorded = [kind for kind in case.output.signals if kind != "film-thickness"]
+    if recorded:
+        problem = "are not recorded of films that tilt, but for film-thickness."
+        yield Fault("output.signals", ", ".join(recorded), None, problem, f"Leave them out. {WITHOUT}")
+    if case.film.coupling == "co-simulation":
+        problem = "exchanges forces, and a film that tilts has moments, too."
+        yield Fault("film.coupling", "co-simulation", None, problem, 'Write coupling = "auto".')
+    if case.contact.policy == "elastic":
+        problem = "is that of a journal in the middle of its shell, and one that tilts touches at an end."
+        yield Fault("contact.policy", "elastic", None, problem, f'Write policy = "stop". {WITHOUT}')
+    for place, key in zip(film_places(case), film_keys(case), strict=True):
+        if place.geometry.supply.surface == "journal":
+            problem = "lets the openings turn with the journal, which a film that tilts does not follow."
+            yield Fault(f"{key}.supply.on", "journal", None, problem, f'Write on = "shell". {WITHOUT}')
+        if getattr(place.geometry, "clearance_steps", ()) and law_named(case.cavitation(place.geometry)).keeps_oil:
+            problem = "moves the oil of a film into another gap, which one that tilts does not follow."
+            yield Fault(f"{key}.clearance_steps", "", None, problem, f"Take a law that keeps no oil. {WITHOUT}")
 
 
 def misalignment_faults(case: Case) -> Iterator[Fault]:
@@ -81,16 +114,29 @@ class TiltedForm(CellForm):
     """Finite volumes over the whole width, finer at the ends."""
 
     inclines: ClassVar[bool] = True
-    chosen_by_target: ClassVar[bool] = False
     fine_when_static: ClassVar[bool] = False
-    turns_cells: ClassVar[bool] = False
+    follows_supply: ClassVar[bool] = False
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ((96, 24), (48, 12), (64, 16))
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(_analysis_faults, OTHERS),
-        Rule(_machine_faults, FOLLOWED),
-        Rule(film_faults, FOLLOWED),
-        Rule(misalignment_faults, FOLLOWED),
+        Rule(_machine_faults, (*FOLLOWED, *RUNS)),
+        Rule(film_faults, (*FOLLOWED, *RUNS)),
+        Rule(law_faults, FOLLOWED),
+        Rule(_run_faults, (RUN,)),
+        Rule(misalignment_faults, (*FOLLOWED, *RUNS)),
     )
 
+    def solve_us(self, plan: Plan) -> float:
+        """See FilmForm."""
+        return super().solve_us(replace(plan, cells=self.of_half(cells_of(plan))))
 
-TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 40.0)
+    def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
+        """See CellForm: cells are counted over the whole width."""
+        return cells[0], cells[1] // HALVES
+
+    def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
+        """See CellForm."""
+        return cells[0], HALVES * cells[1]
+
+
+TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 60.0)

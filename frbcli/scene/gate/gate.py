@@ -16,6 +16,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.forms.inclined import AT_REST
+from frbcli.scene.forms.tilted import ASKED, RUNS
 from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
@@ -80,7 +81,8 @@ RULES = (
     *(Rule(partial(kinematic.turning_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *AT_REST))),
+    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *AT_REST, *RUNS))),
+    Rule(lambda case: () if case.film.tilt == ASKED else kinematic.misalignment_faults(case), RUNS),
     Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), AT_REST),
     Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),

@@ -128,7 +128,10 @@ def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> TiltedFilms:
     places = film_places(case)
     misalignments = np.array([getattr(place.geometry, "misalignment", None) or (0.0, 0.0) for place in places])
     own = tuple(_tilted_film(case, place, cells_of(plan), top_Hz) for place in places)
-    return TiltedFilms(_clearances(case), own, misalignments)
+    cells = cells_of(plan)
+    return TiltedFilms(
+        _clearances(case), own, misalignments, cells, settled_share(plan.tolerance), compared_states(cells)
+    )
 
 
 def _inclined(case: Case, plan: Plan, top_Hz: float | None) -> Films:

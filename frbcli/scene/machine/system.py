@@ -74,6 +74,18 @@ class System:
         length of the machine (reference_length.py)."""
         return self.clearances[0] if self.clearances else self.own_length
 
+    def journals_of(self, q: Array) -> Array:
+        """(films, coordinates, ...) where the journals are in their shells, of displacements q (n, ...)."""
+        moved = self.rotor.journals @ q
+        standing = self.films.standing
+        return np.asarray(moved + standing.reshape(*standing.shape, *(1,) * (q.ndim - 1)))
+
+    def eccentricities(self, q: Array) -> Array:
+        """(films, ...) largest eccentricity along each film, of displacements q (n, ...)."""
+        ends = self.films.seen(self.journals_of(q))
+        found = np.hypot(ends[:, 0], ends[:, 1]).reshape(len(self.names), self.films.stations, *q.shape[1:])
+        return np.asarray(found.max(axis=1) / np.reshape(self.clearances, (-1, *(1,) * (q.ndim - 1))))
+
     @property
     def remembering(self) -> tuple[bool, ...]:
         """Which films keep oil of their own."""

@@ -82,7 +82,8 @@ def form_of(case: Case) -> FilmForm:
 
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
-    choices = {NO_FILM: _no_film, GIVEN: _given, PUBLISHED: _published, CELLS: _volumes, SOLUTIONS: _solutions}
+    choices = {NO_FILM: _no_film, GIVEN: _given, PUBLISHED: _published, SOLUTIONS: _solutions}
+    choices |= {CELLS: _volumes, TILTED: _volumes}
     return choices.get(form_of(case), _rectangles)(case, target)
 
 
@@ -104,15 +105,18 @@ def _published(case: Case, _: float) -> FilmChoice:
 def _volumes(case: Case, target: float) -> FilmChoice:
     eccentricity = expected_eccentricity(case)
     worst = worst_film(case, eccentricity)
+    form = TILTED if form_of(case) == TILTED else CELLS
     cells, cells_why = _cells(case, worst, target)
-    error = worst.of(cells)
+    error, cells = worst.of(cells), form.of_whole(cells)
     theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
     mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
-    if case.film.solution == "cells":
+    if form == TILTED:
+        mesh_why += "; over the whole width, since the film follows the tilt of its journal"
+    elif case.film.solution == "cells":
         mesh_why += "; film.solution is set in the case"
     elif all(law_named(model).tabulated for model in case.cavitations):
         mesh_why += f"; no table: {table_obstacle(case)}"
-    return FilmChoice("finite", CELLS, DEFAULT_MESH, cells, error, theory_why, mesh_why, (), eccentricity)
+    return FilmChoice("finite", form, DEFAULT_MESH, cells, error, theory_why, mesh_why, (), eccentricity)
 
 
 def _solutions(case: Case, _: float) -> FilmChoice:

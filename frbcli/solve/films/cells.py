@@ -133,12 +133,9 @@ def cell_response(
     )
 
 
-@compiled()
-def move_cells(
-    w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float, g: float, changes: Array,
-) -> int:  # fmt: skip
-    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
-    pressures, changes (slots,); 1 if the film is to be asked again.
+@compiled(inline=True)
+def held_at_kinks(before: float, after: float, empty: float, pressure_slope: float) -> float:
+    """The unknown of a cell after a correction, kept from leaping over the kinks of its law.
 
     Of a small gap in a short step the oil counts far more than its flow, and a cell's oil is an S over w: steep between
     empty and full, flat on both sides. From one flat side Newton's method would leap to the other and back for ever; a
@@ -147,6 +144,17 @@ def move_cells(
     In a cavity at p_cav w is a source or missing oil, and its size says nothing of a pressure: a cell that becomes full
     begins with p_cav, as its neighbours and the forces take it. Else a spurious peak of the pressure opens a free end.
     """
+    if max(before, after) > 0.0 and min(before, after) < empty:
+        after = 0.5 * empty
+    return ABOVE_KINK if after > 0.0 and pressure_slope == 0.0 else after
+
+
+@compiled()
+def move_cells(
+    w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float, g: float, changes: Array,
+) -> int:  # fmt: skip
+    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
+    pressures, changes (slots,); 1 if the film is to be asked again."""
     m, k = w.shape
     empty = grid.law[EMPTY]
     c, s = math.cos(grid.turn), math.sin(grid.turn)
@@ -159,10 +167,7 @@ def move_cells(
             w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
             for slot in range(changes.shape[0]):
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
-            if max(before, w[i, j]) > 0.0 and min(before, w[i, j]) < empty:
-                w[i, j] = 0.5 * empty
-            if w[i, j] > 0.0 and states[PRESSURE_SLOPE, i, j] == 0.0:
-                w[i, j] = ABOVE_KINK
+            w[i, j] = held_at_kinks(before, w[i, j], empty, states[PRESSURE_SLOPE, i, j])
     return 1 if grid.balance == OPEN else 0
 
 

@@ -24,8 +24,9 @@ from frbcli.solve.films.cells import (
 )
 from frbcli.solve.films.channels import follow_journals, join, set_laws, set_pressures
 from frbcli.solve.films.elements import back_off, element_response, left_of_elements, move_elements
-from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, TILTED, by_kind, kind_of
 from frbcli.solve.films.steps import Scaled, Supplied
+from frbcli.solve.films.tilted import ENDS, end_response, join_ends, meet_ends, move_end, tilted_sheared
 from frbcli.solve.stage.equations import FilmMotion
 from frbcli.solve.state import Array
 
@@ -40,10 +41,11 @@ def film_response(films: Any, work: Work, f: int, motion: FilmMotion, g: float, 
     raise NotImplementedError
 
 
-def meet_channels(
+def meet_films(
     films: Any, work: Work, x_0: Array, u: Array, omega: Array, clearances: Array, g: float, iteration: int
 ) -> None:
-    """Before the films are asked in an iteration: the pressures of the coupled channels, by the films as they are.
+    """Before the films are asked in an iteration: the pressures of the coupled channels, by the films as they are; how
+    both ends of a journal that tilts move.
 
     x_0, u, omega: (2 films,), see the rows of equations.py."""
     raise NotImplementedError
@@ -52,7 +54,8 @@ def meet_channels(
 def join_films(
     films: Any, work: Work, clearances: Array, force: Array, follows_x: Array, follows_y: Array
 ) -> None:
-    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross.
+    """After all films have been asked: what coupled channels make of their forces (2 films,), and work.cross, also of
+    both ends of a bearing.
 
     follows_x, follows_y: (2 films,), see the rows of equations.py."""
     raise NotImplementedError
@@ -78,6 +81,11 @@ def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, share: flo
 def left_over(films: Any, work: Work, smooth: float, moved: float, unsettled: int, allowed: float) -> float:
     """Error of the journals that may be left after a correction by `moved`, of which no more than `allowed` may be
     left: `smooth` for forces without kinks, infinite as long as films are unsettled."""
+    raise NotImplementedError
+
+
+def solved(films: Any, count: int) -> int:
+    """Films that are solved when the loop has asked `count` times for a force."""
     raise NotImplementedError
 
 
@@ -158,6 +166,8 @@ def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-
         return lambda films, work, f, motion, g, s, iteration: element_response(
             films, work, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega, g, iteration
         )
+    if kind == TILTED:
+        return lambda films, work, f, motion, g, s, iteration: end_response(films, work, f, g, s, iteration)
     if kind != CELLS:  # of several kinds: what the compiler knows of each stands at a fixed place of the tuple
         return lambda films, work, f, motion, g, s, iteration: _one_of(
             films, f, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
@@ -168,7 +178,7 @@ def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-
 
 
 def _meet(films, work, x_0, u, omega, clearances, g, iteration):  # type: ignore[no-untyped-def]
-    """meet_channels of films with cells."""
+    """meet_films of films with cells."""
     if films.feed_holes.shape[0] > 0:
         if iteration == 0:
             set_laws(films, work.grids, x_0, u, omega, clearances, g)
@@ -206,9 +216,15 @@ def _sheared(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
 
 
 by_kind(
-    meet_channels, others=lambda films, work, x_0, u, omega, clearances, g, iteration: None, cells=_meet
+    meet_films, others=lambda films, work, x_0, u, omega, clearances, g, iteration: None, cells=_meet,
+    tilted=lambda films, work, x_0, u, omega, clearances, g, iteration: meet_ends(work, x_0, u, omega, clearances, g),
 )  # fmt: skip
-by_kind(join_films, others=lambda films, work, clearances, force, follows_x, follows_y: None, cells=_join)
+by_kind(
+    join_films,
+    others=lambda films, work, clearances, force, follows_x, follows_y: None,
+    cells=_join,
+    tilted=lambda films, work, clearances, force, follows_x, follows_y: join_ends(work, clearances),
+)
 by_kind(follow_channels, others=lambda films, work, correction, share: None, cells=_follow)
 by_kind(
     step_back,
@@ -221,6 +237,7 @@ by_kind(
     inline=True,
     others=lambda films, work, smooth, moved, unsettled, allowed: smooth,
     cells=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
+    tilted=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
     elements=lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed),
 )
 by_kind(
@@ -228,6 +245,7 @@ by_kind(
     inline=True,
     others=lambda films, work, f, u_x, u_y, share, g: 0,
     cells=_move,
+    tilted=lambda films, work, f, u_x, u_y, share, g: move_end(films, work, f, u_x, u_y, g),
     elements=lambda films, work, f, u_x, u_y, share, g: move_elements(films, work, u_x, u_y, share, g),
 )
 by_kind(
@@ -236,4 +254,6 @@ by_kind(
     # of 1 / H over the turn, Sommerfeld's integral
     others=lambda films, work, f, d_x, d_y, factor: 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6)),
     cells=_sheared,
+    tilted=lambda films, work, f, d_x, d_y, factor: tilted_sheared(films, work, f, factor),
 )
+by_kind(solved, inline=True, others=lambda films, count: count, tilted=lambda films, count: count // ENDS)

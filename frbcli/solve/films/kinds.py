@@ -3,6 +3,7 @@
 - none at all, an empty tuple;
 - a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
+- TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py;
 - ElementFilm, the one film of a machine: elements of the published two-phase form, see elements.py.
 """
 
@@ -17,10 +18,11 @@ from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS
 from frbcli.film.cells.data import VolumeFilms
+from frbcli.film.cells.tilted.data import TiltedVolumes
 from frbcli.film.published.data import ElementFilm
 
-NONE, TABLES, CELLS, ELEMENTS = "none", "tables", "cells", "elements"
-_KINDS = {VolumeFilms: CELLS, ElementFilm: ELEMENTS}
+NONE, TABLES, CELLS, TILTED, ELEMENTS = "none", "tables", "cells", "tilted", "elements"
+_KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED, ElementFilm: ELEMENTS}
 
 
 def kind_of(films: Any) -> str:

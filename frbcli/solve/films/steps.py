@@ -20,7 +20,8 @@ from frbcli.solve.films.elements import (
     write_element_oil,
 )
 from frbcli.solve.films.grid import GRID
-from frbcli.solve.films.kinds import CELLS, ELEMENTS, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, ELEMENTS, TILTED, by_kind, kind_of
+from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 from frbcli.solve.state import Array
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
@@ -56,7 +57,7 @@ class Supplied(NamedTuple):
 
 def make_work(
     films: Any, wet: Array, stages: int, scales: Array | None = None, shares: Array | None = None
-) -> Work | ElementWork | NoCells | Scaled | Supplied:
+) -> Work | TiltedWork | ElementWork | NoCells | Scaled | Supplied:
     """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat; shares: of their
     supply pressure, where it changes, which the scales then follow, too."""
     kind = kind_of(films)
@@ -64,6 +65,8 @@ def make_work(
         return make_element_work(films, stages)
     if kind == CELLS:
         return make_cell_work(films, wet, stages)
+    if kind == TILTED:
+        return make_tilted_work(films, wet, stages)
     none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros(0, GRID), np.zeros((0, 0)))
     if scales is None:
         return none
@@ -107,23 +110,27 @@ by_kind(
     inline=True,
     others=lambda films: NEWTON_LIMIT,
     cells=lambda films: CELL_LIMIT,
+    tilted=lambda films: CELL_LIMIT,
     elements=lambda films: MOST_ITERATIONS,
 )
 by_kind(
     begin_stage,
     others=lambda films, work, wet, flows, weights, s, step, g, ahead, lag: None,
     cells=begin_cells,
+    tilted=begin_cells,
     elements=begin_elements,
 )
 by_kind(
     accept_films,
     others=lambda films, work, wet, flows, weights, step: None,
     cells=accept_cells,
+    tilted=accept_cells,
     elements=accept_elements,
 )
 by_kind(
     write_oil,
     others=lambda films, work, out_oil, first, last: None,
     cells=write_cell_oil,
+    tilted=lambda films, work, out_oil, first, last: write_land_oil(films, work, out_oil, first, last),
     elements=write_element_oil,
 )

@@ -25,8 +25,8 @@ ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic c
 V, Q, FREE, LATE, STAGE_ROWS = range(5)
 # u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
 # OMEGA is omega_J + omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film
-# feels by that of the journal, see contact.py.
-U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, JOURNAL_ROWS = range(11)
+# feels by that of the journal, see contact.py. STANDING: see RotorData.
+U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, STANDING, JOURNAL_ROWS = range(12)
 
 
 class FilmMotion(NamedTuple):
@@ -93,7 +93,7 @@ def start_stage(
                 total -= speed * products[E_GYROSCOPIC, i, j] * at[V, j]
         at[FREE, i] = total
     for k in range(selection.shape[0]):
-        place, rate = 0.0, 0.0
+        place, rate = journal[STANDING, k], 0.0
         for i in range(n):
             place += selection[k, i] * at[Q, i]
             rate += selection[k, i] * (at[V, i] + g * at[FREE, i])
@@ -126,7 +126,7 @@ def guess(
         x, y = 2 * f, 2 * f + 1
         eccentricity = norm(journal[X_0, x] + g * journal[U, x], journal[X_0, y] + g * journal[U, y])
         if eccentricity > 0.999 * limit * clearances[f]:
-            here_x, here_y = 0.0, 0.0
+            here_x, here_y = journal[STANDING, x], journal[STANDING, y]
             for i in range(q.shape[0]):
                 here_x += selection[x, i] * q[i]
                 here_y += selection[y, i] * q[i]

@@ -10,7 +10,7 @@ from typing import Any
 
 from frbcli.compiled import Array, compiled
 from frbcli.dense import solve_dense
-from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_channels, move_film, step_back
+from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_films, move_film, step_back
 from frbcli.solve.stage.contact import feel, push_back, shell_ahead
 from frbcli.solve.stage.equations import (
     BY_X,
@@ -86,7 +86,7 @@ def forces(
     films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, iteration: int, journal: Array
 ) -> None:
     """Fill FORCE, BY_X, BY_Y at the velocities U, and what coupled channels add to them, see join_films."""
-    meet_channels(films, work, journal[X_0], journal[U], journal[OMEGA], clearances, g, iteration)
+    meet_films(films, work, journal[X_0], journal[U], journal[OMEGA], clearances, g, iteration)
     turning = 0.0 if work.grids.shape[0] > 0 else g  # a film with cells has one derivative, of velocity and place
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]

@@ -32,6 +32,7 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.kernel import ALL_SIDES
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate
 
 LAWS: dict[str, Law] = {
@@ -106,19 +107,21 @@ def film_like(shape: tuple[int, int], closed: bool, seed: int) -> np.ndarray:
 def solved_ring(stencil: np.ndarray, right: np.ndarray) -> np.ndarray:
     m, k, sides = right.shape
     fields = np.concatenate([np.zeros((m, k, k)), right], axis=2)
-    solve_ring_at(ring_solver(k), stencil, np.empty((m, k, k)), fields)
+    solve_ring_at(ring_solver(k, sides), stencil, np.empty((m, k, k)), fields)
     return fields[:, :, k:].reshape(-1, sides)
 
 
+COUNTS = [SIDES, ALL_SIDES]  # of right-hand sides, of films whose journal does not tilt and of those where it does
 SHAPES = [(3, 1), (4, 2), (3, 3), (8, 4), (12, 5), (30, 6), (9, 8), (9, 9), (24, 10), (16, 12), (40, 20)]
 
 
+@pytest.mark.parametrize("sides", COUNTS)
 @pytest.mark.parametrize("closed", [False, True])
 @pytest.mark.parametrize("shape", SHAPES)
-def test_ring_solver_against_a_dense_one(shape: tuple[int, int], closed: bool) -> None:
+def test_ring_solver_against_a_dense_one(shape: tuple[int, int], closed: bool, sides: int) -> None:
     for seed in (1, 2, 3):
         stencil = film_like(shape, closed, seed)
-        right = np.random.default_rng(seed).normal(size=(*shape, SIDES))
+        right = np.random.default_rng(seed).normal(size=(*shape, sides))
         cell = np.arange(shape[0] * shape[1]).reshape(shape)
         matrix = np.zeros((cell.size, cell.size))
         matrix[cell, cell] = stencil[CENTRE]
@@ -126,7 +129,7 @@ def test_ring_solver_against_a_dense_one(shape: tuple[int, int], closed: bool) -
         matrix[cell, np.roll(cell, -1, axis=0)] += stencil[BEHIND]
         matrix[cell[:, 1:], cell[:, :-1]] = stencil[BELOW, :, 1:]
         matrix[cell[:, :-1], cell[:, 1:]] = stencil[ABOVE, :, :-1]
-        exact = np.linalg.solve(matrix, right.reshape(-1, SIDES))
+        exact = np.linalg.solve(matrix, right.reshape(-1, sides))
         assert np.allclose(solved_ring(stencil, right), exact, rtol=1e-9, atol=1e-10 * np.abs(exact).max())
 
 

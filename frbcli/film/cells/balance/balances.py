@@ -182,11 +182,11 @@ def _flow_around(
             stencil[BEHIND, i, j] += share * other - by_next
             stencil[CENTRE, n, j] += by_next - share_n * other
             stencil[BEFORE, n, j] -= by_own + share_n * own
-    _take(taken, flows)
+    take(taken, flows)
 
 
 @compiled()
-def _take(taken: float, flows: Array) -> None:
+def take(taken: float, flows: Array) -> None:
     """Openings take oil out of cells that are film in part, or give it to them where it is less than 0."""
     flows[SUPPLY_NET] -= taken
     if taken > 0.0:
@@ -216,7 +216,7 @@ def _carry_out_of_excess(
                 right[i, j, k + BY_X] -= g * oil * s
                 right[i, j, k + BY_Y] += g * oil * c
                 stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
-    _take(taken, flows)
+    take(taken, flows)
 
 
 @compiled()

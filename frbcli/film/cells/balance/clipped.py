@@ -11,7 +11,7 @@ from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y
 
 
 @compiled()
-def _rise(p: float, n: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
+def rise(p: float, n: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
     """Shares that count in the cell of p and in that of n, p > 0 >= n, and their derivatives by p, n and S.
 
     The derivatives of x are (1 - x) and x over p - n. They enter with p or S, which over p - n are of usual size even
@@ -62,9 +62,9 @@ def clipped_push(
                 s = b + z - p - q
                 a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
                 if q <= 0.0:
-                    to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = _rise(p, q, s)
+                    to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = rise(p, q, s)
                 elif p <= 0.0:
-                    to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = _rise(q, p, s)
+                    to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = rise(q, p, s)
                 else:
                     to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
                 at_x, at_y = at * ring[PUSH_X, i], at * ring[PUSH_Y, i]

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cells.channels.channel import Channel, FeedHole
 from frbcli.film.cells.data import CHANNEL, EXCHANGE, FEED_HOLE, FEED_HOLES, UNKNOWN, Records, VolumeFilms
-from frbcli.film.cells.elimination.ring_solver import ring_solver
+from frbcli.film.cells.elimination.ring_solver import UNKNOWN_SIDES, ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
 from frbcli.film.grid import Array
@@ -32,7 +32,7 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
     if not channels:
         return data
     cells, own = data.cells.copy(), data.films.copy()
-    own["solver_at"] = ring_solver(cells.shape[-1], usual=False)
+    own["solver_at"] = ring_solver(cells.shape[-1], UNKNOWN_SIDES)
     rows: Records = np.zeros(len(channels), CHANNEL)
     feed_holes, places = [], []
     slots = dict.fromkeys(range(len(films)), 0)

@@ -18,22 +18,24 @@ from numba.np.numpy_support import carray
 from frbcli.compiled import Array, address_of, c_function, call_of, compiled
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, solve_blocks, solve_known
 
-ANY = 0  # a length that has no code of its own
+UNKNOWN_SIDES = 0
+ANY = 0, UNKNOWN_SIDES  # sizes that have no code of their own
 THREE, FOUR, FIVE, SIX, EIGHT, TEN = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 8, (0,) * 10
+TWELVE, SIXTEEN = (0,) * 12, (0,) * 16
+TILTED = FIVE  # right-hand sides of a film whose journal tilts
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
 
 
-def ring_solver(k: int, usual: bool = True) -> int:
-    """Address of an elimination for columns of k cells.
-
-    usual: with the right-hand sides of a film that shares no oil with others."""
-    return _address(k if usual and k in _LENGTHS else ANY)
+def ring_solver(k: int, sides: int = len(USUAL)) -> int:
+    """Address of an elimination for columns of k cells with a number of right-hand sides, by default those of a film
+    that shares no oil with others."""
+    return _address((k, sides) if (k, sides) in _LENGTHS else ANY)
 
 
 @cache
-def _address(length: int) -> int:
-    return address_of(c_function(_LENGTHS.get(length, _any), _SIGNATURE, Path(__file__)))
+def _address(size: tuple[int, int]) -> int:
+    return address_of(c_function(_LENGTHS.get(size, _any), _SIGNATURE, Path(__file__)))
 
 
 def _any(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
@@ -65,13 +67,48 @@ def _ten(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
     solve_known(carray(stencil, (ENTRIES, m, 10)), carray(fields, (m, 10, 13)), TEN, USUAL)
 
 
-_LENGTHS: dict[int, Callable[..., None]] = {
-    len(THREE): _three,
-    len(FOUR): _four,
-    len(FIVE): _five,
-    len(SIX): _six,
-    len(EIGHT): _eight,
-    len(TEN): _ten,
+def _four_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 4)), carray(fields, (m, 4, 9)), FOUR, TILTED)
+
+
+def _five_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 5)), carray(fields, (m, 5, 10)), FIVE, TILTED)
+
+
+def _six_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 6)), carray(fields, (m, 6, 11)), SIX, TILTED)
+
+
+def _eight_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 8)), carray(fields, (m, 8, 13)), EIGHT, TILTED)
+
+
+def _ten_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 10)), carray(fields, (m, 10, 15)), TEN, TILTED)
+
+
+def _twelve_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 12)), carray(fields, (m, 12, 17)), TWELVE, TILTED)
+
+
+def _sixteen_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 16)), carray(fields, (m, 16, 21)), SIXTEEN, TILTED)
+
+
+_LENGTHS: dict[tuple[int, int], Callable[..., None]] = {
+    (len(THREE), len(USUAL)): _three,
+    (len(FOUR), len(USUAL)): _four,
+    (len(FIVE), len(USUAL)): _five,
+    (len(SIX), len(USUAL)): _six,
+    (len(EIGHT), len(USUAL)): _eight,
+    (len(TEN), len(USUAL)): _ten,
+    (len(FOUR), len(TILTED)): _four_tilted,
+    (len(FIVE), len(TILTED)): _five_tilted,
+    (len(SIX), len(TILTED)): _six_tilted,
+    (len(EIGHT), len(TILTED)): _eight_tilted,
+    (len(TEN), len(TILTED)): _ten_tilted,
+    (len(TWELVE), len(TILTED)): _twelve_tilted,
+    (len(SIXTEEN), len(TILTED)): _sixteen_tilted,
 }
 
 

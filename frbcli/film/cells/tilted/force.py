@@ -21,6 +21,7 @@ from frbcli.film.cells.loads import pushed
 from frbcli.film.cells.mesh.grid import tilted_ends, volume_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import film_at
 from frbcli.film.cells.tilted.clipped import mean_change
 from frbcli.film.cells.tilted.lands import parts
 from frbcli.film.gap import Section, gap_rate, graded_ring
@@ -39,6 +40,22 @@ class TiltedLand:
     film: VolumeFilm
     map: Array
 
+    def places(self, z: Array) -> Array:
+        """Where positions z over the width of the land lie over that of the bearing, 0 at its near end z = -B/2."""
+        centre, width = self.map[0, 3], self.map[2, 3]
+        return np.asarray(0.5 + (centre + width * (z - 0.5)) / self.film.section.bearing_width)
+
+    def motion_of(self, ends: Array) -> Motion:
+        """A journal that stands with displacements (2, 2) over the clearance at the ends of its bearing."""
+        near, far = (ends[0] + z * (ends[1] - ends[0]) for z in self.places(np.array([0.0, 1.0])))
+        middle, slope = 0.5 * (near + far), far - near
+        return Motion((middle[0], middle[1]), (0.0, 0.0), 0.0, (slope[0], slope[1]))
+
+    def motion(self, place: Array, rate: Array, total: float) -> Motion:
+        """Of the journal over the land, from its coordinates in m and rad, their rates, and omega_J + omega_S."""
+        u, v = (self.map @ each / self.film.section.clearance for each in (place, rate))
+        return Motion((u[0], u[1]), (v[0], v[1]), total, (u[2], u[3]), (v[2], v[3]))
+
 
 @dataclass(frozen=True)
 class TiltedFilm:
@@ -48,12 +65,21 @@ class TiltedFilm:
     section: Section
     lands: tuple[TiltedLand, ...]
 
+    def at_ends(self, journal: Array) -> Array:
+        """(2, 2, ...) displacement at both ends of the bearing, of a journal (4, ...)."""
+        x, y, tilt_x, tilt_y = journal
+        half = 0.5 * self.section.bearing_width
+        return np.asarray([(x + z * tilt_y, y - z * tilt_x) for z in (-half, half)])
+
     def ends(self, place: Array) -> Array:
         """(2, 2) displacements over the clearance at both ends of the bearing of a journal at `place` (4,)."""
-        x, y, tilt_x, tilt_y = place
-        half = 0.5 * self.section.bearing_width
-        ends = [(x + z * tilt_y, y - z * tilt_x) for z in (-half, half)]
-        return np.asarray(ends) / self.section.clearance
+        return self.at_ends(place) / self.section.clearance
+
+    def finer(self, cells: tuple[int, int]) -> TiltedFilm:
+        """The same film on other cells, see tilted_film."""
+        land = self.lands[0]
+        mirrored = len(self.lands) == 1 and land.map[2, 3] < 0.0
+        return tilted_film(self.section, land.film.law, cells, land.film.scales.reference, mirrored)
 
 
 def tilted_film(
@@ -85,15 +111,12 @@ def tilted_force(
     place, rate: (4,) coordinates of the journal in m and rad, and their rates; total: omega_J + omega_S; start: (lands,
     m, k) field of a motion near by, if one is known. Raises NotConverged.
     """
-    least = float(np.linalg.norm(film.ends(place), axis=1).max())
-    if least >= 1.0:
+    if np.linalg.norm(film.ends(place), axis=1).max() >= 1.0:
         raise FilmUnsolved("the journal touches its shell at an end")
     force, by_place, by_rate, fields = np.zeros(4), np.zeros((4, 4)), np.zeros((4, 4)), []
     for number, land in enumerate(film.lands):
-        clearance = land.film.section.clearance
-        u, v = (land.map @ each / clearance for each in (place, rate))
-        motion = Motion((u[0], u[1]), (v[0], v[1]), total, (u[2], u[3]), (v[2], v[3]))
-        solution = _solution(land.film, motion, None if start is None else start[number])
+        clearance, motion = land.film.section.clearance, land.motion(place, rate, total)
+        solution = land_solution(land.film, motion, None if start is None else start[number])
         loads, by_u, by_v = _land_force(land.film, motion, solution)
         force += land.map.T @ loads
         by_place += land.map.T @ by_u @ land.map / clearance
@@ -102,8 +125,18 @@ def tilted_force(
     return FilmForce(force, by_place, by_rate, np.array(fields))
 
 
-def _solution(film: VolumeFilm, motion: Motion, start: Array | None) -> VolumeSolution:
-    solver = FilmSolver(film)
+def settled_force(film: TiltedFilm, place: Array, rate: Array, total: float) -> Array:
+    """The force and moments of tilted_force alone. Raises NotConverged."""
+    force = np.zeros(COORDINATES)
+    for land in film.lands:
+        solution = land_solution(land.film, land.motion(place, rate, total))
+        force += land.map.T @ _loads(land.film, land.film.mean_pressure(solution.state))
+    return force
+
+
+def land_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
+    """The steady solution of a land, sought from the field `start`, then from a full film. Raises FilmUnsolved."""
+    solver = FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega))
     try:
         return solver.steady(motion, start)
     except FilmUnsolved:

@@ -1,0 +1,48 @@
+"""Films whose journals tilt as arrays for the compiled kernels: the lands of all films of a machine beside each other.
+
+The coordinates of a journal are its displacements at both ends of its bearing, over the clearance: (near x, near y,
+far x, far y), near at z = -B/2. In between its displacement is linear along the axis, and so is the gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.compiled import Array, Indices
+from frbcli.film.cells.data import TIGHTLY, Records, volume_films
+from frbcli.film.cells.elimination.ring_solver import ring_solver
+from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm
+
+MIDDLES, EDGES, WIDTHS, PLACES = range(4)
+
+
+class TiltedVolumes(NamedTuple):
+    """Lands of equal numbers of cells m x k; films, ring, cells: as VolumeFilms has them, of each land.
+
+    places: (lands, PLACES, k + 1) where the middles of the cells and their edges lie along the axis, 0 at the near end
+    of the bearing and 1 at its far end, and the sizes of the cells over the width of the land; first: (films + 1,)
+    first land of each film, and their number.
+    """
+
+    films: Records
+    ring: Array
+    cells: Array
+    places: Array
+    first: Indices
+
+
+def tilted_volumes(films: Sequence[TiltedFilm], settled: float = TIGHTLY) -> TiltedVolumes:
+    """The films as arrays; all lands have grids of the same shape. settled: see FILM."""
+    lands = [land for film in films for land in film.lands]
+    data = volume_films([land.film for land in lands], (), settled)
+    k = lands[0].film.grid.shape[1]
+    places = np.zeros((len(lands), PLACES, k + 1))
+    for of, land in zip(places, lands, strict=True):
+        grid = land.film.grid
+        of[MIDDLES, :k], of[EDGES], of[WIDTHS, :k] = land.places(grid.height), land.places(grid.z), np.diff(grid.z)
+    data.films["solver_at"] = ring_solver(k, 1 + COORDINATES)
+    first = np.cumsum([0, *(len(film.lands) for film in films)])
+    return TiltedVolumes(data.films, data.ring, data.cells, places, first)

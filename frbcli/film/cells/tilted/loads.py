@@ -1,0 +1,111 @@
+"""Forces at both ends of a bearing by the pressures of a land, with derivatives, compiled.
+
+They do the same virtual work as the pressures on a journal that moves and tilts: a pressure at the place z along the
+axis pushes with the share z at the far end, and with the rest at the near one.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.cells.balance.clipped import rise
+from frbcli.film.cells.balance.plain_clipped import CURVED
+from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE
+from frbcli.film.cells.data import BETWEEN_MIDDLES, LOAD, NO_CLIP, PUSH_X, PUSH_Y
+from frbcli.film.cells.tilted.data import MIDDLES
+from frbcli.film.cells.tilted.kernel import BY_ENDS, BY_ITSELF
+
+
+@compiled()
+def _pressed(film: np.record, ring: Array, cells: Array, states: Array, fields: Array, push: Array) -> None:
+    """push[2] (m, k) <- pressures of the cells as forces take them, times their weights; push[:2] <- by what forces
+    along x and y change with each."""
+    m, k = states.shape[1], states.shape[2]
+    cavity, clips = film.scales.cavitation, film.clips != NO_CLIP
+    for i in range(m):
+        for j in range(k):
+            here = states[PRESSURE, i, j] + states[PRESSURE_SLOPE, i, j] * fields[i, j, k + BY_ITSELF]
+            counts = not clips or here >= cavity
+            push[2, i, j] = cells[LOAD, i, j] * (here if counts else cavity)
+            push[0, i, j] = ring[PUSH_X, i] * cells[LOAD, i, j] if counts else 0.0
+            push[1, i, j] = ring[PUSH_Y, i] * cells[LOAD, i, j] if counts else 0.0
+
+
+@compiled()
+def _pressed_between(film: np.record, ring: Array, cells: Array, states: Array, fields: Array, push: Array) -> None:
+    """_pressed of a pressure that is clipped between the middles of cells, see clipped_push."""
+    m, k = states.shape[1], states.shape[2]
+    cavity = film.scales.cavitation
+    for i in range(m):
+        for j in range(k):
+            own = states[PRESSURE_SLOPE, i, j] * fields[i, j, k + BY_ITSELF]
+            push[3, i, j] = states[PRESSURE, i, j] + own - cavity
+            push[0, i, j] = push[1, i, j] = 0.0
+            push[2, i, j] = cells[LOAD, i, j] * cavity
+    for i in range(m):
+        before, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+        after = n + 1 if n + 1 < m else 0
+        for j in range(k):
+            p, q = push[3, i, j], push[3, n, j]
+            if p <= 0.0 and q <= 0.0:
+                continue
+            s = push[3, before, j] + push[3, after, j] - p - q
+            a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
+            if q <= 0.0:
+                to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = rise(p, q, s)
+            elif p <= 0.0:
+                to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = rise(q, p, s)
+            else:
+                to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
+            at, behind = cells[LOAD, i, j], cells[LOAD, n, j]
+            push[2, i, j] += at * to_p
+            push[2, n, j] += behind * to_q
+            for side in range(2):
+                here, there = at * ring[PUSH_X + side, i], behind * ring[PUSH_X + side, n]
+                by_s = here * a_s + there * c_s
+                push[side, i, j] += here * a_p + there * c_p - by_s
+                push[side, n, j] += here * a_q + there * c_q - by_s
+                push[side, before, j] += by_s
+                push[side, after, j] += by_s
+
+
+@compiled()
+def land_loads(
+    film: np.record, ring: Array, cells: Array, places: Array, states: Array, fields: Array, push: Array,
+    loads: Array, slopes: Array,
+) -> None:  # fmt: skip
+    """loads (4,) <- of the land in N after the film's own change in fields (m, k, k + ALL_SIDES), see data.py for their
+    order; slopes (4, 4) <- their derivatives by the rates of the coordinates in N s. push: (4, m, k) to work in."""
+    m, k = states.shape[1], states.shape[2]
+    if film.clips == BETWEEN_MIDDLES:
+        _pressed_between(film, ring, cells, states, fields, push)
+    else:
+        _pressed(film, ring, cells, states, fields, push)
+    for a in range(4):
+        loads[a] = 0.0
+        for b in range(4):
+            slopes[a, b] = 0.0
+    for i in range(m):
+        for j in range(k):
+            z, slope = places[MIDDLES, j], states[PRESSURE_SLOPE, i, j]
+            x, y = ring[PUSH_X, i] * push[2, i, j], ring[PUSH_Y, i] * push[2, i, j]
+            loads[0] += x
+            loads[1] += y
+            loads[2] += z * x
+            loads[3] += z * y
+            by_x, by_y = slope * push[0, i, j], slope * push[1, i, j]
+            for b in range(4):
+                change = fields[i, j, k + BY_ENDS + b]
+                slopes[0, b] += by_x * change
+                slopes[1, b] += by_y * change
+                slopes[2, b] += z * by_x * change
+                slopes[3, b] += z * by_y * change
+    for a in range(2):  # what does not push at the far end does so at the near one
+        loads[a] -= loads[a + 2]
+        for b in range(4):
+            slopes[a, b] -= slopes[a + 2, b]
+    for a in range(4):
+        loads[a] *= film.force_scale
+        for b in range(4):
+            slopes[a, b] *= film.force_scale

@@ -1,0 +1,332 @@
+"""Films whose journals tilt in one stage of the time loop, compiled.
+
+The loop has the displacements of a journal at both ends of its bearing, as it would have those of two journals; both
+belong to one film, which is solved when the first of them asks for its force. What the forces at one end change with
+the motion of the other is left to work.cross. All else is as for other films with cells, see cells.py.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.cavitation.compiled import EMPTY
+from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
+from frbcli.film.cells.balance.newton_step import damp, imbalance
+from frbcli.film.cells.balance.states import (
+    FRACTION,
+    FRACTION_SLOPE,
+    PRESSURE_SLOPE,
+    STATES,
+    cell_states,
+    follow_law,
+    hold,
+)
+from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES
+from frbcli.film.cells.elimination.ring_solver import solve_ring_at
+from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
+from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, gap_at_ends, land_balances
+from frbcli.film.cells.tilted.loads import land_loads
+from frbcli.solve.films.cell_steps import oil_fraction
+from frbcli.solve.films.cells import (
+    AHEAD,
+    CELL_SHARE,
+    DAMPING,
+    GAINS_CARRIED,
+    HELD,
+    LOCAL_FACTOR,
+    LOOSE_SHARE,
+    NEWTON_GAINS,
+    OPEN,
+    PLAIN,
+    SLOW,
+    SLOWEST,
+    SOLVED,
+    held_at_kinks,
+)
+from frbcli.solve.films.grid import GRID
+
+ENDS = 2  # of a bearing, each of which the loop takes for a journal
+
+
+class TiltedWork(NamedTuple):
+    """Scratch of the time loop for F films of L lands: that of Work in cell_steps.py, of lands, but grids (2 F,), of a
+    film behind each other. places, rates, moves: (F, 4) coordinates of the journals in the directions of the grids, see
+    tilted/data.py, their rates, and their last corrections; omega (F,); push (4, m, k), loads (L, 4), slopes (L, 4, 4),
+    unused (4, 4), see land_loads; force (F, 4), by_rate (F, 4, 4) of films; cross (4 F, 4 F)."""
+
+    states: Array
+    stencil: Array
+    blocks: Array
+    fields: Array
+    w: Array
+    first: Array
+    past: Array
+    stage_oil: Array
+    stage_flows: Array
+    grids: Records
+    cross: Array
+    places: Array
+    rates: Array
+    moves: Array
+    omega: Array
+    push: Array
+    loads: Array
+    slopes: Array
+    unused: Array
+    force: Array
+    by_rate: Array
+
+
+def make_tilted_work(films: TiltedVolumes, wet: Array, stages: int) -> TiltedWork:
+    """Scratch for films whose journals tilt, and their state wet (WET, L, m, k)."""
+    _, lands, m, k = wet.shape
+    count = len(films.first) - 1
+    grids: Records = np.zeros(ENDS * count, GRID)
+    grids["balance"] = SOLVED  # also of those that no land has
+    return TiltedWork(
+        np.zeros((lands, STATES, m, k)),
+        np.zeros((ENTRIES, m, k)),
+        np.zeros((m, k, k)),
+        np.zeros((lands, m, k, k + ALL_SIDES)),
+        np.zeros((lands, m, k)),
+        np.zeros((lands, m, k)),
+        np.zeros((lands, m, k)),
+        np.zeros((stages, lands, m, k)),
+        np.zeros((stages, lands, FLOWS)),
+        grids,
+        np.zeros((4 * count, 4 * count)),
+        np.zeros((count, 4)),
+        np.zeros((count, 4)),
+        np.zeros((count, 4)),
+        np.zeros(count),
+        np.zeros((4, m, k)),
+        np.zeros((lands, 4)),
+        np.zeros((lands, 4, 4)),
+        np.zeros((4, 4)),
+        np.zeros((count, 4)),
+        np.zeros((count, 4, 4)),
+    )
+
+
+@compiled()
+def meet_ends(work: Any, x_0: Array, u: Array, omega: Array, clearances: Array, g: float) -> None:
+    """meet_films of forces.py: how all journals stand and move, seen from the grids of their films."""
+    for f in range(work.force.shape[0]):
+        grid, c = work.grids[ENDS * f], clearances[ENDS * f]
+        cosine, sine, spin = math.cos(grid.turn), math.sin(grid.turn), grid.speed
+        work.omega[f] = omega[4 * f]
+        for x in (0, 2):
+            i, j = 4 * f + x, 4 * f + x + 1
+            d_x, d_y, v_x, v_y = (x_0[i] + g * u[i]) / c, (x_0[j] + g * u[j]) / c, u[i] / c, u[j] / c
+            v_x, v_y = v_x + spin * d_y, v_y - spin * d_x
+            work.places[f, x], work.places[f, x + 1] = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
+            work.rates[f, x], work.rates[f, x + 1] = cosine * v_x + sine * v_y, cosine * v_y - sine * v_x
+
+
+@compiled()
+def _store_rates(
+    ring: Array, cells: Array, places: Array, states: Array, d: Array, g: float, past: Array, fields: Array,
+    rates: Array,
+) -> None:  # fmt: skip
+    """store_rates of newton_step.py."""
+    m, k = rates.shape
+    for i in range(m):
+        near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
+        for j in range(k):
+            rates[i, j] = 0.0
+            if cells[UNKNOWN, i, j] != 0.0:
+                h = near + places[MIDDLES, j] * rise
+                rates[i, j] = h * states[FRACTION, i, j] / g - past[i, j] + fields[i, j, k] / cells[AREA, i, j]
+
+
+@compiled()
+def _pace(omega: float, v: Array) -> float:
+    """How fast the gap changes, in 1/s, see cell_response."""
+    fastest = max(v[0] * v[0] + v[1] * v[1], v[2] * v[2] + v[3] * v[3])
+    return 0.5 * abs(omega) + math.sqrt(fastest) + SLOWEST
+
+
+@compiled()
+def _follow(film: np.record, d: Array, v: Array, omega: float, spin: float, law: Array) -> None:
+    """law <- what the law is for the motion in the middle of the bearing, without the turning of the grid."""
+    x, y = 0.5 * (d[0] + d[2]), 0.5 * (d[1] + d[3])
+    follow_law(film, x, y, 0.5 * (v[0] + v[2]) - spin * y, 0.5 * (v[1] + v[3]) + spin * x, omega, law)
+
+
+@compiled()
+def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s: int, iteration: int) -> None:
+    """cell_response of cells.py: loads and slopes of a land of film f, in the directions of its grid."""
+    film, ring, cells, along = films.films[land], films.ring[land], films.cells[land], films.places[land]
+    w, past, states, fields = work.w[land], work.past[land], work.states[land], work.fields[land]
+    d, v, stencil, grid = work.places[f], work.rates[f], work.stencil, work.grids[ENDS * f + land - films.first[f]]
+    loads, slopes, flows, remembers = work.loads[land], work.slopes[land], work.stage_flows[s, land], film.remembers
+    omega = work.omega[f] - 2.0 * grid.speed
+    m, k = w.shape
+    grid.stage = s
+    if iteration == 0:
+        _follow(film, d, v, work.omega[f], grid.speed, grid.law)
+    cell_states(film, cells, grid.law, 0.0, w, states)
+    if iteration == 0:
+        hold(states, omega)
+    motion = EndsMotion(d, v, omega, g, 1.0 / g if remembers else 0.0)
+    land_balances(film, ring, cells, along, states, motion, past, stencil, fields, flows)
+    mean, largest = imbalance(cells, fields)
+    pace = _pace(omega, v)
+    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
+    balanced = left < 1.0
+    if balanced and remembers:
+        _store_rates(ring, cells, along, states, d, g, past, fields, work.stage_oil[s, land])
+    if balanced and iteration > 0 and grid.ratio < SLOW:
+        grid.balance = HELD
+        for i in range(m):  # the journal takes the film along as it did before
+            for j in range(k):
+                fields[i, j, k + BY_ITSELF] = 0.0
+                for a in range(4):
+                    fields[i, j, k + BY_ENDS + a] = fields[i, j, a]
+        land_loads(film, ring, cells, along, states, fields, work.push, loads, work.unused)
+        return
+    soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and iteration < PLAIN
+    grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
+    if iteration >= PLAIN:
+        damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
+    solve_ring_at(film.solver_at, stencil, work.blocks, fields)
+    land_loads(film, ring, cells, along, states, fields, work.push, loads, slopes)
+    for i in range(m):
+        for j in range(k):
+            for a in range(4):
+                fields[i, j, a] = fields[i, j, k + BY_ENDS + a]
+
+
+@compiled()
+def _solve_film(films: TiltedVolumes, work: Any, f: int, g: float, s: int, iteration: int) -> None:
+    """force and by_rate of film f, back from the directions of its grid."""
+    force, by = work.force[f], work.by_rate[f]
+    for a in range(4):
+        force[a] = 0.0
+        for b in range(4):
+            by[a, b] = 0.0
+    for land in range(films.first[f], films.first[f + 1]):
+        _solve_land(films, work, land, f, g, s, iteration)
+        for a in range(4):
+            force[a] += work.loads[land, a]
+            for b in range(4):
+                by[a, b] += work.slopes[land, a, b]
+    turn = work.grids[ENDS * f].turn
+    c, sine = math.cos(turn), math.sin(turn)
+    for a in (0, 2):
+        force[a], force[a + 1] = c * force[a] - sine * force[a + 1], sine * force[a] + c * force[a + 1]
+        for b in (0, 2):
+            xx, xy, yx, yy = by[a, b], by[a, b + 1], by[a + 1, b], by[a + 1, b + 1]
+            p, q, r, t = c * xx - sine * yx, c * xy - sine * yy, sine * xx + c * yx, sine * xy + c * yy
+            by[a, b], by[a, b + 1] = p * c - q * sine, p * sine + q * c
+            by[a + 1, b], by[a + 1, b + 1] = r * c - t * sine, r * sine + t * c
+
+
+@compiled()
+def end_response(
+    films: TiltedVolumes, work: Any, end: int, g: float, s: int, iteration: int
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """The response, see film_response of forces.py, at one end of a bearing by the motion there."""
+    f, x = end // ENDS, 2 * (end % ENDS)
+    if x == 0:
+        _solve_film(films, work, f, g, s, iteration)
+    by = work.by_rate[f]
+    return (
+        work.force[f, x], work.force[f, x + 1], 0.0, 0.0, 0.0, 0.0,
+        by[x, x], by[x, x + 1], by[x + 1, x], by[x + 1, x + 1],
+    )  # fmt: skip
+
+
+@compiled()
+def join_ends(work: Any, clearances: Array) -> None:
+    """join_films of forces.py: what the forces at one end change with the motion of the other."""
+    for f in range(work.force.shape[0]):
+        for a in range(2):
+            for b in range(2, 4):
+                x, y, c = 4 * f + a, 4 * f + b, clearances[ENDS * f]
+                work.cross[x, y], work.cross[y, x] = work.by_rate[f, a, b] / c, work.by_rate[f, b, a] / c
+
+
+@compiled()
+def _step_of(fields: Array, i: int, j: int, u: Array) -> float:
+    """By how much the unknown of a cell changes with a correction u (4,) of the velocities at the ends."""
+    first = fields.shape[1]
+    step = fields[i, j, first + BY_ITSELF]
+    for a in range(4):
+        step += u[a] * fields[i, j, first + BY_ENDS + a]
+    return float(step)
+
+
+@compiled()
+def _store_ahead(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s: int) -> None:
+    """store_ahead of cells.py."""
+    ring, cells, along, u = films.ring[land], films.cells[land], films.places[land], work.moves[f]
+    past, states, fields, d = work.past[land], work.states[land], work.fields[land], work.places[f]
+    rates, flows, gained = work.stage_oil[s, land], work.stage_flows[s, land], 0.0
+    m, k = rates.shape
+    for i in range(m):
+        near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
+        opens, rises = gap_at_ends(0.0, ring[SIN, i], ring[COS, i], u)
+        for j in range(k):
+            z, theta = along[MIDDLES, j], states[FRACTION, i, j]
+            h, grows = near + z * rise, g * (opens + z * rises)
+            content = h * (theta + states[FRACTION_SLOPE, i, j] * _step_of(fields, i, j, u)) + theta * grows
+            rates[i, j] = content / g - past[i, j] if cells[UNKNOWN, i, j] != 0.0 else 0.0
+            gained += cells[AREA, i, j] * rates[i, j]
+    flows[ENDS_NET] = flows[SUPPLY_NET] - gained
+
+
+@compiled()
+def move_end(films: TiltedVolumes, work: Any, end: int, u_x: float, u_y: float, g: float) -> int:
+    """move_film of forces.py: with the second end it is known how the film moves, and all its lands follow."""
+    f, x = end // ENDS, 2 * (end % ENDS)
+    turn, u, unsettled = work.grids[ENDS * f].turn, work.moves[f], 0
+    c, s = math.cos(turn), math.sin(turn)
+    u[x], u[x + 1] = c * u_x + s * u_y, c * u_y - s * u_x
+    if x == 0:
+        return 0
+    for land in range(films.first[f], films.first[f + 1]):
+        w, states, fields = work.w[land], work.states[land], work.fields[land]
+        grid = work.grids[ENDS * f + land - films.first[f]]
+        if films.films[land].remembers and grid.balance == AHEAD:
+            _store_ahead(films, work, land, f, g, grid.stage)
+        for i in range(w.shape[0]):
+            for j in range(w.shape[1]):
+                moved = w[i, j] + _step_of(fields, i, j, u)
+                w[i, j] = held_at_kinks(w[i, j], moved, grid.law[EMPTY], states[PRESSURE_SLOPE, i, j])
+        if grid.balance == OPEN:
+            unsettled = 1
+    for a in range(4):
+        work.places[f, a] += g * u[a]
+    return unsettled
+
+
+@compiled()
+def tilted_sheared(films: TiltedVolumes, work: Any, end: int, factor: int) -> float:
+    """drag_integral of forces.py, half of that of a bearing for each end."""
+    f, mean = end // ENDS, 0.0
+    lands, d = films.first[f + 1] - films.first[f], work.places[f]
+    for land in range(films.first[f], films.first[f + 1]):
+        ring, cells, along, states = films.ring[land], films.cells[land], films.places[land], work.states[land]
+        for i in range(states.shape[1]):
+            near, rise = gap_at_ends(ring[GAP, i], ring[SIN, i], ring[COS, i], d)
+            for j in range(states.shape[2]):
+                oil = states[FRACTION, i, j] if factor == LOCAL_FACTOR else 1.0
+                mean += oil * cells[SHEARED, i, j] / max(near + along[MIDDLES, j] * rise, 1e-3)
+    return float(mean / (ENDS * lands))
+
+
+@compiled()
+def write_land_oil(films: TiltedVolumes, work: Any, out_oil: Array, first: int, last: int) -> None:
+    """write_oil of steps.py."""
+    for f in range(work.force.shape[0] if last > first else 0):
+        oil, lands = 0.0, films.first[f + 1] - films.first[f]
+        for land in range(films.first[f], films.first[f + 1]):
+            oil += oil_fraction(films.cells[land], work.states[land]) / lands
+        for row in range(first, last):
+            out_oil[row, f] = oil

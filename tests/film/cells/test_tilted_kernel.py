@@ -1,0 +1,190 @@
+"""The compiled balances and loads of films whose journal tilts, against the plain ones and against differences."""
+
+from __future__ import annotations
+
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+
+from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.law import CellState, Law
+from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
+from frbcli.film.cells.balance.carried import before_upstream
+from frbcli.film.cells.balance.newton_step import film_loads
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
+from frbcli.film.cells.film import VolumeFilm, gap_height
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
+from frbcli.film.cells.tilted.force import TiltedLand, _loads, tilted_film
+from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, EndsMotion, land_balances
+from frbcli.film.cells.tilted.loads import land_loads
+from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
+
+R, B, C, ETA, TOTAL = 0.01, 0.012, 40e-6, 0.01, 900.0
+HOLES = (Hole(1.0, 0.005, 0.2, 0.0025, 1.5e5, True), Hole(-2.0, 0.0095, 0.15, 0.0012, 0.5e5, False))
+GROOVES = (AxialGroove(0.7, 0.3, 0.5e5),)
+SECTIONS = {
+    "plain": Section(R, B, B, C, ETA, 1e5, 0.9e5, 1, "oil-bath", "oil-bath"),
+    "divided": Section(R, 0.5 * B, B, C, ETA, 1e5, 0.9e5, 2, "free-to-air", "groove", 0.7e5),
+    "bores": Section(R, B, B, C, ETA, 1e5, 0.9e5, 1, "free-to-air", "oil-bath", holes=HOLES),
+    "grooves": Section(R, B, B, C, ETA, 1e5, 0.9e5, 1, "oil-bath", "oil-bath", grooves=GROOVES),
+}
+LAWS: dict[str, Law] = {
+    "sommerfeld": Sommerfeld(),
+    "half-sommerfeld": HalfSommerfeld(),
+    "reynolds": Reynolds(),
+    "elrod": Elrod(),
+    "two-phase": TwoPhase(0.9),
+}
+D, V = np.array([0.3, -0.35, -0.2, -0.5]), np.array([120.0, 40.0, -200.0, 90.0])
+G = 2e-5
+
+
+def lands_of(section: Section, law: Law) -> tuple[TiltedVolumes, tuple[TiltedLand, ...]]:
+    film = tilted_film(section, law, (30, 12), 500.0)
+    return tilted_volumes([film]), film.lands
+
+
+def motion_of(land: TiltedLand, d: np.ndarray, v: np.ndarray) -> Motion:
+    """Of the land, from the coordinates at the ends of the bearing."""
+    low, high = land.places(np.array([0.0, 1.0]))
+
+    def at(x: np.ndarray) -> tuple[tuple[float, float], tuple[float, float]]:
+        near, far = ((1.0 - z) * x[:2] + z * x[2:] for z in (low, high))
+        middle, growth = 0.5 * (near + far), far - near
+        return (middle[0], middle[1]), (growth[0], growth[1])
+
+    (place, slope), (rate, slope_rate) = at(d), at(v)
+    return Motion(place, rate, TOTAL, slope, slope_rate)
+
+
+def some_states(film: VolumeFilm) -> tuple[np.ndarray, CellState]:
+    """States of all kinds of cells, as the kernel and as the plain form has them."""
+    m, k = film.grid.shape
+    phi, z = film.grid.centre[:, None], film.grid.height[None, :]
+    w = 0.8 * np.sin(phi) + 0.3 * np.cos(2.0 * phi) * z + 0.2 * z
+    state = film.cells(w)
+    states = np.zeros((STATES, m, k))
+    states[:CARRIED_GAS] = astuple(state)
+    states[BEFORE_UPSTREAM] = before_upstream(state.fraction, TOTAL)
+    return states, state
+
+
+def kernel(
+    data: TiltedVolumes, number: int, states: np.ndarray, d: np.ndarray, v: np.ndarray, g: float, rate: float,
+    past: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:  # fmt: skip
+    m, k = states.shape[1:]
+    stencil, right, flows = np.ones((ENTRIES, m, k)), np.ones((m, k, k + ALL_SIDES)), np.ones(FLOWS)
+    given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
+    land_balances(*given, states, EndsMotion(d, v, TOTAL, g, rate), past, stencil, right, flows)
+    return stencil, right, flows
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+@pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
+@pytest.mark.parametrize("law", [LAWS["reynolds"], LAWS["two-phase"]], ids=["reynolds", "two-phase"])
+def test_balances_are_the_plain_ones(law: Law, section: Section, keeps: bool) -> None:
+    data, lands = lands_of(section, law)
+    for number, land in enumerate(lands):
+        film = land.film
+        states, state = some_states(film)
+        motion = motion_of(land, D, V)
+        rate, past = (1.0 / G if keeps else 0.0), np.random.default_rng(1).uniform(-90.0, 90.0, film.grid.shape)
+        stencil, right, flows = kernel(data, number, states, D, V, G, rate, past)
+        phi, z = film.grid.centre[:, None], film.grid.height
+        factor = rate * gap_height(film.section, motion.displacement_at(z), phi) if keeps else gap_rate(
+            motion.velocity_at(z), phi
+        )
+        balance = CellBalances(film.section, film.grid, motion, states[BEFORE_UPSTREAM])
+        residual, entries = balance.residual(state, Storage(factor, past))
+        k = film.grid.shape[1]
+        assert right[:, :, k] == pytest.approx(-residual, abs=1e-12 * np.abs(residual).max())
+        plain = np.zeros_like(stencil)
+        plain[CENTRE], plain[BEFORE], plain[BEHIND] = entries.centre, entries.before, entries.behind
+        plain[BELOW], plain[ABOVE] = entries.below, entries.above
+        assert stencil[:5] == pytest.approx(plain[:5], abs=1e-12 * np.abs(plain).max())
+        fluxes, _, _ = balance.fluxes(state.pressure, state.fraction)
+        ends = fluxes.near.sum() + fluxes.far.sum()
+        assert flows[ENDS_NET] == pytest.approx(ends, abs=1e-12 * np.abs(residual).sum())
+        if film.grid.fixed.any():
+            assert flows[SUPPLY_NET] != 0.0
+
+
+@pytest.mark.parametrize("keeps", [False, True])
+@pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
+def test_derivatives_by_velocities_are_those_of_differences(section: Section, keeps: bool) -> None:
+    """A velocity moves the journal by g, too."""
+    data, lands = lands_of(section, TwoPhase(0.9))
+    for number, land in enumerate(lands):
+        states, _ = some_states(land.film)
+        k, past, rate = states.shape[2], np.zeros(states.shape[1:]), (1.0 / G if keeps else 0.0)
+        _, right, _ = kernel(data, number, states, D, V, G, rate, past)
+        for i, unit in enumerate(np.eye(4)):
+            step = 4.0
+            ahead, behind = (
+                kernel(data, number, states, D + side * G * step * unit, V + side * step * unit, G, rate, past)[1]
+                for side in (1.0, -1.0)
+            )
+            by_difference = (ahead[:, :, k] - behind[:, :, k]) / (2.0 * step)
+            exact = right[:, :, k + BY_ENDS + i]
+            assert np.abs(exact - by_difference).max() < 1e-7 * np.abs(by_difference).max()
+
+
+def loads_of(
+    data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    loads, slopes, push = np.empty(4), np.empty((4, 4)), np.empty((4, *states.shape[1:]))
+    given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
+    land_loads(*given, states, fields, push, loads, slopes)
+    return loads, slopes
+
+
+@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
+@pytest.mark.parametrize("section", ["plain", "divided"])
+def test_loads_do_the_work_of_the_plain_ones(section: str, law: Law) -> None:
+    """After a change of the cells by Newton's method, and their derivatives by differences of it."""
+    random = np.random.default_rng(2)
+    data, lands = lands_of(SECTIONS[section], law)
+    for number, land in enumerate(lands):
+        film = land.film
+        m, k = film.grid.shape
+        states, state = some_states(film)
+        fields = random.uniform(-0.02, 0.02, (m, k, k + ALL_SIDES))
+        loads, slopes = loads_of(data, number, states, fields)
+        changed = replace(state, pressure=state.pressure + state.pressure_slope * fields[:, :, k])
+        ends = land.places(np.array([0.0, 1.0]))
+        # u = middle and growth over the land, of what the two ends of the bearing do
+        by_ends = np.array([[1.0 - ends.mean(), ends.mean()], [ends[0] - ends[1], ends[1] - ends[0]]])
+        expected = np.kron(by_ends, np.eye(2)).T @ _loads(film, film.mean_pressure(changed))
+        assert loads == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())
+        for b in range(4):
+            step, difference = 1e-6, np.zeros(4)
+            for side in (1.0, -1.0):
+                moved = fields.copy()
+                moved[:, :, k] += side * step * fields[:, :, k + BY_ENDS + b]
+                difference += side * loads_of(data, number, states, moved)[0] / (2.0 * step)
+            assert np.abs(slopes[:, b] - difference).max() < 1e-6 * np.abs(slopes).max()
+
+
+def test_loads_without_tilt_are_those_of_the_film_without() -> None:
+    data, (land,) = lands_of(SECTIONS["plain"], HalfSommerfeld())
+    m, k = land.film.grid.shape
+    states, _ = some_states(land.film)
+    fields = np.random.default_rng(3).uniform(-0.02, 0.02, (m, k, k + ALL_SIDES))
+    loads, slopes = loads_of(data, 0, states, fields)
+    flat = volume_films([land.film])
+    f_x, f_y, xx, xy, yx, yy = film_loads(
+        flat.films[0], flat.ring[0], flat.cells[0], states, np.ascontiguousarray(fields[:, :, : k + 3])
+    )
+    size = np.hypot(f_x, f_y)
+    assert loads[:2] + loads[2:] == pytest.approx([f_x, f_y], abs=1e-12 * size)
+    found, expected = slopes[:2, :2] + slopes[2:, :2], np.array([[xx, xy], [yx, yy]])
+    assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())

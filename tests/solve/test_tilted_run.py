@@ -1,0 +1,196 @@
+"""Runs in films that follow the tilt of the journals: limits, growth of small motions, contact at an end."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from marches import SPEED, WIDTH, rigid_shaft
+
+import frbcli
+from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position
+from frbcli.errors import InputError
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.kinds.cells import CellFilms
+from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.linear.stability import stability_points
+from frbcli.rotor.body import PLANE
+from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.runs.record.film_signals import tilt_signals
+from frbcli.runs.start import rotor_data, state_at
+from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.solve.state import RUNNING, SOLVES, STEPS, Control, make_output
+from frbcli.solve.tableau import METHODS
+from frbcli.solve.time_loop import advance
+
+MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width
+CONTROL = Control(1e-6, 24.0, 1e-3, 1e-4, 0.9999, 0.0)
+SUPPLIES = {
+    "none": (),
+    "groove": tuple(
+        f'bearing.{side}.supply={{kind="circumferential-groove", pressure="2 bar"}}' for side in (0, 1)
+    ),
+}
+OMEGA = 2.0 * math.pi * SPEED
+Array = np.ndarray
+
+
+def tilted(*more: str) -> tuple[Case, System]:
+    case = rigid_shaft("film.tilt=follows", MESH, *more)
+    return case, make_system(case, make_plan(case))
+
+
+def steady(duration: float) -> SpeedProfile:
+    return speed_profile((0.0, duration), (OMEGA, OMEGA))
+
+
+def run(
+    system: System, duration: float, q: Array, v: Array | None = None, control: Control = CONTROL
+) -> tuple[Array, Array, Array]:
+    """Displacements and velocities (k, n) at the output times, and the numbers of the loop."""
+    profile = steady(duration)
+    state = state_at(system, profile, q, np.zeros_like(q) if v is None else v)
+    output = make_output(int(duration / control.output_step) + 10, system.rotor.size, len(system.names))
+    data, written, status = rotor_data(system, profile), 0, RUNNING
+    while status == RUNNING:
+        status, fresh = advance(
+            data, system.films.loop, METHODS["esdirk3"].tableau, control, state, 10**9, output.after(written)
+        )
+        written += fresh
+    return output.q[:written], output.v[:written], state.numbers
+
+
+def in_plane(case: Case, system: System) -> System:
+    """The same machine and the same cells, and films that do not know of a tilt."""
+    films = system.films
+    assert isinstance(films, TiltedFilms)
+    lands = [film.lands[0].film for film in films.own]
+    own = tuple(
+        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
+        for film, land in zip(films.own, lands, strict=True)
+    )
+    flat = CellFilms(
+        films.clearances, own, volume_films(own, (), films.settled), films.cells, "none", 2, case.oil_viscosity
+    )
+    return replace(system, films=flat, rotor=make_rotor(case, PLANE))
+
+
+@pytest.mark.parametrize("supply", ["none", "groove"])
+@pytest.mark.parametrize("law", ["half-sommerfeld", "reynolds", "penalty", "elrod"])
+def test_translation_is_as_without_tilt(law: str, supply: str) -> None:
+    """The weight and the unbalance lie in the middle of a rigid symmetric rotor: nothing tilts."""
+    case, system = tilted(f"film.cavitation={law}", *SUPPLIES[supply])
+    # Beside the centre: there a film stands on the kink of its law, and the first correction is a matter of round-off.
+    aside = np.linalg.pinv(system.rotor.journals[:, :2].reshape(4, -1)) @ np.tile([0.1, -0.3], 2) * system.clearances[0]
+    duration = 1.5e-3 if law == "elrod" else 10e-3  # fronts that cross cells amplify round-off
+    found, numbers = run(system, duration, aside)[::2]
+    expected, flat = run(in_plane(case, system), duration, aside)[::2]
+    journals = (make_rotor(case, PLANE).journals @ each.T / system.clearances[0] for each in (found, expected))
+    one, other = journals
+    assert np.abs(other).max() > 0.05
+    assert np.abs(one - other).max() < 1e-9
+    assert np.abs(system.rotor.journals[:, 2:] @ found.T).max() < 1e-9 * system.clearances[0] / WIDTH
+    assert numbers[STEPS] == flat[STEPS]
+    assert numbers[SOLVES] == flat[SOLVES]
+    assert any(system.remembering) == (law == "elrod")
+
+
+@pytest.mark.parametrize("law", ["sommerfeld", "reynolds"])
+def test_small_motions_grow_as_the_eigenvalues_say(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The conical motion of a run about its rest on the same cells, beside that of the linearised machine."""
+    monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
+    case, system = tilted(f"film.cavitation={law}", "disk.0.unbalance=0 g*mm")
+    point = stability_points(case, [SPEED])[1][0]
+    rest = resting_position(system, OMEGA)
+    q = rest.displacements.copy()
+    tilts = np.linalg.pinv(system.rotor.journals.reshape(8, -1)) @ np.tile([0.0, 0.0, 1.0, 0.0], 2)
+    moved = system.rotor.journals @ tilts
+    assert np.abs(moved[:, 2] - 1.0).max() < 1.0
+    q += 1e-4 * system.clearances[0] / WIDTH * tilts
+    found, _, _ = run(system, 30e-3, q, None, Control(1e-9, 60.0, 1e-3, 1e-4, 0.9999, 0.0))
+    tilt = (system.rotor.journals[0, 2:] @ (found - rest.displacements).T)[:, 50:]
+    signal = tilt[0] + 1j * tilt[1]
+    fitted = slowest(signal, 1e-4)
+    nearest = point.eigenvalues[np.argmin(np.abs(point.eigenvalues - fitted))]
+    assert abs(fitted - nearest) < 1e-2 * abs(nearest)
+
+
+def test_shells_out_of_line_hold_the_journals_where_they_rest() -> None:
+    """A run that begins at rest in them stays there."""
+    tilts = (f'bearing.{side}.misalignment=["{tilt} rad", "5e-4 rad"]' for side, tilt in ((0, 1e-3), (1, -6e-4)))
+    _, system = tilted("film.cavitation=half-sommerfeld", "disk.0.unbalance=0 g*mm", *tilts)
+    rest = resting_position(system, OMEGA)
+    found, _, _ = run(system, 5e-3, rest.displacements)
+    assert np.abs(rest.journals[:, 2:]).min() > 0.02 * system.clearances[0] / WIDTH
+    moved = system.films.seen(system.rotor.journals) @ (found - rest.displacements).T
+    assert np.abs(moved).max() < 1e-5 * system.clearances[0]
+    signals = tilt_signals(system, found)
+    assert signals["tilt_left_x_rad"] == pytest.approx(rest.journals[0, 2], rel=1e-4)
+    ends = np.hypot(*np.swapaxes(system.films.ends(rest.journals), 0, 1))
+    assert signals["end_eccentricity_right"] == pytest.approx(ends[2:].max(), rel=1e-4)
+    parallel = resting_position(tilted("film.cavitation=half-sommerfeld")[1], OMEGA)
+    apart = system.rotor.journals[:, :2] @ (rest.displacements - parallel.displacements)
+    assert np.abs(apart).max() > 1e-3 * system.clearances[0]
+
+
+def test_plan_counts_cells_over_the_whole_width() -> None:
+    """A film that follows the tilt has as many cells on each half of its width as one that does not."""
+    flat, follows = (make_plan(rigid_shaft(*more, "film.solution=cells")) for more in ((), ("film.tilt=follows",)))
+    assert flat.cells is not None
+    assert follows.cells == (flat.cells[0], 2 * flat.cells[1])
+    assert follows.tolerance == flat.tolerance
+
+
+REFUSED = {
+    "forces": ('output.signals=["force"]', "output.signals"),
+    "turns": ("film.coupling=co-simulation", "film.coupling"),
+    "elastic": ('contact={policy="elastic", stiffness="1e8 N/m"}', "contact.policy"),
+    "openings": (
+        'bearing.0.supply={kind="bores", count=2, diameter="1 mm", pressure="2 bar", on="journal"}',
+        "bearing.0.supply.on",
+    ),
+    "oil over time": (
+        'bearing.0.supply={kind="circumferential-groove", pressure={time=["0 s", "1 s"], x=["1 bar", "2 bar"]}}',
+        "bearing.0.supply.pressure",
+    ),
+}
+
+
+@pytest.mark.parametrize(("setting", "key"), REFUSED.values(), ids=REFUSED)
+def test_what_a_run_does_not_follow_is_refused(setting: str, key: str) -> None:
+    with pytest.raises(InputError) as refused:
+        make_plan(rigid_shaft("film.tilt=follows", setting))
+    assert [fault.key for fault in refused.value.faults] == [key]
+
+
+def slowest(signal: Array, step: float, order: int = 8) -> complex:
+    """The exponent of what is left of a signal at its end, by linear prediction (Prony)."""
+    rows = np.array([signal[i : i + order] for i in range(len(signal) - order)])
+    taps = np.linalg.lstsq(rows, signal[order:], rcond=1e-10)[0]
+    roots = np.roots(np.concatenate([[1.0], -taps[::-1]]))
+    basis = roots[None, :] ** np.arange(len(signal))[:, None]
+    weights = np.linalg.lstsq(basis, signal, rcond=1e-12)[0]
+    largest = np.argmax(np.abs(weights * basis[len(signal) // 2]))
+    return complex(np.log(roots[largest]) / step)
+
+
+def test_a_journal_touches_at_its_end(tmp_path: Path) -> None:
+    """A heavy disk beside the bearings tilts the journals until one touches, long before its middle does."""
+    case = rigid_shaft(
+        "film.tilt=follows", "film.cavitation=half-sommerfeld", MESH, "disk.0.position=20 mm", "disk.0.mass=3 kg",
+        "speed.duration=0.1 s", "output.step=0.1 ms",
+    )  # fmt: skip
+    found = frbcli.runup(case, tmp_path / "run.h5")
+    assert found.status == "contact"
+    assert found["end_eccentricity_right"].max() > 0.9
+    assert found["eccentricity_right"][-1] < found["end_eccentricity_right"][-1]
+    assert [event["kind"] for event in found.events][-1] == "contact"
+    assert np.hypot(found["tilt_right_x_rad"], found["tilt_right_y_rad"]).max() > 0.1 * 30e-6 / WIDTH
