@@ -177,11 +177,9 @@ def test_contact_at_an_end_is_one_fault_whose_remedy_helps() -> None:
 
 @pytest.mark.parametrize(("analysis", "setting", "key"), [
     ("bearing sheet", TILT, "motion.tilt"),
-    ("bearing sheet", 'bearing.misalignment=["0.1 mrad", "0 mrad"]', "bearing.misalignment"),
     ("squeeze", TILT, "motion.tilt"),
     ("whirl", 'motion.velocity=["1 mm/s", "0 mm/s"]', "motion.velocity"),
     ("run", 'bearing.misalignment=["0.1 mrad", "0 mrad"]', "bearing.misalignment"),
-    ("stability", 'bearing.misalignment=["0.1 mrad", "0 mrad"]', "bearing.misalignment"),
 ])  # fmt: skip
 def test_refused_elsewhere(analysis: str, setting: str, key: str) -> None:
     case = case_of(setting, 'motion.frequency="50 Hz"')

@@ -126,7 +126,7 @@ def test_compare_runs_the_test_with_all_models_unless_told_otherwise(capsys: pyt
     found = document(capsys, *words)
     assert (found["command"], found["test"]) == ("compare", "rotation")
     models = [result["cavitation"] for result in found["results"]]
-    assert models == ["half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase", "barotropic"]
+    assert models == ["half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase", "barotropic", "bubbly"]
     alone = document(capsys, "rotation", "bearing-axial-groove", "--cavitation", "elrod", *COARSE, "--no-picture")
     assert found["results"][4]["force_N"] == alone["results"][0]["force_N"]
     assert document(capsys, *words, "--theory", "short", code=2)["status"] == "input-error"

@@ -12,7 +12,18 @@ from frbcli.analysis.signals import films
 from frbcli.plot.curves import HEIGHT, Over, ScaledSignal, Span, curves_figure, draw_curves
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
-from frbcli.runs.record.header import FILM_SIGNALS, FLOW, FORCE, POWER, THICKNESS, TILT, TORQUE, signal_names
+from frbcli.runs.record.header import (
+    FILM_SIGNALS,
+    FLOW,
+    FORCE,
+    FRICTION,
+    POWER,
+    SHARE,
+    THICKNESS,
+    TILT,
+    TORQUE,
+    signal_names,
+)
 
 PANEL_HEIGHT = 2.4  # inches
 # The name of an axis, and its unit in SI units.
@@ -22,6 +33,8 @@ AXES = {
     POWER: ("power in W", 1.0),
     TORQUE: ("torque on the journal in N mm", 1e3),
     FLOW: ("oil flow in cm³/s", 1e6),
+    SHARE: ("share of the load on asperities", 1.0),
+    FRICTION: ("friction power of the contact in W", 1.0),
     TILT: ("tilt about {} in mrad", 1e3),
 }
 

@@ -195,12 +195,12 @@ def test_step_that_does_not_converge_is_taken_in_halves(monkeypatch: pytest.Monk
     rates = []
 
     def fussy(
-        self: FilmSolver, motion: Motion, flowing: Motion, w: np.ndarray, rate: float, past: np.ndarray
+        self: FilmSolver, motion: Motion, flowing: Motion, w: np.ndarray, rate: float, past: np.ndarray, gas: None
     ) -> tuple[VolumeSolution, np.ndarray]:
         rates.append(rate)
         if rate < 3000.0:
             raise NotConverged("too long a step")
-        return keep(self, motion, flowing, w, rate, past)
+        return keep(self, motion, flowing, w, rate, past, gas)
 
     monkeypatch.setattr(FilmSolver, "keep", fussy)
     moments = list(march(film, whirl, np.array([0.0, 1e-3])))
