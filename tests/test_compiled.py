@@ -129,7 +129,7 @@ def test_every_kernel_of_the_package_is_compiled_so() -> None:
     assert bare == []
 
 
-NUMBERS = re.compile(r"Touch|(tuple\[)?((float|int|bool|None|\.\.\.)(, )?)+\]?")  # Touch: a record of numbers
+NUMBERS = re.compile(r"Touch|Rub|(tuple\[)?((float|int|bool|None|\.\.\.)(, )?)+\]?")  # Touch, Rub: records of numbers
 
 
 def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
