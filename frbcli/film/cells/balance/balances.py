@@ -315,16 +315,23 @@ def _flow_through_ends(
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
             elif b < j:
                 stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            flows[ENDS_NET] += flow
-            if flow > 0.0:
-                flows[OUTFLOW] += flow
-            else:
-                flows[INFLOW] -= flow
+            leave(flow, flows)
 
 
 @compiled()
-def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> None:
-    """Cells with a given pressure keep it; what would leave them is their supply."""
+def leave(flow: float, flows: Array) -> None:
+    """Oil leaves through an end, or comes in where the flow is less than 0."""
+    flows[ENDS_NET] += flow
+    if flow > 0.0:
+        flows[OUTFLOW] += flow
+    else:
+        flows[INFLOW] -= flow
+
+
+@compiled()
+def hold_given(cells: Array, stencil: Array, right: Array, flows: Array, sides: int) -> None:
+    """Cells with a given pressure keep it; what would leave them is their supply. sides: right-hand sides, the first
+    one minus the residual."""
     m, k = cells.shape[1], cells.shape[2]
     for i in range(m):
         for j in range(k):
@@ -338,7 +345,7 @@ def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> Non
                 for entry in range(5):
                     stencil[entry, i, j] = 0.0
                 stencil[CENTRE, i, j] = 1.0
-                for side in range(SIDES):
+                for side in range(sides):
                     right[i, j, k + side] = 0.0
 
 
@@ -369,4 +376,4 @@ def balances(
     _flow_along(ring, cells, states, motion, stencil, right)
     _store(ring, cells, states, motion, past, stencil, right)
     _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
-    _hold_given(cells, stencil, right, flows)
+    hold_given(cells, stencil, right, flows, SIDES)

@@ -12,13 +12,11 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balance.balances import (
-    ENDS_NET,
     FLOWS,
-    INFLOW,
-    OUTFLOW,
-    SUPPLY_NET,
     end_flow,
     falls_to_air,
+    hold_given,
+    leave,
     section_end,
     take,
 )
@@ -280,31 +278,7 @@ def _flow_through_ends(
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
             elif b < j:
                 stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            flows[ENDS_NET] += flow
-            if flow > 0.0:
-                flows[OUTFLOW] += flow
-            else:
-                flows[INFLOW] -= flow
-
-
-@compiled()
-def _hold_given(cells: Array, stencil: Array, right: Array, flows: Array) -> None:
-    """Cells with a given pressure keep it; what would leave them is their supply."""
-    m, k = cells.shape[1], cells.shape[2]
-    for i in range(m):
-        for j in range(k):
-            if cells[UNKNOWN, i, j] == 0.0:
-                fed = -right[i, j, k + BY_ITSELF]
-                flows[SUPPLY_NET] += fed
-                if fed > 0.0:
-                    flows[INFLOW] += fed
-                else:
-                    flows[OUTFLOW] -= fed
-                for entry in range(5):
-                    stencil[entry, i, j] = 0.0
-                stencil[CENTRE, i, j] = 1.0
-                for side in range(ALL_SIDES):
-                    right[i, j, k + side] = 0.0
+            leave(flow, flows)
 
 
 @compiled()
@@ -329,4 +303,4 @@ def land_balances(
     _share_between_ends(places, right)
     _flow_along(ring, cells, places, states, motion, stencil, right)
     _flow_through_ends(film, ring, cells, places, states, motion, stencil, right, flows)
-    _hold_given(cells, stencil, right, flows)
+    hold_given(cells, stencil, right, flows, ALL_SIDES)
