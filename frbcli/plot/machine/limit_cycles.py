@@ -34,6 +34,7 @@ COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 RUN_COLOURS = (ORANGE, GREEN, "#8C564B", "#17BECF")  # of runs, which are none of the branches'
 UP, DOWN = "-", (0, (4, 1, 1, 1))  # lines of the ways of a run
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
+ROOM = 1.05  # top of the frequencies over the largest one
 PIECES = 8  # straight pieces between two cycles
 WHIRL = "whirl with unbalance"
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
@@ -117,7 +118,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         at = [point.value for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
     axes.set_xlim(float(ends[0]), float(ends[1]))
-    axes.set_ylim(bottom=0.0)
+    axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
     axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.unit))
     axes.set_ylabel("frequency in Hz")
 
@@ -149,7 +150,7 @@ def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: in
         named = told and label not in axes.get_legend_handles_labels()[1]
         if at:
             axes.plot(*zip(*at, strict=True), linestyle="", marker="o", markersize=3.2, color=colour,
-                      markerfacecolor=fill, label=label if named else None, zorder=3)  # fmt: skip
+                      markerfacecolor=fill, label=label if named else None, clip_on=False, zorder=3)  # fmt: skip
 
 
 def _line(axes: Axes, x: Array, y: Array, stable: NDArray[np.bool_], colour: str, label: str | None) -> None:
