@@ -180,3 +180,22 @@ def test_letters_that_a_stream_does_not_know_are_no_bug(tmp_path: Path) -> None:
     done = subprocess.run(words, env=environment, cwd=tmp_path, capture_output=True, check=False)
     assert done.returncode == 0
     assert b"jeffcott: ?" in done.stdout
+
+
+def test_a_process_ends_as_soon_as_libraries_have_done_what_they_do_at_the_exit() -> None:
+    """Objects that are left are not taken apart; what was said arrives, and so does the exit code."""
+    code = """
+import atexit, os, sys
+import frbcli.cli.main as commands
+from frbcli.cli.process import main
+class Kept:
+    def __del__(self, write=os.write): write(1, b"taken apart")
+def run(words):
+    atexit.register(lambda: sys.stdout.write("library"))
+    return 3
+kept, commands.run = Kept(), run
+main()
+"""
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (3, "library", "")

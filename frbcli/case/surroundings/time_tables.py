@@ -245,9 +245,10 @@ def inputs_of(model: Model, key: str = "") -> Iterator[InputOverTime]:
     """The inputs over time of a case, or of a part of it under a key."""
     for name, field in type(model).model_fields.items():
         found, here = getattr(model, name), f"{key}.{field.alias or name}".lstrip(".")
-        unit = unit_of(field)
-        if isinstance(found, OverTime) and unit is not None:
-            yield InputOverTime(here, found, unit)
+        if isinstance(found, OverTime):
+            unit = unit_of(field)
+            if unit is not None:
+                yield InputOverTime(here, found, unit)
         elif isinstance(found, Model):
             yield from inputs_of(found, here)
         elif isinstance(found, tuple):

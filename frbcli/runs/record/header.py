@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import platform
 from collections.abc import Sequence
+from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.case.schema import Case
@@ -105,6 +106,7 @@ def header(
     )
 
 
+@cache
 def version_of(package: str) -> str:
     """The version of an installed package, as it is written into runs."""
     try:
