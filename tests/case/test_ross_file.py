@@ -193,7 +193,9 @@ CHANGED: list[tuple[dict[str, Any], str]] = [
     (_change("ShaftElement_ShaftElement 1", material={**STEEL, "rho": 0.0}), '"rho" in'),
     (_change("DiskElement_Disk 0", m=0.0), '"m" in "DiskElement_Disk 0" that is 0 kg'),
     (_change("DiskElement_Disk 0", Ip=1.0), "more than twice Id"),
-    ({**rotor_file(), "PointMass_Point 0": {"n": 5, "m": 1.0}}, "does not model"),
+    ({**rotor_file(), "PointMass_Point 0": {"n": 5, "m": 1.0}}, "the case has no housing and no supports"),
+    ({**rotor_file(), "PointMass_Point 0": {"n": 4, "m": 1.0}}, "on the shaft, which has disks"),
+    ({**rotor_file(), "GearElement_Gear 0": {"n": 1, "m": 1.0}}, "does not model"),
     ({"parameters": {}}, "no shaft elements"),
 ]
 
@@ -208,7 +210,7 @@ def test_faults_of_a_file(data: dict[str, Any], problem: str, tmp_path: Path) ->
 @pytest.mark.parametrize(
     ("content", "problem"),
     [
-        (b"{", "neither"), (b"\xff\xfe", "neither"), (b"a = 1" + b"0" * 5000, "neither"), (None, "names no file"),
+        (b"{", "neither"), (b"\xff\xfe", "no UTF-8 text"), (b"a = 1" + b"0" * 5000, "neither"), (None, "names no file"),
         (b"x = 1\n" + b"a." * 250_000 + b"b = 1", "key with too many dots"),  # took forty seconds
         (b"[" + b"a." * 250_000 + b"b]", "key with too many dots"),
         (b"a = " + b"[" * 50_000, "nested too deeply"),

@@ -28,6 +28,7 @@ BEARINGS = ("BearingElement", "SealElement")
 COLUMNS = f"Give the columns {SPEED}, {', '.join(REQUIRED)}, and perhaps {', '.join(MASSES)}."
 WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or as .csv."
 
+
 def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
     """The tables of a case with the numbers of each bearing's `file` in place of that key, and the faults.
 

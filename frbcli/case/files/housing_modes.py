@@ -1,4 +1,5 @@
-"""The modes of a housing out of a table, as a finite element program lists them: one row for each mode.
+"""The modes of a housing out of a file: a table, as a finite element program lists them, with a row for each mode, or a
+rotor of ROSS.
 
 The case gets the modes in place of the key `file`, so that a run has all that it was made of.
 """
@@ -9,12 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.files.number_table import Columns, Refused, number_table, text_of
-from frbcli.case.reading.tables import Breach, table
+from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.rotor import OF_SECTIONS
 
 KEY = ("housing", "file")
 FREQUENCY, DAMPING = "frequency_Hz", "damping"
 AXES = ("_x", "_y")
 MOST_MODES = 200
+ROSS = (".toml", ".json")
 COLUMNS = (
     f"Give the columns {FREQUENCY}, {DAMPING}, and for each bearing and place NAME_x and NAME_y in 1/sqrt(kg), e.g. "
     "left_x, left_y."
@@ -34,11 +37,28 @@ def with_housing_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
     if "modes" in housing:
         return data, [Breach(KEY, "is given beside modes.", "Keep one of the two.")]
     try:
-        modes = _modes(number_table(text_of(folder / name, FILE, COLUMNS), COLUMNS))
+        if Path(name).suffix.lower() in ROSS:
+            found = _of_ross(data, folder / name)
+        else:
+            found = {"modes": _modes(number_table(text_of(folder / name, FILE, COLUMNS), COLUMNS))}
     except Refused as fault:
         return data, [Breach(KEY, *fault.args)]
     kept = {key: value for key, value in housing.items() if key != "file"}
-    return data | {"housing": {**kept, "modes": modes}}, []
+    return data | {"housing": {**found, **kept}}, []
+
+
+def _of_ross(data: dict[str, Any], path: Path) -> dict[str, Any]:
+    """Modes and masses of a rotor of ROSS, as a case file has them. Raises Refused."""
+    from frbcli.case.files.ross_housing import ross_housing  # which takes linear algebra
+
+    if table(data, "rotor").get("kind") not in OF_SECTIONS:
+        raise Refused("is of a shaft of sections, which the rotor of this case has not.", "Give a rigid housing.")
+    bearings = []
+    for place, (_, bearing) in enumerate(tables(data, "bearing"), start=1):
+        position = number(bearing, "position", "m")
+        if position is not None:  # else a fault of its own
+            bearings.append((str(bearing.get("name") or place), position))
+    return ross_housing(path, bearings)
 
 
 def _modes(columns: Columns) -> list[dict[str, Any]]:

@@ -11,9 +11,9 @@ from pydantic import ValidationError
 
 from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.files.housing_modes import with_housing_file
+from frbcli.case.files.ross_rotor import with_rotor_file
 from frbcli.case.model import Model
 from frbcli.case.reading import lines
-from frbcli.case.reading.ross import with_rotor_file
 from frbcli.case.reading.settings import with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
 from frbcli.case.reading.text import as_tables

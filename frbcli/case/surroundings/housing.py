@@ -82,7 +82,8 @@ class Housing(Model):
     modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing, in place of all these keys")
     file: Label = Field(
         default="", description="in place of `modes`: a CSV with a row for each mode and the columns frequency_Hz, "
-        "damping, and left_x, left_y and so on by places; from the case's folder",
+        "damping, and left_x, left_y and so on by places, or a rotor file of ROSS, .toml or .json, whose bearings are "
+        "on point masses; from the case's folder",
     )  # fmt: skip
     masses: Annotated[tuple[MassAt, ...], _listed("mass"), _ByPlace()] = Field(
         default=(),

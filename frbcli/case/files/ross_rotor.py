@@ -1,0 +1,143 @@
+"""Shaft and disks out of a rotor file of the Python package ROSS, as its `Rotor.save` writes it, TOML or JSON.
+
+Such a file is a table of elements, named by class and tag: a shaft element carries its node `n`, length, outer and
+inner diameters at both ends and its material, a disk its node, mass and inertias, all in SI. Bearings and seals of the
+file are left out: frb has its own. A ROSS shaft element may be a cone; it becomes a few cylinders.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from frbcli.case.files.number_table import Refused
+from frbcli.case.files.ross_file import REMEDY, WRITE, RossElement, ross_elements, shaft_of_file
+from frbcli.case.reading.tables import Breach, table, tables
+from frbcli.case.rotor import OF_SECTIONS
+
+CYLINDERS = 4  # that stand for a cone
+DISK = ("DiskElement", "DiskElement6DoF")
+HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
+MASS = "PointMass"  # that bearings stand on
+UNMODELLED = ("axial_force", "torque")
+MOST_POISSON = 0.5 + 1e-6  # of an incompressible material
+
+KEY = ("rotor", "file")
+UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
+         "position": "m", "mass": "kg", "polar_inertia": "kg*m^2", "diametral_inertia": "kg*m^2"}  # fmt: skip
+
+
+def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
+    """The tables of a case with shaft and disks of its rotor.file in place of that key, and its faults.
+
+    folder: that a relative path counts from. A [[disk]] of the case with the name of one of the file's completes it,
+    e.g. by an unbalance; others come in addition. With faults the tables are returned unchanged.
+    """
+    rotor = table(data, "rotor")
+    name = rotor.get("file")
+    if rotor.get("kind") not in OF_SECTIONS or not isinstance(name, str) or not name:
+        return data, []
+    if "shaft" in data:
+        return data, [Breach(KEY, "is given beside [[shaft]].", "Keep one of the two.")]
+    try:
+        shaft, disks = _rotor(ross_elements(folder / name), _says_what_carries(data))
+    except Refused as fault:
+        return data, [Breach(KEY, *fault.args)]
+    own = data.get("disk", [])
+    if isinstance(own, list):
+        known = {disk["name"]: disk for disk in disks}
+        named = [disk.get("name") if isinstance(disk, dict) else None for disk in own]
+        completed = [
+            {**known[called], **disk} if isinstance(called, str) and called in known else disk
+            for disk, called in zip(own, named, strict=True)
+        ]
+        own = completed + [disk for disk in disks if disk["name"] not in named]
+    kept = {key: value for key, value in rotor.items() if key != "file"}
+    return {**data, "rotor": kept, "shaft": shaft, "disk": own}, []
+
+
+def _says_what_carries(data: Mapping[str, Any]) -> bool:
+    """Whether a case has a housing, or a bearing of it a support or a damper."""
+    return "housing" in data or any({"support", "damper"} & held.keys() for _, held in tables(data, "bearing"))
+
+
+def _rotor(elements: Sequence[RossElement], carried: bool) -> tuple[list[dict[str, Any]], list[dict[str, Any]]]:
+    """The tables [[shaft]] and [[disk]] of a file's elements; carried: whether the case says what bearings stand on."""
+    for element in elements:
+        if element.kind in HEAVY:
+            raise Refused(
+                f'has the element "{element.name}", which frb does not model.', "Replace it by a disk in ROSS."
+            )
+    shaft, positions = shaft_of_file(elements)
+    for element in elements:
+        if element.kind == MASS and element.node <= len(shaft):
+            raise Refused(f'has "{element.name}" on the shaft, which has disks.', "Replace it by a disk in ROSS.")
+        if element.kind == MASS and not carried:
+            problem = f'has "{element.name}", which bearings stand on, and the case has no housing and no supports.'
+            raise Refused(problem, "Give housing.file = this file, too, or [bearing.support].")
+    cylinders = [cylinder for element in shaft for cylinder in _cylinders(element)]
+    disks = [_disk(element, positions) for element in elements if element.kind in DISK]
+    shaft_tables = [_joined(alike) for alike in _runs(cylinders)]
+    return [_with_units(section) for section in shaft_tables], [_with_units(disk) for disk in disks]
+
+
+def _with_units(found: dict[str, Any]) -> dict[str, Any]:
+    """A table with units, so that SI values of the file do not look like numbers without a unit."""
+    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in found.items()}
+
+
+def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
+    """Tables of [[shaft]] for a shaft element."""
+    for key in UNMODELLED:
+        if element.number(key, 0.0) != 0.0:
+            raise Refused(f'has a {key} in "{element.name}", which frb does not model.', "Set it to 0 in ROSS.")
+    outer, inner = element.number("odl"), element.number("idl")
+    growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
+    if inner >= outer or inner + growth[1] >= outer + growth[0]:
+        raise Refused(f'has no thickness in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
+    material = RossElement(f"{element.name}.material", "", table(element.values, "material"))
+    modulus = material.number("E")
+    poisson = modulus / (2 * material.number("G_s")) - 1
+    if not 0.0 <= poisson <= MOST_POISSON:
+        raise Refused(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
+    parts = CYLINDERS if any(growth) else 1
+    for part in range(parts):
+        middle = (part + 0.5) / parts
+        yield {
+            "length": element.number("L") / parts,
+            "diameter": outer + middle * growth[0],
+            "inner_diameter": inner + middle * growth[1],
+            "density": material.number("rho"),
+            "youngs_modulus": modulus,
+            "poisson_ratio": poisson,
+        }
+
+
+def _runs(cylinders: list[dict[str, Any]]) -> Iterator[list[dict[str, Any]]]:
+    """Neighbours that differ in their lengths only."""
+    for _, run in itertools.groupby(cylinders, lambda cylinder: {**cylinder, "length": 0.0}):
+        yield list(run)
+
+
+def _joined(alike: list[dict[str, Any]]) -> dict[str, Any]:
+    return {**alike[0], "length": sum(cylinder["length"] for cylinder in alike)}
+
+
+def _disk(element: RossElement, positions: list[float]) -> dict[str, Any]:
+    node = element.node
+    if node not in range(len(positions)):
+        raise Refused(f'has "{element.name}" beyond the shaft.', WRITE)
+    tag = element.values.get("tag") or element.name
+    polar, diametral = element.number("Ip"), element.number("Id")
+    if polar > 2 * diametral * (1 + 1e-9):
+        raise Refused(f'has an Ip in "{element.name}" of more than twice Id, which is not possible.', REMEDY)
+    return {
+        "name": re.sub(r"[^A-Za-z0-9_-]", "-", str(tag))[:40],
+        "position": positions[int(node)],
+        "mass": element.number("m"),
+        "polar_inertia": polar,
+        "diametral_inertia": diametral,
+    }
