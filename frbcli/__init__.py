@@ -16,15 +16,15 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.orders.order_tracking import order_track as order_track
     from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.case.films.additions import add_bearing as add_bearing
+    from frbcli.case.films.additions import add_law as add_law
+    from frbcli.case.films.additions import remove_bearing as remove_bearing
+    from frbcli.case.films.additions import remove_law as remove_law
     from frbcli.case.reading.load import case_from_dict as case_from_dict
     from frbcli.case.reading.load import load_case as load_case
     from frbcli.case.reading.load import load_case_text as load_case_text
     from frbcli.case.reading.shipped import shipped_cases as shipped_cases
     from frbcli.case.schema import Case as Case
-    from frbcli.case.schema import add_bearing as add_bearing
-    from frbcli.case.schema import add_law as add_law
-    from frbcli.case.schema import remove_bearing as remove_bearing
-    from frbcli.case.schema import remove_law as remove_law
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
     from frbcli.cycles.maps.stability_map import stability_map as stability_map
     from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
@@ -78,8 +78,8 @@ _PUBLIC = {  # module, or module:attribute of another name
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "Measurement": "frbcli.analysis.measured",
     "accuracy": "frbcli.studies.accuracy",
-    "add_bearing": "frbcli.case.schema",
-    "add_law": "frbcli.case.schema",
+    "add_bearing": "frbcli.case.films.additions",
+    "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.reading.load",
@@ -107,8 +107,8 @@ _PUBLIC = {  # module, or module:attribute of another name
     "order_track": "frbcli.analysis.orders.order_tracking",
     "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
-    "remove_bearing": "frbcli.case.schema",
-    "remove_law": "frbcli.case.schema",
+    "remove_bearing": "frbcli.case.films.additions",
+    "remove_law": "frbcli.case.films.additions",
     "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",

@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Field
 
 from frbcli.case.elements import CoefficientsBearing
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
-from frbcli.case.model import Model, altered
+from frbcli.case.model import AlsoAs, Model, altered
 from frbcli.case.quantities import (
     Expansion,
     Identifier,
@@ -150,17 +149,7 @@ class FloatingRingBearing(BearingWalls):
 
 FilmBearing = SingleFilmBearing | FloatingRingBearing
 Bearing = Annotated[SingleFilmBearing | FloatingRingBearing | CoefficientsBearing, Field(discriminator="kind")]
-
-
-class OneOrMany:
-    """The schema of one table or of several, as [bearing] and [[bearing]], for editors."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return handler(source)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        many = handler(schema)
-        return {"anyOf": [many["items"], many]}
+ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
 
 
 def _as_list(given: object) -> object:
@@ -196,4 +185,4 @@ def _named(bearing: object, name: str) -> object:
     return bearing
 
 
-Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), OneOrMany()]
+Bearings = Annotated[tuple[Bearing, ...], BeforeValidator(_as_list), ONE_OR_MANY]

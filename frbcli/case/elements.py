@@ -6,13 +6,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Any, Literal, Self
+from typing import Annotated, Literal, Self
 
-from pydantic import BeforeValidator, Discriminator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler, Tag
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from frbcli.case.film_geometry import FilmGeometry
-from frbcli.case.model import Model
+from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import (
     Clearance,
     Count,
@@ -44,19 +43,10 @@ def _both_directions(given: object) -> object:
     return given
 
 
-class _OneOrMatrix:
-    """The schema of one quantity or of a matrix, for editors."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return handler(source)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        matrix = handler(schema)
-        entry = matrix["prefixItems"][0]["prefixItems"][0]
-        return {"anyOf": [entry, matrix]}
-
-
-_Matrix = (BeforeValidator(_both_directions), _OneOrMatrix())
+_Matrix = (
+    BeforeValidator(_both_directions),
+    AlsoAs(lambda matrix: [matrix["prefixItems"][0]["prefixItems"][0], matrix]),
+)
 StiffnessMatrix = Annotated[tuple[tuple[Entry, Entry], tuple[Entry, Entry]], *_Matrix]
 DampingMatrix = Annotated[
     tuple[tuple[DampingEntry, DampingEntry], tuple[DampingEntry, DampingEntry]], *_Matrix

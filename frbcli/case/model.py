@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, GetJsonSchemaHandler
+from pydantic_core import CoreSchema
 
 from frbcli.errors import Fault, FrozenError
 
@@ -51,6 +53,16 @@ class Model(BaseModel):
     def model_construct(cls, _fields_set: set[str] | None = None, **values: Any) -> Self:
         """Raises FrozenError: pydantic would check nothing."""
         raise _frozen(cls, *values)
+
+
+@dataclass(frozen=True)
+class AlsoAs:
+    """A value that is read from other forms, too: their schema for editors. forms: from the schema of the value."""
+
+    forms: Callable[[dict[str, Any]], list[dict[str, Any]]]
+
+    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        return {"anyOf": self.forms(handler(schema))}
 
 
 def altered(record: Record, values: Mapping[str, Any]) -> Record:

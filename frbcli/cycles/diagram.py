@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FLIP, FOLD, HOPF, LEFT, TORUS, Branch, Cycle, Follower, first_place, follow_branch
+from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import oriented
 from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
+from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle
 from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting, SpeedCourse
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.seed import seed_cycle
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (

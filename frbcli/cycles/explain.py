@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from frbcli.cycles.branch import FOLD, HOPF
+from frbcli.cycles.method.cycle import FOLD, HOPF
 from frbcli.cycles.result import LimitCycles, SpecialPoint
 
 FREQUENCY_WEIGHT = 3.0  # of the frequency against the speed, where it is asked which point an event belongs to

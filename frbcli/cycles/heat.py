@@ -15,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import Follower
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable
@@ -28,6 +27,7 @@ from frbcli.cycles.method.equilibria import (
     resting_along,
 )
 from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer

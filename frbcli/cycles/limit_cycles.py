@@ -8,12 +8,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import HOPF, Follower
 from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz

@@ -12,13 +12,13 @@ import time
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import MOST_UNKNOWNS
 from frbcli.cycles.diagram import Observer, Walk, diagram
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
 from frbcli.cycles.method.changing import ChangingFollower
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
+from frbcli.cycles.method.follower import MOST_UNKNOWNS
 from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged

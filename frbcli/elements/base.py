@@ -3,7 +3,6 @@ machine, and all displacements are those against the ground."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Self
@@ -13,8 +12,8 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.base import Base
 from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.elements.force import changing_load
 from frbcli.rotor.assembly import GROUND
-from frbcli.rotor.loads import Harmonic, linear_table
 from frbcli.units import display
 
 
@@ -34,14 +33,8 @@ class BaseElement(MachineElement):
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
-        directions = np.diag(self.given.amplitude)
-        table = self.given.over_time
-        if table is not None:
-            return Parts(loads=((GROUND, linear_table(self.name, directions, table.time, *table.both)),))
-        order, frequency = self.given.turns
-        turn = np.exp(1j * self.given.phase)  # Re(a exp(i theta)) = Re a cos(theta) - Im a sin(theta)
-        columns = np.outer([turn.real, -turn.imag], self.given.amplitude)
-        return Parts(loads=((GROUND, Harmonic(self.name, columns, order, 2.0 * math.pi * frequency)),))
+        load = changing_load(self.name, np.array(self.given.amplitude), self.given)
+        return Parts(loads=((GROUND, load),))
 
     def told(self, site: Site) -> Line:
         """See MachineElement."""

@@ -46,8 +46,7 @@ class GivenCoefficients(MachineElement):
         table = self.given.over_speed
         if table is None:
             given = (self.given.stiffness, self.given.damping, self.given.mass)
-            stiffness, damping, mass = (np.array([EMPTY_MATRIX if each is None else each]) for each in given)
-            return LinearPart(np.zeros(1), stiffness, damping, mass)
+            return LinearPart.of(*(np.array(EMPTY_MATRIX if each is None else each) for each in given))
 
         def matrices(letter: str) -> Array:
             columns = [getattr(table, f"{letter}{axes}") or (0.0,) * len(table.speed) for axes in AXES]

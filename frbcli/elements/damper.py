@@ -52,8 +52,7 @@ class DamperElement(MachineElement):
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
-        nothing = np.zeros((1, 2, 2))
-        spring = LinearPart(np.zeros(1), np.diag(self.given.spring)[None], nothing, nothing)
+        spring = LinearPart.of(np.diag(self.given.spring))
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((self.link(site), spring),))
 
     def link(self, site: Site) -> Link:

@@ -9,14 +9,18 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.base import Base
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.places import node_at
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.assembly import NodeForce
-from frbcli.rotor.loads import Harmonic, linear_table
+from frbcli.rotor.loads import Harmonic, Load, linear_table
 from frbcli.units import display
+
+Array = NDArray[np.float64] | NDArray[np.complex128]
 
 
 @dataclass(frozen=True)
@@ -40,14 +44,8 @@ class ForceElement(MachineElement):
         x, y = np.multiply(equal_places(self.node, site), given.amplitude).tolist()
         if given.constant:
             return Parts(forces=(NodeForce(self.node, (x, y)),))
-        if given.over_time is not None:
-            table = linear_table(self.name, np.diag([x, y]), given.over_time.time, *given.over_time.both)
-            return Parts(loads=((self.node, table),))
-        order, frequency = given.turns
-        amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y]) * np.exp(1j * given.phase)
-        # Re(A exp(i theta)) = Re A cos(theta) - Im A sin(theta)
-        columns = np.array([amplitude.real, -amplitude.imag])
-        return Parts(loads=((self.node, Harmonic(self.name, columns, order, 2.0 * math.pi * frequency)),))
+        amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y])
+        return Parts(loads=((self.node, changing_load(self.name, amplitude, given)),))
 
     def told(self, site: Site) -> Line:
         """See MachineElement."""
@@ -57,6 +55,16 @@ class ForceElement(MachineElement):
         value = f"{self.node.replace('_', ' ')}: {x} in x, {y} in y"
         reason = f"{'constant, ' if self.given.constant else turning}{where}; beside unbalance and weight"
         return "force", value, reason
+
+
+def changing_load(name: str, amplitude: Array, given: AppliedForce | Base) -> Load:
+    """The load of an amplitude (2,) along x and y, complex if it rotates: a table over time, or harmonic."""
+    if given.over_time is not None:
+        return linear_table(name, np.diag(amplitude.real), given.over_time.time, *given.over_time.both)
+    order, frequency = given.turns
+    turned = amplitude * np.exp(1j * given.phase)
+    columns = np.array([turned.real, -turned.imag])  # Re(A exp(i theta)) = Re A cos(theta) - Im A sin(theta)
+    return Harmonic(name, columns, order, 2.0 * math.pi * frequency)
 
 
 def equal_places(node: str, site: Site) -> float:

@@ -36,8 +36,7 @@ class MagneticPullElement(MachineElement):
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
-        nothing = np.zeros((1, 2, 2))
-        pull = LinearPart(np.zeros(1), -self.given.pull * np.eye(2)[None], nothing, nothing)
+        pull = LinearPart.of(-self.given.pull * np.eye(2))
         return Parts(links=((Link(self.node, self.stator, equal_places(self.node, site)), pull),))
 
     def told(self, site: Site) -> Line:

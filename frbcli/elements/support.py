@@ -44,8 +44,7 @@ class SupportElement(MachineElement):
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""
-        stiffness, damping = (np.diag(each)[None] for each in (self.given.stiffness, self.given.damping))
-        mount = LinearPart(np.zeros(1), stiffness, damping, np.zeros((1, 2, 2)))
+        mount = LinearPart.of(np.diag(self.given.stiffness), np.diag(self.given.damping))
         link = Link(self.node, site.ground(self.bearing), site.count)
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,12 @@ class LinearPart:
     stiffness: Array
     damping: Array
     mass: Array
+
+    @classmethod
+    def of(cls, stiffness: Array, damping: Array | None = None, mass: Array | None = None) -> Self:
+        """Constant coefficients (c, c); those that are None are 0."""
+        given = (np.zeros_like(stiffness) if each is None else each for each in (damping, mass))
+        return cls(np.zeros(1), stiffness[None], *(each[None] for each in given))
 
     @property
     def constant(self) -> bool:

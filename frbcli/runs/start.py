@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from frbcli.case.schema import Start
+from frbcli.case.course.control import Start
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.rotor.body import PLANE

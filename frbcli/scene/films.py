@@ -10,8 +10,9 @@ import numpy as np
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.films.film_model import FilmModel
 from frbcli.case.model import altered
-from frbcli.case.schema import Case, FilmModel
+from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import FilmOil, Law

@@ -11,10 +11,12 @@ from cycle_machines import machine_of, turbocharger
 from rigid_cycles import diagram, rigid
 
 import frbcli
-from frbcli.cycles.branch import Cycle, FoldFollower, Follower, first_place, follow_branch
+from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import packed
+from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.floquet import multipliers
+from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.reduced_states import reduced_space
 from frbcli.scene.machine.system import make_system

@@ -10,6 +10,8 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
+from frbcli.case.course.control import OUTPUT_STEP
+from frbcli.case.course.speed import DEFAULT_HOLD
 from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
@@ -20,7 +22,6 @@ from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible
 from frbcli.case.rules.thermal_checks import thermal_breaches
 from frbcli.case.rules.thrust_checks import thrust_alone, thrust_breaches
-from frbcli.case.schema import DEFAULT_HOLD, OUTPUT_STEP
 from frbcli.units import NUMBER, display
 
 __all__ = ["Breach", "breaches"]

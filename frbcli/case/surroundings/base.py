@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.bearing import OneOrMany
+from frbcli.case.bearing import ONE_OR_MANY
 from frbcli.case.model import Model
 from frbcli.case.quantities import Angle, Label, Quantity, Speed
 from frbcli.case.surroundings.force import Order
@@ -60,4 +60,4 @@ def _as_list(given: object) -> object:
     return [given] if isinstance(given, dict | Base) else given
 
 
-Bases = Annotated[tuple[Base, ...], BeforeValidator(_as_list), OneOrMany()]
+Bases = Annotated[tuple[Base, ...], BeforeValidator(_as_list), ONE_OR_MANY]

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Field
 
-from frbcli.case.model import Model
+from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import Fraction, Identifier, Label, Position, Quantity, RingInertia, ShellMass
 from frbcli.case.surroundings.support import DIRECTIONS, Dampings, Stiffnesses
 from frbcli.units import NUMBER, SPEED
@@ -39,14 +38,7 @@ class MassAt(Model):
     mass: ShellMass = Field(description="of the housing there")
 
 
-class _ByPlace:
-    """The schema of a table by places, or of a list of tables with their place, for editors."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return handler(source)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        return {"anyOf": [{"type": "object"}, handler(schema)]}
+_BY_PLACE = AlsoAs(lambda listed: [{"type": "object"}, listed])  # a table by places
 
 
 def _listed(value: str) -> BeforeValidator:
@@ -63,7 +55,7 @@ class HousingMode(Model):
 
     frequency: Annotated[float, Quantity(SPEED, "120 Hz", above=0)] = Field(description="undamped natural frequency")
     damping: Fraction = Field(default=0.0, description="ratio to the critical damping")
-    at: Annotated[tuple[ModeAt, ...], _listed("displacement"), _ByPlace()] = Field(
+    at: Annotated[tuple[ModeAt, ...], _listed("displacement"), _BY_PLACE] = Field(
         description="displacements at all bearings in 1/sqrt(kg), e.g. { left = [0.3, 0], right = [-0.2, 0] }"
     )
 
@@ -85,7 +77,7 @@ class Housing(Model):
         "damping, and left_x, left_y and so on by places, or a rotor file of ROSS, .toml or .json, whose bearings are "
         "on point masses; from the case's folder",
     )  # fmt: skip
-    masses: Annotated[tuple[MassAt, ...], _listed("mass"), _ByPlace()] = Field(
+    masses: Annotated[tuple[MassAt, ...], _listed("mass"), _BY_PLACE] = Field(
         default=(),
         description="all masses of an elastic housing by their places, each with a unit: modes are then "
         "checked to be orthonormal, and the housing has its weight",

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any
+from typing import Annotated
 
-from pydantic import BeforeValidator, Field, GetCoreSchemaHandler, GetJsonSchemaHandler
-from pydantic_core import CoreSchema
+from pydantic import BeforeValidator, Field
 
-from frbcli.case.model import Model
+from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import Damping, ShellMass, Stiffness
 
 
@@ -18,18 +17,7 @@ def _both_directions(given: object) -> object:
     return given
 
 
-class _OneOrTwo:
-    """The schema of one quantity or of two, for editors."""
-
-    def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
-        return handler(source)
-
-    def __get_pydantic_json_schema__(self, schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
-        both = handler(schema)
-        return {"anyOf": [both["prefixItems"][0], both]}
-
-
-DIRECTIONS = (BeforeValidator(_both_directions), _OneOrTwo())
+DIRECTIONS = (BeforeValidator(_both_directions), AlsoAs(lambda both: [both["prefixItems"][0], both]))
 Stiffnesses = Annotated[tuple[Stiffness, Stiffness], *DIRECTIONS]
 Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 

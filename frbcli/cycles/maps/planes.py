@@ -12,10 +12,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import FoldFollower
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.family import Family
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.follower import FoldFollower
 from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz

@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.cycles.branch import FOLD, HOPF, Cycle, amplitude, eccentricities
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.family import Family, positive_range
@@ -29,6 +28,7 @@ from frbcli.cycles.maps.curves import (
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.method.criticality import lyapunov_coefficient
+from frbcli.cycles.method.cycle import FOLD, HOPF, Cycle, amplitude, eccentricities
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.errors import Fault, InputError, NotConverged

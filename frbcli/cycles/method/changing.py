@@ -9,9 +9,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import Follower
 from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine
 

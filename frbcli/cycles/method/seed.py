@@ -12,10 +12,12 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import FIRST_HARMONICS, STRIDES, Follower, at_speed, largest, resized_like
+from frbcli.cycles.branch import STRIDES
 from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
+from frbcli.cycles.method.cycle import FIRST_HARMONICS, largest, resized_like
 from frbcli.cycles.method.equilibria import Equilibrium
+from frbcli.cycles.method.follower import Follower, at_speed
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
 from frbcli.equilibrium.hopf import whirls

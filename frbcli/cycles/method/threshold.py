@@ -6,11 +6,13 @@ import math
 from dataclasses import dataclass
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import FOLD, Cycle, FoldFollower, first_place, follow_branch
+from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.faults import check
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.criticality import lyapunov_coefficient
+from frbcli.cycles.method.cycle import FOLD, Cycle
 from frbcli.cycles.method.equilibria import resting_curve
+from frbcli.cycles.method.follower import FoldFollower
 from frbcli.cycles.parts.machine import make_machine
 from frbcli.cycles.result import SUBCRITICAL, SUPERCRITICAL, hertz
 from frbcli.errors import FrbError

@@ -12,8 +12,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import ASKED, AT_REST, FLIP, FOLD, LEFT, TORUS
+from frbcli.cycles.branch import AT_REST, LEFT
 from frbcli.cycles.method.continuation import halved_until
+from frbcli.cycles.method.cycle import ASKED, FLIP, FOLD, TORUS
 from frbcli.cycles.shooting.shots import Shooting, Shot
 
 Array = NDArray[np.float64]

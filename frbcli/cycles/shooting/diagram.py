@@ -10,8 +10,9 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.branch import AT_REST, HOPF
+from frbcli.cycles.branch import AT_REST
 from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
+from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.result import (
     SPEED,
     SUBCRITICAL,

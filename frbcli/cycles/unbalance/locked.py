@@ -13,9 +13,9 @@ import itertools
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import Cycle, largest
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
+from frbcli.cycles.method.cycle import Cycle, largest
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion, first_harmonics
 

@@ -13,11 +13,13 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import FIRST_HARMONICS, Branch, Follower, follow_branch
+from frbcli.cycles.branch import Branch, follow_branch
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
+from frbcli.cycles.method.cycle import FIRST_HARMONICS
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
 

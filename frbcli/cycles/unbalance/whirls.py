@@ -10,9 +10,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.branch import ASKED, MOMENTS, Cycle, largest_of
 from frbcli.cycles.method.balance import motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.cycle import ASKED, MOMENTS, Cycle, largest_of
 from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space

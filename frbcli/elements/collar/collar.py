@@ -245,14 +245,13 @@ def rests_over_speed(collar: Collar) -> tuple[CollarRest, ...]:
 def tilt_part(collar: Collar) -> LinearPart:
     """Stiffness and damping in tilt over the speed, on the two tilts of the collar; none where nothing is carried."""
     rests = rests_over_speed(collar)
-    nothing = np.zeros((max(len(rests), 1), 2, 2))
     if not rests:
-        return LinearPart(np.zeros(1), nothing, nothing, nothing)
+        return LinearPart.of(np.zeros((2, 2)))
     return LinearPart(
         np.array([rest.omega for rest in rests]),
         np.array([rest.tilt_stiffness for rest in rests]),
         np.array([rest.tilt_damping for rest in rests]),
-        nothing,
+        np.zeros((len(rests), 2, 2)),
     )
 
 

@@ -153,12 +153,7 @@ class CellFilms(Films):
             if not self.remembering[i]:
                 continue
             now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i])
-            free = ~film.grid.fixed
-            passed = max(flows[PASSED, i, INFLOW], flows[PASSED, i, OUTFLOW])
-            area = film.grid.area[free]
-            # per turnover of the film's own oil, if less than that has passed so far
-            passed = max(float(passed), float((area * now[free]).sum()))
-            worst = max(worst, abs(float((area * (now - wet[OIL, i])[free]).sum())) / passed)
+            worst = max(worst, missing_oil(film, now, wet[OIL, i], flows[PASSED, i]))
         return worst
 
     def oil_passed(self, flows: Array) -> dict[str, float]:
@@ -169,8 +164,7 @@ class CellFilms(Films):
             keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
             for film, keeps in zip(self.own, self.remembering, strict=True)
         ]
-        came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
-        return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+        return passed_oil(size, flows)
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         """See Films.power_and_flow."""
@@ -247,6 +241,22 @@ class CellFilms(Films):
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))
         return tuple(found)
+
+
+def missing_oil(film: VolumeFilm, now: Array, oil: Array, passed: Array) -> float:
+    """Oil (m, k) of a film that its unknowns, which hold `now`, do not account for, over what has passed through:
+    passed (FLOWS,)."""
+    free = ~film.grid.fixed
+    area = film.grid.area[free]
+    # per turnover of the film's own oil, if less than that has passed so far
+    through = max(float(max(passed[INFLOW], passed[OUTFLOW])), float((area * now[free]).sum()))
+    return abs(float((area * (now - oil)[free]).sum())) / through
+
+
+def passed_oil(size: Sequence[float], flows: Array) -> dict[str, float]:
+    """Oil in m^3 that came into films and left them, see Films.oil_passed. size: m^3 of the unit of their flows."""
+    came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
+    return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
 
 
 def least_gaps(section: Section, d: Array) -> Array:

@@ -120,14 +120,16 @@ class Films(ABC):
         """Oil in m^3 that came into all films that keep theirs, left them, and was created; empty if there are none."""
         return {}
 
-    @abstractmethod
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         """Power in W that a film at rest dissipates, and flow in m^3/s through its open ends. drag: eta R^3 B / C of
-        the bearing in N m s. Raises NotConverged."""
+        the bearing in N m s. Raises NotConverged, and NotImplementedError of a kind that cases with heat do not
+        have."""
+        raise NotImplementedError
 
-    @abstractmethod
     def heat_ends(self) -> Any:
-        """Data from which the heat of the time loop computes the oil that leaves."""
+        """Data from which the heat of the time loop computes the oil that leaves. Raises NotImplementedError as
+        power_and_flow."""
+        raise NotImplementedError
 
     @property
     def end_flows(self) -> tuple[EndFlow, ...]:

@@ -98,11 +98,3 @@ class ElementFilms(Films):
         """Oil in m^3 so far: what left more than came in and what the film holds more."""
         passed, now = flows[PASSED, 0], flows[NOW, 0]
         return float(passed[LEFT] - passed[CAME] + now[HELD] - passed[HELD])
-
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """Not modelled: cases with heat are refused before."""
-        raise NotImplementedError("the heat of the published form is not modelled")
-
-    def heat_ends(self) -> Any:
-        """Not modelled: cases with heat are refused before."""
-        raise NotImplementedError("the heat of the published form is not modelled")

@@ -49,14 +49,6 @@ class InclinedFilms(Films):
         tilts = self.tilted.standing[:, 2:]
         return tuple(InclinedFilm(film, tilt) for film, tilt in zip(self.tilted.own, tilts, strict=True))
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """Not known: cases with heat do not have these films."""
-        raise NotImplementedError
-
-    def heat_ends(self) -> Any:
-        """As power_and_flow."""
-        raise NotImplementedError
-
 
 @dataclass(frozen=True)
 class InclinedFilm:

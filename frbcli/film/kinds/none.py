@@ -27,10 +27,6 @@ class NoFilms(Films):
         """There is none."""
         raise IndexError(i)
 
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """There is none."""
-        raise IndexError(i)
-
     def heat_ends(self) -> Any:
         """See Films.heat_ends."""
         return ()

@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.balance.plain import gap_on
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
@@ -25,7 +25,7 @@ from frbcli.film.cells.tilted.force import (
 )
 from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
-from frbcli.film.kinds.cells import least_gaps
+from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil
 from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
@@ -106,10 +106,7 @@ class TiltedFilms(Films):
         for number, (i, land) in enumerate(self._lands):
             if self.remembering[i]:
                 now = _content(land, land.motion_of(np.array(displacements[2 * i : 2 * i + 2])), wet[W, number])
-                area = np.where(land.film.grid.fixed, 0.0, land.film.grid.area)
-                passed = max(float(flows[PASSED, number, each]) for each in (INFLOW, OUTFLOW))
-                passed = max(passed, float((area * now).sum()))
-                worst = max(worst, abs(float((area * (now - wet[OIL, number])).sum())) / passed)
+                worst = max(worst, missing_oil(land.film, now, wet[OIL, number], flows[PASSED, number]))
         return worst
 
     def oil_passed(self, flows: Array) -> dict[str, float]:
@@ -121,8 +118,7 @@ class TiltedFilms(Films):
             self.remembering[i] * each.radius * each.width * each.clearance
             for (i, _), each in zip(self._lands, sections, strict=True)
         ]
-        came, left = (np.asarray(size) @ flows[PASSED, :, flow] for flow in (INFLOW, OUTFLOW))
-        return {"oil_in_m3": float(came), "oil_out_m3": float(left)}
+        return passed_oil(size, flows)
 
     @property
     def _lands(self) -> list[tuple[int, TiltedLand]]:
@@ -148,14 +144,6 @@ class TiltedFilms(Films):
     def smallest_gap(self, i: int, d: Array) -> Array:
         """See Films.smallest_gap."""
         return least_gaps(self.own[i].section, d)
-
-    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """Not known: cases with heat do not have these films."""
-        raise NotImplementedError
-
-    def heat_ends(self) -> Any:
-        """As power_and_flow."""
-        raise NotImplementedError
 
 
 def _content(land: TiltedLand, motion: Motion, w: Array) -> Array:

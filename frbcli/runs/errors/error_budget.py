@@ -144,13 +144,7 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
 
 def _springs(case: Case, system: System, sample: Array) -> Array:
     """(b,) N/m: the mean of both directions of each bearing's stiffness, in series where a ring floats."""
-    n = system.rotor.size
-    q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
-    omegas = system.omegas(omega, v[list(system.spins)])
-    forces = (
-        system.force(i, place, selection @ v, float(omegas[i]))
-        for i, (selection, place) in enumerate(zip(system.rotor.journals, system.journals_of(q), strict=True))
-    )
+    forces = (system.force(i, *motion) for i, motion in enumerate(system.motions(sample)))
     return np.array(bearing_springs(case, (-0.5 * float(np.trace(force.by_displacement[:2, :2])) for force in forces)))
 
 

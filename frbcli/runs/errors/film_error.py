@@ -57,14 +57,12 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     forces = system.films.compared()
     if forces is None:
         return FilmErrors(*np.zeros((3, 0)))
-    control, n, count, found = control_of(case, plan), system.rotor.size, len(system.names), []
+    control, count, found = control_of(case, plan), len(system.names), []
     changing = films_change(case)
     every = max(1, len(samples) // (system.films.compared_states or len(samples) or 1))
     for t, sample in zip(times[::every], samples[::every], strict=True):
-        q, v, omega = sample[:n], sample[n : 2 * n], float(sample[2 * n])
-        omegas = system.omegas(omega, v[list(system.spins)])
-        for i, (selection, place) in enumerate(zip(system.rotor.journals, system.journals_of(q), strict=True)):
-            at, rate, clearance, scale = place, selection @ v, system.clearances[i], 1.0
+        for i, (at, rate, total) in enumerate(system.motions(sample)):
+            clearance, scale = system.clearances[i], 1.0
             if changing:
                 now, scale = (float(sample[column * count + i]) for column in (-2, -1))
                 at, rate = at * clearance / now, rate * clearance / now
@@ -73,7 +71,7 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
             if np.hypot(*at[:2]) >= LARGEST_ECCENTRICITY * clearance:
                 continue
             try:
-                exact, force = forces(i, at, scale * rate, scale * float(omegas[i]))
+                exact, force = forces(i, at, scale * rate, scale * total)
             except NotConverged:
                 continue
             found.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from frbcli.case.course.control import MACRO_STEP, STEPS_PER_REVOLUTION
 from frbcli.case.model import altered
-from frbcli.case.schema import MACRO_STEP, STEPS_PER_REVOLUTION, Case
+from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.costs.cost import DAY_s, ExpectedCost, clock

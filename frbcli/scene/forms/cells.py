@@ -83,10 +83,6 @@ class CellForm(FilmForm):
         found = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
         return None if found is None else self.of_whole(found)
 
-    def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """Cells (around, along) of a section, up to a plane of symmetry, of those of a plan."""
-        return cells
-
     def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
         """Cells (around, along) of a plan, of those of a section."""
         return cells
@@ -99,15 +95,6 @@ class CellForm(FilmForm):
         if films.eccentricity is None:
             return (told,)
         return (told, ("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
-
-    def mesh_of(self, plan: Plan) -> tuple[int, int]:
-        """See FilmForm."""
-        around, along = cells_of(plan)
-        return along, around
-
-    def mesh_told(self, plan: Plan) -> str:
-        """See FilmForm."""
-        return "{} x {} cells".format(*cells_of(plan))
 
 
 def cells_of(plan: Plan) -> tuple[int, int]:

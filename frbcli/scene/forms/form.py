@@ -164,10 +164,12 @@ class FilmForm:
 
     def mesh_of(self, plan: Plan) -> tuple[int, int]:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
-        return plan.mesh.axial, plan.mesh.circumferential
+        return (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
 
     def mesh_told(self, plan: Plan) -> str:
         """The mesh of a plan in words."""
+        if plan.cells is not None:
+            return "{} x {} cells".format(*plan.cells)
         return f"{plan.mesh.axial} x {plan.mesh.circumferential} elements"
 
 

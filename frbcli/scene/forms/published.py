@@ -202,15 +202,6 @@ class PublishedForm(FilmForm):
         """See FilmForm."""
         return "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
 
-    def mesh_of(self, plan: Plan) -> tuple[int, int]:
-        """See FilmForm."""
-        around, along = cells_of(plan)
-        return along, around
-
-    def mesh_told(self, plan: Plan) -> str:
-        """See FilmForm."""
-        return "{} x {} cells".format(*cells_of(plan))
-
 
 PUBLISHED = PublishedForm(
     "quadratic elements, two-phase model as published", SolveCounts(1.5, 4.0, 4.0, (1.0, 1.0)), 1300.0

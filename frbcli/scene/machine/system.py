@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -104,6 +105,15 @@ class System:
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
         """(films,) omega_J + omega_S of each film, rad/s."""
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
+
+    def motions(self, sample: Array) -> Iterator[tuple[Array, Array, float]]:
+        """Of each film: place and rate of its journal in its shell, see Films, and omega_J + omega_S in rad/s. sample:
+        (2 n + 1 ...) q, v and the speed of the rotor in rad/s."""
+        n = self.rotor.size
+        q, v = sample[:n], sample[n : 2 * n]
+        omegas = self.omegas(float(sample[2 * n]), v[list(self.spins)]).tolist()
+        for selection, place, total in zip(self.rotor.journals, self.journals_of(q), omegas, strict=True):
+            yield place, selection @ v, total
 
 
 def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None) -> System:

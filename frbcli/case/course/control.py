@@ -1,0 +1,63 @@
+"""How a run begins, how exact it is, and what it keeps."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import Count, Displacement, Quantity
+from frbcli.units import NUMBER
+
+OUTPUT_STEP = 5e-5  # resolves 10 kHz
+STEPS_PER_REVOLUTION = 40
+MACRO_STEP = 1e-6  # table 6.2
+
+FilmSignal = Literal["force", "film-thickness", "power", "torque", "oil-flow"]
+
+
+class Start(Model):
+    """Position of the journal at the start of a run."""
+
+    position: Literal["centre", "resting"] = Field(
+        default="centre", description="in the middle of the bearings, or where the rotor rests at the first speed"
+    )
+    displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
+
+
+class Accuracy(Model):
+    """Accuracy of the result: one target, or mesh and tolerance."""
+
+    target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = Field(
+        default=1e-3, description="error of the eccentricities that is aimed at"
+    )
+    budget: Annotated[float, Quantity("s", "60 s", above=0)] | None = Field(
+        default=None, description="CPU time of a run-up: the most exact within it, if the target needs more"
+    )
+    mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
+        default=None, description="elements along the axis and around the circumference"
+    )
+    tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
+        default=None, description="of the time integration, relative to the clearance"
+    )
+    steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = Field(
+        default=STEPS_PER_REVOLUTION, description="at least; films on cells take fewer if not given"
+    )
+    macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
+        default=MACRO_STEP, description="longest one of a co-simulation"
+    )
+
+
+class Output(Model):
+    """Output of a run."""
+
+    step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
+        default=OUTPUT_STEP, description="between the samples of a run file"
+    )
+    signals: tuple[FilmSignal, ...] = Field(
+        default=(),
+        description="what a run records of each film beside its eccentricity: the force on the journal, the smallest "
+        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves "
+        "it through its open ends",
+    )

@@ -1,0 +1,49 @@
+"""The speed of the rotor in a run: a ramp, or through points."""
+
+from __future__ import annotations
+
+import math
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from frbcli.case.model import Model, with_default
+from frbcli.case.quantities import Count, Duration, FirstSpeed, Hold, Label, Quantity, Speed
+
+DEFAULT_HOLD = 0.5
+
+PointTime = Annotated[float, Quantity("s", "1 s", least=0)]
+
+
+class SpeedRamp(Model):
+    """Rotor speed [Hz]: linear from `start` to `end` in `duration`; a run-down holds it and goes back. Or through given
+    points, from which these three follow."""
+
+    start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
+    end: Speed = Field(alias="to", description="at the end of the run-up")
+    duration: Duration = Field(description="of the run-up")
+    hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
+    down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
+    points: tuple[tuple[PointTime, Speed], ...] = Field(
+        default=(), description="in place of from, to and duration: times, from 0 on, with speeds, linear between them"
+    )
+    file: Label = Field(
+        default="", description="in place of points: CSV, WAV, MAT or UFF with the columns time and speed; from the "
+        "case's folder",
+    )  # fmt: skip
+    tacho: Label = Field(default="", description="column of `file` with pulses, from which the speed follows")
+    pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` in a revolution")
+    times: tuple[PointTime, ...] = Field(
+        default=(), description="what points or `file` hold: the case that a run keeps has them in place of these keys"
+    )
+    speeds: tuple[Speed, ...] = Field(default=(), description="at these times")
+
+    @property
+    def course(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Times in s of the run-up with speeds in Hz, linear between them."""
+        return (self.times, self.speeds) if self.times else ((0.0, self.duration), (self.start, self.end))
+
+    @model_validator(mode="before")
+    @classmethod
+    def _down_as_fast_as_up(cls, data: object) -> object:
+        return with_default(data, "down_duration", "duration")

@@ -1,0 +1,1 @@
+"""How films are computed and surfaces touch; laws and bearing models of one's own."""

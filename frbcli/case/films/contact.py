@@ -1,0 +1,82 @@
+"""Contact of journal and shell: smooth surfaces, or rough ones whose summits touch."""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from frbcli.case.model import Model
+from frbcli.case.quantities import (
+    BoundaryFriction,
+    Length,
+    Modulus,
+    Quantity,
+    Roughness,
+    Stiffness,
+    SummitDensity,
+    WearCoefficient,
+)
+from frbcli.units import NUMBER, display
+
+COMPOSITE_MODULUS, BOUNDARY_FRICTION = 115e9, 0.1  # steel on steel, with a boundary layer of oil
+FEW_TOUCH = 3.0  # roughnesses between two surfaces, beyond which few of their summits touch
+CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of the films
+
+
+class Contact(Model):
+    """Contact of journal and shell: smooth surfaces on an elastic shell, or rough ones, whose summits touch."""
+
+    model: Literal["spring", "asperities"] = Field(
+        default="spring", description="smooth surfaces, or mixed friction of rough ones, in all films"
+    )
+    policy: Literal["stop", "elastic"] = Field(
+        default="stop", description="of a spring: a run ends where the surfaces touch, or an elastic shell pushes back"
+    )
+    eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = Field(
+        default=CONTACT_BEGINS, description="at which smooth surfaces touch; films keep a gap beyond it"
+    )
+    stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
+    roughness: Roughness | None = Field(
+        default=None, description="of both surfaces of asperities, the root of the sum of their squares"
+    )
+    summit_radius: Length | None = Field(default=None, description="of asperities, mean one of curvature")
+    summit_density: SummitDensity | None = Field(default=None, description="of asperities, number over the area")
+    modulus: Modulus = Field(
+        default=COMPOSITE_MODULUS,
+        description="of asperities, composite: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; steel on steel",
+    )
+    hardness: Modulus | None = Field(
+        default=None, description="of the softer asperities, which yield there; elastic if not given"
+    )
+    wear: WearCoefficient | None = Field(
+        default=None,
+        description="Archard's coefficient of asperities, volume times hardness over force and path: runs then "
+        "estimate the depth",
+    )
+    flow_factors: bool = Field(default=False, description="of asperities, on the flow of the film: not modelled yet")
+    friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
+
+    @property
+    def rough(self) -> bool:
+        """Whether summits of rough surfaces touch."""
+        return self.model == "asperities"
+
+    @property
+    def about_summits(self) -> tuple[str, str] | None:
+        """The line of the plan on rough surfaces: their roughness, and what they do; None between smooth ones."""
+        if self.roughness is None:
+            return None
+        close = display(FEW_TOUCH * self.roughness, "m")
+        reason = f"asperities carry beside the film in gaps below some {close}, with friction {self.friction:g}"
+        return f"rough, {display(self.roughness, 'm')}", reason
+
+    @property
+    def wear_rate(self) -> float | None:
+        """Volume that asperities lose over force and path, m^2/N; None where it is not asked for."""
+        return None if self.wear is None or self.hardness is None else self.wear / self.hardness
+
+    @property
+    def gives_way(self) -> bool:
+        """Whether a run goes on through contact."""
+        return self.rough or self.policy == "elastic"

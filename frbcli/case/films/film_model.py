@@ -1,0 +1,62 @@
+"""How the films of a case are computed: theory, cavitation, coupling, cells."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from pydantic import Field
+
+from frbcli.case.laws import Cavitation, adopt, attribute
+from frbcli.case.model import Model
+from frbcli.case.theories import SHIPPED as THEORIES
+from frbcli.case.theories import Theory
+from frbcli.film.cavitation.table import law_named
+
+Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
+
+
+class FilmModel(Model):
+    """How the films are computed."""
+
+    theory: Theory = Field(
+        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+    )
+    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
+    cavitation_factor: Literal["global", "local", "none"] = Field(
+        default="global",
+        description="torque of missing oil: reduced by the mean oil fraction (4.46), the local one, or not",
+    )
+    torque: Literal["all", "couette", "simple"] = Field(
+        default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
+    )
+    coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
+    grid: Literal["auto", "fixed", "half-speed"] = Field(
+        default="auto",
+        description="cells at rest, or turning with the mean speed of journal and shell (plain gaps); auto: turning "
+        "for plain gaps that keep their oil",
+    )
+    solution: Literal["auto", "table", "cells"] = Field(
+        default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
+    )
+    tilt: Literal["none", "follows"] = Field(
+        default="none",
+        description="the gap is even along the axis, or follows the tilt of the shaft in it; in runs, stability, "
+        "damped modes and response",
+    )
+
+    if TYPE_CHECKING:  # the tables of the laws, which these declare
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    @property
+    def bearing_model(self) -> str:
+        """The name of the bearing model in `theory`, "" for a theory of the program."""
+        return "" if self.theory in THEORIES else self.theory
+
+    def given(self, cavitation: str) -> Any:
+        """The values of the table [film.NAME] of a cavitation law by attribute, None if the law has no keys."""
+        law = law_named(cavitation)
+        return getattr(self, attribute(law)) if law.keys else None
+
+
+adopt(FilmModel)

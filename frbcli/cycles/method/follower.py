@@ -1,0 +1,205 @@
+"""Follows the limit cycles of one machine: the equations about a place of a branch, as many harmonics as its cycles
+need, their multipliers, and steps and folds along it.
+
+Harmonics are added where the next ones would be larger than a tolerance, and left out where the last ones are much
+smaller.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.method.balance import Balance, left_out, unpacked
+from frbcli.cycles.method.continuation import (
+    Equations,
+    Place,
+    corrected,
+    fold_between,
+    oriented,
+    step_from,
+    unit_vector,
+)
+from frbcli.cycles.method.cycle import (
+    FIRST_HARMONICS,
+    FOLD,
+    Cycle,
+    amplitude,
+    eccentricities,
+    largest,
+    resized,
+    resized_like,
+)
+from frbcli.cycles.method.floquet import HELPS, TRIVIAL, Multipliers, multipliers
+from frbcli.cycles.parts.linearised import StateSpace
+from frbcli.cycles.parts.machine import Machine
+from frbcli.cycles.parts.reduced_states import reduced_space
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MOST_HARMONICS = 80
+REFITS = 4  # of a fold with more harmonics
+# Of one film, of several: what the harmonics left out may have of the clearance, and unknowns up to which harmonics are
+# added for the trivial multiplier alone.
+TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
+MOST_AT_FOLD = (2400, 450)  # the same at a fold, beside which a film may be nearly at rest for a moment
+SPARE = 0.1  # of it: what the last harmonics have where there are too many
+NARROWER = 0.6  # share of the smallest gap that one step may leave
+NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
+
+
+class Follower:
+    """One branch while it is followed. omega: as in Balance; scale, unit: the last unknown times `scale` is in the
+    unit; free: whether it is a whirl, which may shrink to rest; tail, most_at_fold: see TAIL, MOST_AT_FOLD;
+    tail_of_folds: share of the tail that folds may have."""
+
+    free = True
+    tail = TAIL
+    tail_of_folds = 1.0
+    most_at_fold = MOST_AT_FOLD
+
+    def __init__(
+        self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
+    ) -> None:
+        self.machine = machine
+        self.omega = omega
+        self.scale, self.unit = machine.pace / (2.0 * math.pi), "Hz"
+        self.range = (slowest / machine.pace, fastest / machine.pace)
+        self.asked = tuple(speed / machine.pace for speed in asked)
+
+    def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
+        """A point of the branch with its results. near: one close by."""
+        found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
+        halved = True  # whether finer intervals have been tried
+        while found.defect > TRIVIAL:
+            finer = self.with_more(place, self.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
+            if finer is None:
+                found = found if halved else self.multipliers(place, found)
+                break
+            enough = HELPS * found.defect
+            place, found = finer, self.multipliers(finer, found, enough)
+            halved = found.defect > enough
+        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
+        return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
+
+    def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
+        """Those of the cycle at a place. near, enough: see floquet.py."""
+        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
+        return multipliers(machine, self.space_at(place.y), y, near, max(TRIVIAL, enough))
+
+    def space_at(self, _y: Array) -> StateSpace:
+        """The states whose multipliers those of the cycle y are."""
+        return self._space
+
+    @cached_property
+    def _space(self) -> StateSpace:
+        return reduced_space(self.machine)
+
+    def machine_at(self, _y: Array) -> Machine:
+        """The machine whose cycle y is."""
+        return self.machine
+
+    def equations(self, place: Place) -> Equations:
+        """Those of the cycles about a place."""
+        return Balance(self.machine, self.reference(place), self.omega)
+
+    def reference(self, place: Place) -> Complex:
+        """The motion that the phase of cycles about a place is compared with."""
+        moving = self.moves(place.y)  # at a Hopf point only the tangent has a phase
+        return unpacked((place.y if moving else place.tangent)[:-2], self.machine.size)
+
+    def moves(self, y: Array) -> bool:
+        """Whether y is more than rest."""
+        return amplitude(self.machine, y) > NOTHING
+
+    def entered(self, y: Array, last: float) -> Place | None:
+        """The cycle y with the last unknown `last` as a place of the branch, which rises in it; None if it is none."""
+        along = unit_vector(len(y))
+        there = np.append(y[:-1], last)
+        return corrected(self.equations(Place(there, along)), there, along)
+
+    def as_cycle(self, y: Array) -> Array:
+        """The unknowns y with the speed of the rotor at their end."""
+        return y if self.omega is None else np.append(y[:-1], self.omega / self.machine.pace)
+
+    def with_more(self, place: Place, most: tuple[int, int]) -> Place | None:
+        """The place with half as many harmonics more, None if those are too many. most: see MOST_UNKNOWNS."""
+        c, harmonics = self.machine.size, (len(place.y) - 2) // self.machine.size // 2
+        more = resized(place, c, harmonics + harmonics // 2)
+        if len(more.y) > most[self.machine.film_count > 1]:
+            return None
+        found = corrected(self.equations(more), more.y, more.tangent)
+        return None if found is None else oriented(found, more.tangent)
+
+    def refitted(self, place: Place, share: float = 1.0) -> Place | None:
+        """The place with as many harmonics as it needs for a share of the tail; None if that does not converge, or if
+        they are too many."""
+        c, allowed = self.machine.size, share * self.tail[self.machine.film_count > 1]
+        for _ in range(12):
+            harmonics = (len(place.y) - 2) // c // 2
+            tail = left_out(self.machine_at(place.y), self.as_cycle(place.y))
+            motion = unpacked(place.y[:-2], c)
+            if tail < allowed:
+                used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * allowed)
+                wanted = max(FIRST_HARMONICS, int(used[-1]) + 2)
+                return place if wanted >= harmonics else resized(place, c, wanted)
+            if harmonics >= MOST_HARMONICS:
+                return None
+            place = resized(place, c, min(MOST_HARMONICS, harmonics + max(2, harmonics // 3)))
+            found = corrected(self.equations(place), place.y, place.tangent)
+            if found is None or found.side * place.side < 0:  # of another part of the branch that passes close by
+                return None
+            place = oriented(found, place.tangent)
+        return None
+
+    def as_fine(self, place: Place, other: Place) -> Place:
+        """The place with as many harmonics as another, taken anew: on which side of the curve a place lies, by the sign
+        of a determinant, is not the same with more of them."""
+        near = resized_like(place, other, self.machine.size)
+        found = place if near is place else corrected(self.equations(near), near.y, near.tangent)
+        return near if found is None else oriented(found, near.tangent)
+
+    def fold(self, place: Place, length: float) -> Place | None:
+        """The refitted fold within a step from a place."""
+        found = None
+        for _ in range(REFITS):
+            found = fold_between(self.equations(place), place, length)
+            fitted = None if found is None else self.refitted(found, self.tail_of_folds)
+            if found is None or fitted is None or len(fitted.y) <= len(place.y):
+                break
+            place = self.as_fine(place, fitted)
+        return found
+
+    def stepped(self, place: Place, length: float) -> Place | None:
+        """The refitted place behind a step."""
+        narrow = 1.0 - largest(self.machine, place.y + length * place.tangent)
+        if narrow < NARROWER * (1.0 - largest(self.machine, place.y)):
+            return None
+        found = step_from(self.equations(place), place, length)
+        return None if found is None else self.refitted(oriented(found, place.tangent))
+
+
+class FoldFollower(Follower):
+    """Follows branches whose folds alone are asked for: without multipliers, the larger part of the cost, and with few
+    harmonics up to the fold."""
+
+    tail = (1e-5, 1e-5)
+    tail_of_folds = 1e-2
+
+    def multipliers(self, _place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
+        """The trivial one alone, (1,), with no defect: none are computed."""
+        return Multipliers(np.ones(1, dtype=complex), 0.0)
+
+
+def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> Place | None:
+    """The cycle at a speed over the pace between two."""
+    near = resized_like(place, beyond, follower.machine.size)
+    share = (speed - near.y[-1]) / (beyond.y[-1] - near.y[-1])
+    guess = near.y + share * (beyond.y - near.y)
+    found = corrected(follower.equations(beyond), guess, unit_vector(len(guess)))
+    return None if found is None else oriented(found, beyond.tangent)
