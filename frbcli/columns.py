@@ -127,7 +127,7 @@ class Column:
         return tuple(_joined(self.quantity, entry, self.unit_name, self.of) for entry in entries)
 
     def value_of(self, item: Any) -> Any:
-        """The value of an item."""
+        """The value of an item: a number, a text, an array of the shape, or None."""
         if self.value is not None:
             return self.value(item)
         if isinstance(item, Mapping):
@@ -197,12 +197,12 @@ class Table:
 
 
 def table_of(columns: Columns, items: Iterable[object]) -> Table:
-    """A row per item."""
+    """The table of some columns with a row per item."""
     return Table(tuple(columns), tuple(tuple(column.value_of(item) for column in columns) for item in items))
 
 
 def documents(columns: Columns, items: Iterable[object]) -> list[dict[str, Any]]:
-    """An object of JSON per item."""
+    """The objects of JSON of some columns, one per item."""
     return table_of(columns, items).documents()
 
 

@@ -35,7 +35,7 @@ class RunLike(Protocol):
 
     @property
     def signals(self) -> Iterable[str]:
-        """Names of the signals."""
+        """The names of the signals of the run."""
         ...
 
     @property

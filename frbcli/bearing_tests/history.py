@@ -67,7 +67,7 @@ class MovedFilm:
 
     @property
     def size(self) -> float:
-        """Amount of the force, N."""
+        """The amount of the force in N."""
         return math.hypot(*self.loads.force)
 
 
@@ -264,7 +264,7 @@ def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:
 
 
 def history_of(moments: Sequence[MovedFilm]) -> History:
-    """The history of a moved film."""
+    """The history of a moved film from its moments, as arrays along them."""
     return History(
         time_s=np.array([moment.time for moment in moments]),
         displacement=np.array([moment.displacement for moment in moments]),

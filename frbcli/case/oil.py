@@ -54,7 +54,7 @@ class Vogel(Model):
 
     @property
     def law(self) -> VogelLaw:
-        """The law."""
+        """The viscosity over the temperature in K, Pa s."""
         return VogelLaw(self.eta_0, self.A, self.C)
 
 

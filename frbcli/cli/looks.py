@@ -36,7 +36,7 @@ class Size(click.ParamType[tuple[float, float]]):
     def convert(
         self, value: object, param: click.Parameter | None, ctx: click.Context | None
     ) -> tuple[float, float]:
-        """Width and height in inches."""
+        """Width and height in inches. Fails the option for anything but WIDTHxHEIGHT."""
         from frbcli.units import quantity
 
         if isinstance(value, tuple):

@@ -23,7 +23,7 @@ class QuantityOption(click.ParamType[float]):
     positive: bool = True
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
-        """The quantity in `unit`."""
+        """The number of a quantity in `unit`. Fails the option for anything else."""
         from frbcli.units import quantity
 
         with suppress(ValueError):  # then it has a unit
@@ -71,7 +71,7 @@ class Numbers(click.ParamType[tuple[float, ...]]):
     name = "numbers"
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> tuple[float, ...]:
-        """The numbers in their order."""
+        """The numbers in their order. Fails the option for anything else."""
         if isinstance(value, tuple):
             return value
         try:

@@ -236,11 +236,12 @@ def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoin
 
 
 def criticality_of(found: Lyapunov) -> str | None:
-    """None where it cannot be told."""
+    """Whether a Hopf point is subcritical or supercritical, by its Lyapunov coefficient; None where the error leaves
+    that open."""
     return (None, SUBCRITICAL, SUPERCRITICAL)[found.sign]
 
 
 def cycle_special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:
-    """A special cycle of a branch."""
+    """A special cycle of the branch with this number, with the value of what the walk goes over, and Hz."""
     speed, frequency = hertz(cycle.y[-1] * cycle.machine.pace), hertz(cycle.y[-2] * cycle.machine.pace)
     return SpecialPoint(cycle.kind, branch, walk.value(cycle), speed, frequency, cycle.eccentricity_max)

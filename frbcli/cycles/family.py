@@ -69,7 +69,7 @@ def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float
 
 
 def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
-    """A key that is followed, whose values are above zero, likewise."""
+    """value_range of a key that is followed, whose values are above zero. Raises InputError."""
     first, last, unit = value_range(case, key, low, high)
     if first <= 0.0:
         raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))

@@ -21,7 +21,7 @@ SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"
 
 
 def hertz(omega: float) -> float:
-    """rad/s in Hz."""
+    """An angular speed in rad/s as a frequency in Hz."""
     return float(omega) / (2.0 * math.pi)
 
 

@@ -56,7 +56,7 @@ class DamperElement(MachineElement):
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((self.link(site), spring),))
 
     def link(self, site: Site) -> Link:
-        """Where spring and film act."""
+        """The link between shell and seat on which spring and film act."""
         return Link(self.node, site.seat(self.bearing), site.count)
 
     def told(self, site: Site) -> Line:

@@ -74,7 +74,7 @@ def dynamic_film(film: VolumeFilm, place: Array, total: float, omega: float) -> 
 
 
 def constant_film(force: FilmForce) -> DynamicFilm:
-    """A film without memory."""
+    """A film without memory: stiffness and damping of its force at all frequencies."""
     same = without_memory(-force.by_displacement, -force.by_velocity)
     return DynamicFilm(same, same, same)
 

@@ -123,7 +123,8 @@ def heat_capacity(case: Case) -> float:
 
 
 def under_vertical_load(system: System, i: int, eccentricity: float, omega: float) -> tuple[Array, FilmForce]:
-    """(2,) place in m of film i at this eccentricity at which its force points along y, and the film there."""
+    """(2,) place in m of film i at this eccentricity at which its force points along y, and the film there. omega: of
+    the journal, rad/s. Raises NotConverged where there is no such place."""
     angle = -0.25 * math.pi if omega >= 0.0 else -0.75 * math.pi
     near: FilmForce | None = None
     for _ in range(TURNS):

@@ -82,7 +82,7 @@ def draw_curves(
 
 
 def finish(axes: Axes, over: Over) -> None:
-    """The name of the axis below."""
+    """Write the name of the axis below, time or speed."""
     axes.set_xlabel(WORDS[over])
 
 

@@ -53,7 +53,7 @@ def ends(run: Run) -> tuple[float, float]:
 
 def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, int]:
     """The samples from from_time to to_time in s (None: to the end of the run), as the first and that after the last.
-    RunFileError if there are not two."""
+    Raises RunFileError if there are not two."""
     begin, end = ends(run)
     samples = range(len(run))
 
@@ -70,7 +70,7 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, 
 
 def clearance(run: Run, bearing: str = "") -> float:
     """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o; of a machine without
-    films the length that stands for it."""
+    films the length that stands for it. Raises RunFileError where the run does not say."""
     known = [length for name, length in run.references.items() if name.startswith(("clearance_m", "length_m"))]
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:

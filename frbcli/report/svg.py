@@ -20,17 +20,17 @@ def text(x: float, y: float, words: str, kind: str = "label", anchor: str = "mid
 
 
 def line(x1: float, y1: float, x2: float, y2: float, kind: str) -> str:
-    """A straight line."""
+    """A straight line between two points in units of the drawing; kind: class of the style sheet."""
     return element("line", x1=x1, y1=y1, x2=x2, y2=y2, kind=kind)
 
 
 def box(x: float, y: float, width: float, height: float, kind: str) -> str:
-    """A rectangle by its upper left corner."""
+    """A rectangle by its upper left corner, as line."""
     return element("rect", x=x, y=y, width=width, height=height, kind=kind)
 
 
 def curve(points: Sequence[tuple[float, float]], kind: str, closed: bool = False) -> str:
-    """A line through points."""
+    """A line through points, as line; closed: back to the first one."""
     return element("path", d="M" + "L".join(f"{x:.2f},{y:.2f}" for x, y in points) + "Z" * closed, kind=kind)
 
 

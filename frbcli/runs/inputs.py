@@ -79,7 +79,7 @@ class RunInputs:
 
     @classmethod
     def of(cls, case: Case, system: System) -> RunInputs:
-        """The inputs of a case."""
+        """The inputs of a case, with the names of the films of its machine."""
         return cls(machine_inputs(case), system.names)
 
     @property

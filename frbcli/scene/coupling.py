@@ -120,7 +120,7 @@ def coupling_of(case: Case) -> Coupling:
 
 
 def plan_coupling(case: Case) -> tuple[str, str]:
-    """(one of COUPLINGS, why)."""
+    """The coupling of a case, one of COUPLINGS, and why it is chosen."""
     found = coupling_of(case)
     return found.name, found.reason if case.film.coupling == "auto" else f"set in the case; {found.reason}"
 

@@ -36,7 +36,9 @@ class OrderTrack:
     backward: Motion
 
     def along(self, direction: Direction = "x") -> Motion:
-        """Complex amplitude (m,) in m of x = Re(A exp(i order phi)), y = Re(A exp(i order phi)), or the forward one."""
+        """Complex amplitude (m,) in m of x = Re(A exp(i order phi)), y = Re(A exp(i order phi)), or the forward one.
+
+        direction: "x", "y" or "forward"; InputError for any other."""
         if direction not in DIRECTIONS:
             raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
         if direction == "forward":
@@ -49,7 +51,7 @@ class OrderTrack:
         return np.asarray(np.abs(self.along(direction)))
 
     def phase_deg(self, direction: Direction = "x") -> Values:
-        """Phase (m,) to the rotor's angle, continuous."""
+        """Phase (m,) in deg to the rotor's angle, continuous."""
         return np.asarray(np.degrees(np.unwrap(np.angle(self.along(direction)))))
 
 
@@ -90,7 +92,8 @@ def order_track(run: RunLike, order: float, signal: str = "journal", revolutions
 def order_tracks(
     run: RunLike, orders: Sequence[float], signal: str = "journal", revolutions: int = REVOLUTIONS
 ) -> tuple[OrderTrack, ...]:
-    """Several orders at once; otherwise as order_track."""
+    """Several orders at once, in their order; otherwise as order_track. Raises what order_track raises, and InputError
+    without an order."""
     wrong = [order for order in orders if not (math.isfinite(order) and 0.0 < order <= HIGHEST)]
     if wrong or not orders:
         value = ", ".join(f"{order:g}" for order in wrong)

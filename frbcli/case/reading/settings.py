@@ -32,7 +32,7 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
 
 
 def with_value(data: Mapping[str, Any], key: str, value: Any) -> tuple[dict[str, Any], Path]:
-    """As with_setting, with a value as a file has it; None takes the key out."""
+    """As with_setting, with a value as a file has it; None takes the key out. Raises TomlFault."""
     parts = _parts(key)
     if not (parts and _encodable(key)):
         raise _refuse(key or "settings", "is not of the form key.path.", 'Write e.g. {"speed.to": "200 Hz"}.')

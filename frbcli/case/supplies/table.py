@@ -30,7 +30,7 @@ else:
 
 
 def kind_of(supply: type[OilSupply]) -> str:
-    """The word of its key `kind`."""
+    """The word of the key `kind` of a supply."""
     return str(get_args(supply.model_fields["kind"].annotation)[0])
 
 

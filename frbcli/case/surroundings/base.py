@@ -38,7 +38,7 @@ class Base(Model):
 
     @property
     def amplitude(self) -> tuple[float, float]:
-        """x, y in m/s^2."""
+        """Amplitude along x and y in m/s^2, the factors of a table over time."""
         return self.acceleration or (1.0, 1.0)
 
     @property

@@ -46,7 +46,7 @@ class AppliedForce(Model):
 
     @property
     def amplitude(self) -> tuple[float, float]:
-        """x, y in N."""
+        """Amplitude along x and y in N, the factors of a table over time."""
         return self.force or (1.0, 1.0)
 
     @property

@@ -57,7 +57,8 @@ class Machines:
     below: float | None
 
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
-        """The machines. others: keys with several values, or a list of points, beside which nothing can scatter."""
+        """The machines. others: keys with several values, or a list of points, beside which nothing can scatter. Raises
+        InputError."""
         from frbcli.studies.sweep.distributions import read_correlation, samples
 
         if others:

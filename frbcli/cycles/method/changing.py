@@ -53,7 +53,7 @@ class ChangingFollower(Follower):
         return self._machine(float(y[-1]))
 
     def space_at(self, y: Array) -> StateSpace:
-        """All states of that machine."""
+        """All states of the machine at the value in which y ends."""
         return state_space(self.machine_at(y))
 
     def equations(self, place: Place) -> Equations:

@@ -156,7 +156,8 @@ def _between(found: dict[float, Place | None], at: float) -> Array | None:
 
 
 def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
-    """Where the parameter turns back within a step of `length` from `place`: the tangent has no part along it there."""
+    """Where the parameter turns back within a step of `length` from `place`, to a share `tolerance` of it: the tangent
+    has no part along the parameter there. None where it does not turn back, or cannot be followed."""
     from scipy.optimize import brentq
 
     found: dict[float, Place | None] = {0.0: place}

@@ -53,7 +53,8 @@ class Lyapunov:
 
 
 def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> Lyapunov:
-    """That of a Hopf point."""
+    """The first Lyapunov coefficient of a Hopf point, with its uncertainty: extrapolated to no radius in closed forms
+    of the films, else the middle one of several radii, and their spread."""
     smooth = have_closed_forms(machine.films)
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
     gap = 1.0 - float(np.max(np.hypot(d[:, 0], d[:, 1])))

@@ -64,7 +64,7 @@ def largest_of(displacements: Array) -> Array:
 
 
 def largest(machine: Machine, y: Array) -> float:
-    """The largest of them."""
+    """The largest eccentricity of all films on the cycle y."""
     return float(eccentricities(machine, y).max())
 
 

@@ -120,7 +120,7 @@ class OverSpeed:
         return equilibrium(self.only, self._space, place)
 
     def machine(self, _value: float) -> Machine:
-        """The same at each speed."""
+        """The machine, which is the same at each speed."""
         return self.only
 
     def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:

@@ -114,7 +114,7 @@ class Follower:
         return unpacked((place.y if moving else place.tangent)[:-2], self.machine.size)
 
     def moves(self, y: Array) -> bool:
-        """Whether y is more than rest."""
+        """Whether the unknowns y are more than rest."""
         return amplitude(self.machine, y) > NOTHING
 
     def entered(self, y: Array, last: float) -> Place | None:

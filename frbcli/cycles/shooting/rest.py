@@ -70,7 +70,8 @@ def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
 
 
 def located(shooting: Shooting, low: Rest, high: Rest, number: int = 0) -> RestThreshold:
-    """The Hopf point between two resting positions of the whirl `number`, from 0, by falling growth."""
+    """The Hopf point between two resting positions of the whirl `number`, from 0, by falling growth; its uncertainty is
+    NaN where the rest cannot be followed."""
 
     def at(omega: float) -> Rest:
         rest = shooting.rest(low.wet, omega)

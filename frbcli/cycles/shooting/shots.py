@@ -138,7 +138,7 @@ class Shooting:
         self.flow, self.unit = flow, unit
 
     def speed_Hz(self, shot: Shot) -> float:
-        """The rotor speed of a cycle."""
+        """The rotor speed of a cycle in Hz."""
         return math.exp(float(shot.mean_p[1])) * hertz(self.unit)
 
     @property

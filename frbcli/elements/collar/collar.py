@@ -209,7 +209,7 @@ class Collar:
 
 
 def pad_of(bearing: ThrustBearing) -> Pad:
-    """One pad of a thrust bearing."""
+    """One pad of a thrust bearing, lengths in m and angles in rad."""
     return Pad(bearing.inner_radius, bearing.outer_radius, bearing.pad_angle,
                min(bearing.taper_angle, bearing.pad_angle), bearing.taper, bearing.profile)  # fmt: skip
 

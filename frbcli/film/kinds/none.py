@@ -24,7 +24,7 @@ class NoFilms(Films):
         return ()
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """There is none."""
+        """Raises IndexError: there is no film."""
         raise IndexError(i)
 
     def heat_ends(self) -> Any:

@@ -27,7 +27,7 @@ def critical_map_figure(found: CriticalMap) -> Figure:
 
 
 def draw_critical_map(axes: Axes, found: CriticalMap) -> None:
-    """The map on axes of a figure."""
+    """The map on axes of a figure: critical speeds in Hz over the stiffness in N/m."""
     for values, colour, dashes, name in (
         (found.forward, BLUE, "-", "forward whirl"), (found.backward, ORANGE, (0, (5, 2)), "backward whirl"),
     ):  # fmt: skip

@@ -112,7 +112,8 @@ def waterfall_figure(
 
 
 def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direction) -> Spectrogram:
-    """The spectra of a run up to the frequency that its pictures show."""
+    """The spectra of a run up to the frequency that its pictures show. window_s: length of a window in s, None: by the
+    speed. Raises RunFileError for a window with too many samples."""
     time_s, x, y, speed = run.signal(TIME), *motion(run, signal), run.signal(SPEED)
     begin, end = ends(run)
     if window_s is None:

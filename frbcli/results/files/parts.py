@@ -54,7 +54,7 @@ def array(inside: h5py.Group, name: str, place: RunPlace, dimensions: int | None
 
 
 def text(inside: h5py.Group, name: str) -> str:
-    """A text. Raises WrongPart."""
+    """The text of a name in a group. Raises WrongPart if it is none, or too long."""
     data = _member(inside, name, h5py.Dataset)
     if data.shape != () or not _is_text(data.dtype) or not _in_one_piece(data):
         raise WrongPart(f"{name} is not a text")

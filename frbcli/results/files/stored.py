@@ -30,12 +30,12 @@ class RunPlace:
 
     @classmethod
     def of(cls, path: Path, file: BinaryIO) -> RunPlace:
-        """The place of an open file."""
+        """The place of an open file at a path."""
         return cls(path.absolute(), _stamp(file))
 
     @property
     def size(self) -> int:
-        """Bytes."""
+        """Size of the file in bytes."""
         return self.stamp[SIZE]
 
     def read(self, offset: int, array: NDArray[Any]) -> None:

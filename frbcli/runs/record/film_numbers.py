@@ -24,7 +24,7 @@ class FilmNumbers:
 
 
 def unchanged(system: System) -> FilmNumbers:
-    """Those of films without heat."""
+    """The numbers of films without heat, with one row: clearances in m, drags in N m s, scales 1."""
     clearances, drags = np.array([system.clearances]), np.array([system.drags])
     return FilmNumbers(clearances, drags, np.ones_like(drags))
 

@@ -19,7 +19,7 @@ class Interrupt:
         self.asked = False
 
     def ask(self, _signal: int, _frame: FrameType | None) -> None:
-        """The handler of the signal."""
+        """Handles a signal: from now on an end is asked for."""
         self.asked = True
 
 

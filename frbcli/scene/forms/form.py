@@ -78,7 +78,7 @@ class FilmForm:
         return self.name
 
     def solve_us(self, plan: Plan) -> float:
-        """Time of one film solve, us."""
+        """CPU time of one film solve in us."""
         return self.us
 
     def pressed(self, plan: Plan) -> tuple[float, float]:
@@ -86,11 +86,11 @@ class FilmForm:
         return self.work.pressed
 
     def table_s(self, plan: Plan) -> float:
-        """To tabulate one film before a run."""
+        """CPU time in s to tabulate one film before a run."""
         return 0.0
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
-        """The first state of a run. resting: whether a resting position is sought."""
+        """CPU time in s of the first state of a run. resting: whether a resting position is sought."""
         return 0.0
 
     def again_share(self) -> float:
@@ -98,7 +98,8 @@ class FilmForm:
         return 0.0
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """The error of the forces at sampled states. machines: segments of the run with tables of their own."""
+        """CPU time in s of the error of the forces at sampled states. machines: segments of the run with tables of
+        their own."""
         return 0.0
 
     def memory_B(self, plan: Plan, films: int) -> float:

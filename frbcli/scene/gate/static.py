@@ -90,7 +90,7 @@ def chart_heat_faults(case: Case) -> Iterator[Fault]:
 
 
 def missing_heat_faults(case: Case) -> Iterator[Fault]:
-    """Heat has to be asked for."""
+    """The fault of a case whose static results need heat that it has not."""
     if case.heat is None:
         yield Fault("thermal", "", None, "is missing.", 'Add the table [thermal] with model = "lumped".')
 
