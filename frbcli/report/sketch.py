@@ -32,6 +32,7 @@ ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there ov
 AROUND = 181  # points of a circle
 NAMES = 24.0  # room for a line of names above a disk, in the drawing's units
 FORCE = 30.0  # length of the arrow of a force, in the drawing's units
+GROUND = 32.0  # room for the ground, where it moves
 NO_WIDTH, NO_RADIUS = 0.02, 0.0125  # of journals that have no dimensions, m
 DENSITY = 7850.0  # kg/m^3 of steel, for the thickness of a disk without inertias
 
@@ -54,14 +55,27 @@ class _SketchScale:
 
 
 def rotor_sketch(case: Case) -> tuple[str, str]:
-    """(drawing along the axis, a sentence about what is not to scale)."""
+    """(drawing along the axis, a sentence about what is not to scale, and one about arrows)."""
     if case.shaft:
-        return _of_sections(case), "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+        told = "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+        return _of_sections(case), told + _arrows_told(case)
     if not case.rotor.symmetric:
         return "", "The shaft of this rotor is in a file of its own and is not drawn."
+    told = "Bearings to scale; shaft and disk have no dimensions in this model."
     if not case.bearings:
-        return _symmetric(case), "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
-    return _symmetric(case), "Bearings to scale; shaft and disk have no dimensions in this model."
+        told = "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
+    return _symmetric(case), told + _arrows_told(case)
+
+
+def _arrows_told(case: Case) -> str:
+    """A sentence about the arrows of loads, "" without any."""
+    named = (
+        ("F a force", case.forces),
+        ("M a magnetic pull", case.magnetic_pulls),
+        ("B a motion of the ground", case.bases),
+    )
+    told = ", ".join(words for words, any_of_it in named if any_of_it)
+    return f" Arrows show places, not directions: {told}, numbered as in the case." if told else ""
 
 
 def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
@@ -188,7 +202,7 @@ def _of_sections(case: Case) -> str:
     parts += _forces(case, scale, lambda node: (places[node],))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
-    return _finish(parts, scale, half, length)
+    return _finish(parts, scale, half, len(case.bases), length)
 
 
 def _symmetric(case: Case) -> str:
@@ -217,7 +231,7 @@ def _symmetric(case: Case) -> str:
         parts.append(_named("bearing", at, scale, half + 16.0))
     parts += _forces(case, scale, lambda node: (0.5 * span,) if node == "disk" else (0.0, span))
     parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -per_m * disk - 6.0))
-    return _finish(parts, scale, half, None, bool(case.bearings))
+    return _finish(parts, scale, half, len(case.bases), None, bool(case.bearings))
 
 
 def _forces(case: Case, scale: _SketchScale, places: Callable[[str], tuple[float, ...]]) -> Iterator[str]:
@@ -262,9 +276,22 @@ def _named(words: str, at: float, scale: _SketchScale, y: float) -> str:
     return text(scale.left + scale.per_m * at, scale.middle + y, words)
 
 
-def _finish(parts: list[str], scale: _SketchScale, half: float, length: float | None, to_scale: bool = True) -> str:
-    """With the axis and a bar for the scale, where there is one."""
-    height = 2.0 * half + 86.0
+def _moving_ground(motions: int, y: float) -> Iterator[str]:
+    """The ground at y with a double arrow and a number B for each of its motions; it shows no direction."""
+    if motions:
+        x, under = 0.5 * WIDTH, y + 10.0
+        yield line(MARGIN, y, WIDTH - MARGIN, y, "ground")
+        yield from _arrow([(x, under), (x - FORCE, under)])
+        yield from _arrow([(x, under), (x + FORCE, under)])
+        yield text(x + FORCE + 8.0, under + 4.0, ", ".join(f"B{i + 1}" for i in range(motions)), anchor="start")
+
+
+def _finish(
+    parts: list[str], scale: _SketchScale, half: float, motions: int, length: float | None, to_scale: bool = True
+) -> str:
+    """With the motions of the ground, the axis and a bar for the scale, where there is one."""
+    height = 2.0 * half + 86.0 + (GROUND if motions else 0.0)
+    parts += _moving_ground(motions, scale.middle + half + 30.0)
     bar = _round_length((WIDTH - 2.0 * MARGIN) / scale.per_m / 6.0)
     y, x = height - 14.0, MARGIN
     parts.append(line(8.0, scale.middle, WIDTH - 8.0, scale.middle, "axis"))

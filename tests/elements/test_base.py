@@ -6,6 +6,7 @@ Displacements q are those against the ground, which moves by u = -a / omega^2 wi
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +19,7 @@ from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.plot.spectra.load_lines import load_lines
+from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.plan import make_plan
@@ -137,6 +139,23 @@ def test_text_and_plan_of_a_shaken_ground() -> None:
     assert load_case_text(case.source_text, name="shaken") == case
     told = [(each.value, each.reason) for each in make_plan(case).decisions if each.choice == "ground"]
     assert told == [("2 m/s^2 in x, 0 m/s^2 in y", "order 2 of 50 Hz; displacements are those against the ground")]
+
+
+def test_the_sketch_shows_a_ground_that_moves() -> None:
+    """One line of ground more than that of a machine at rest, as wide as the drawing, below all other parts."""
+    still = rotor_sketch(machine(RIGID, []))[0]
+    one, two = (rotor_sketch(machine(RIGID, base))[0] for base in (shaken(), [shaken(), shaken(order=4.0)]))
+    assert "B1" not in still
+    assert ">B1<" in one
+    assert ">B1, B2<" in two
+    grounds = [[float(y) for y in re.findall(r'y1="([\d.]+)"[^>]*class="ground"', each)] for each in (still, one)]
+    assert len(grounds[1]) == len(grounds[0]) + 1
+    assert max(grounds[1]) > max(grounds[0])
+    assert max(grounds[1]) < float(re.findall(r'viewBox="0 0 \d+ (\d+)"', one)[0])
+    drawing, told = rotor_sketch(load_case("turbocharger-engine"))
+    assert ">B1, B2, B3<" in drawing
+    assert told.endswith("not directions: B a motion of the ground, numbered as in the case.")
+    assert "Arrows" not in rotor_sketch(machine(RIGID, []))[1]
 
 
 FAULTS = {
