@@ -198,8 +198,10 @@ def _of_sections(case: Case) -> str:
         parts.append(_named(bearing.name, at, scale, half + 16.0))
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
     for given in case.given_bearings:
-        places |= {f"{body}_{given.name}": given.position or 0.0 for body in ("journal", "ring", "shell", "support")}
-    parts += _forces(case, scale, lambda node: (places[node],))
+        at = given.position or 0.0
+        places |= {f"{body}_{given.name}": at for body in ("journal", "ring", "shell", "support", "housing")}
+    places["housing"] = (case.housing and case.housing.position) or 0.0
+    parts += _forces(case, scale, inner, lambda node: (places[node],))
     for disk, radius, _ in disks:
         parts.append(_named(f"{disk.name} {1e3 * disk.mass:.3g} g", disk.position, scale, -per_m * radius - 6.0))
     return _finish(parts, scale, half, len(case.bases), length)
@@ -229,21 +231,26 @@ def _symmetric(case: Case) -> str:
             parts += stack(bearing.symbols, scale.left + per_m * place, scale.middle, per_m * radius, carried)
             parts += _film_parts(bearing.films, at, scale)
         parts.append(_named("bearing", at, scale, half + 16.0))
-    parts += _forces(case, scale, lambda node: (0.5 * span,) if node == "disk" else (0.0, span))
+    one = {"disk": (0.5 * span,), "housing": (0.25 * span,)}
+    parts += _forces(case, scale, inner, lambda node: one.get(node, (0.0, span)))
     parts.append(_named(f"{shaft_of(case).disk_mass:.4g} kg", 0.5 * span, scale, -per_m * disk - 6.0))
     return _finish(parts, scale, half, len(case.bases), None, bool(case.bearings))
 
 
-def _forces(case: Case, scale: _SketchScale, places: Callable[[str], tuple[float, ...]]) -> Iterator[str]:
+def _forces(
+    case: Case, scale: _SketchScale, housing: float, places: Callable[[str], tuple[float, ...]]
+) -> Iterator[str]:
     """An arrow with its number for each force F and each magnetic pull M of a case at the places of its node, in m; it
-    shows no direction."""
+    shows no direction. housing: its distance from the axis, in the drawing's units."""
     acting = [(f"F{number}", force.at) for number, force in enumerate(case.forces, start=1)]
     acting += [(f"M{number}", pull.at) for number, pull in enumerate(case.magnetic_pulls, start=1)]
     for name, place in acting:
-        for at in places(node_at(case, place)):
+        node = node_at(case, place)
+        y = scale.middle - (housing + FLAT if node.startswith("housing") else 0.0)
+        for at in places(node):
             x = scale.left + scale.per_m * at
-            yield from _arrow([(x, scale.middle - FORCE), (x, scale.middle)])
-            yield text(x + 6.0, scale.middle - 0.6 * FORCE, name, anchor="start")
+            yield from _arrow([(x, y - FORCE), (x, y)])
+            yield text(x + 6.0, y - 0.6 * FORCE, name, anchor="start")
 
 
 def _place(case: Case, number: int) -> float:

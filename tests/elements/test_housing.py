@@ -352,6 +352,19 @@ def test_forces_on_the_housing() -> None:
     np.testing.assert_allclose(moved, [0.0, 0.0, 10.0, 20.0])
 
 
+def test_the_sketch_has_forces_on_the_housing_at_it() -> None:
+    """Above the bar of the housing and within the drawing, also at the place of a bearing."""
+    push = {"force": [{"at": "housing", "force": ["1 N", "0 N"]}]}
+    both = {"force": [*push["force"], {"at": "housing_left", "force": ["1 N", "0 N"]}]}
+    for case, numbers in ((in_housing(RIGID).with_settings(push), 1),
+                          (case_from_dict(SHAFT | {"housing": mounted()} | both), 2)):  # fmt: skip
+        sketch = rotor_sketch(case)[0]
+        bar = min(float(y) for y in re.findall(r'<rect x="[\d.]+" y="([\d.]+)" [^>]*class="shell"', sketch))
+        found = [float(y) for y in re.findall(r'y="([\d.]+)"[^>]*>F\d<', sketch)]
+        assert len(found) == numbers
+        assert all(0.0 < y < bar for y in found)
+
+
 def test_plan_and_sketch_show_the_housing() -> None:
     for case, value, grounds in (
         (in_housing(RIGID), "40 kg on one mount", 4),
