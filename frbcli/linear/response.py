@@ -93,6 +93,11 @@ class Response(Tabular):
         return "unbalance response" if self.excitation == UNBALANCE else f"response to {self.excitation}"
 
     @property
+    def angle(self) -> str:
+        """What phases count from, in words."""
+        return f"angle of {'the rotor' if self.excitation == UNBALANCE else self.excitation}"
+
+    @property
     def bearings(self) -> tuple[str, ...]:
         """(f + e,) names of the films and of the elements."""
         return self.films + self.elements

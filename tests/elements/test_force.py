@@ -15,6 +15,7 @@ from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
+from frbcli.plot.machine.response import response_figure
 from frbcli.plot.spectra.waterfall import orders, run_spectra
 from frbcli.report.sketch import rotor_sketch
 from frbcli.rotor.loads import loads_at
@@ -70,6 +71,20 @@ def test_a_force_on_the_disk_bends_the_shaft_as_the_closed_form() -> None:
     named = dict(zip(found.points, found.motion[0, :, 0], strict=True))
     assert abs(named["disk"] - disk) < 1e-9 * abs(disk)
     assert abs(named["journal"] - disk * 5e6 / (5e6 + journal)) < 1e-9 * abs(disk)
+
+
+def test_phases_and_dots_of_a_response_to_one_load_count_from_its_angle() -> None:
+    """Also of one whose motion is the same at all speeds: a point in the polar diagram."""
+    case = machine(RIGID | {"unbalance": f"{U!r} kg*m"}, push(frequency="35 Hz", phase="30 deg"))
+    found, unbalanced = response(case, [20.0, 90.0], excitation="force 1"), response(case, [20.0, 90.0])
+    assert (found.angle, unbalanced.angle) == ("angle of force 1", "angle of the rotor")
+    panels = response_figure(found).axes
+    titles = [panel.get_title(loc="left") for panel in panels]
+    assert "orbits at 90 Hz; dots: force 1 at angle 0" in titles
+    polar = panels[titles.index("polar diagram; dots: highest speed")]
+    (x, y), forward = polar.lines[-1].get_data(), found.forward[-1, 0]
+    assert polar.lines[-1].get_marker() == "o"
+    np.testing.assert_allclose([x[0], y[0]], [1e6 * forward.real, 1e6 * forward.imag])
 
 
 @pytest.mark.parametrize(("order", "sense"), [(1.0, 1), (-1.0, -1), (2.5, 1), (-2.5, -1)])

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
     "um: larger semi-axis of the orbit; deg: phase of the forward motion to the\n"
-    "angle of the rotor; growth: of the least damped whirl in 1/s, which hides the\n"
+    "{angle}; growth: of the least damped whirl in 1/s, which hides the\n"
     "rest where it is above 0; eps: largest eccentricity of a journal on its orbit."
 )
 MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
@@ -133,7 +133,8 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
-    terminal.result(EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + ".")
+    explanation = EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + "."
+    terminal.result(explanation.format(angle=found.angle))
     for sentence in _excitation(found):
         terminal.sentence(sentence)
     for sentence in _doubts(found):
@@ -156,7 +157,7 @@ def _excitation(found: Response) -> list[str]:
 
     loads = {load.name: load for load in harmonics_of(found.case)}
     if found.excitation in loads:
-        return [f"Excited by {found.excitation} alone, {loads[found.excitation].turning}; deg counts from its angle."]
+        return [f"Excited by {found.excitation} alone, {loads[found.excitation].turning}."]
     others = ", ".join(name for name, load in loads.items() if not load.synchronous)
     return [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
 

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
-from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, Response, larger_semi_axis
+from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response, larger_semi_axis
 from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_below, legend_beside, new_figure, styled
 
 Array = NDArray[np.float64]
@@ -53,9 +53,11 @@ def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figur
         for panel in (amplitude, force):
             panel.set_ylim(bottom=0.0)
         polar.set_aspect("equal", adjustable="datalim")
-        polar.set_xlabel("forward motion along the mark, µm")
+        polar.set_xlabel(f"forward motion along the {'mark' if found.excitation == UNBALANCE else 'load'}, µm")
         polar.set_ylabel("across it, µm")
-        names = ("Bode diagram: amplitude", "Bode diagram: phase", "polar diagram", "bearing forces")
+        names = (
+            "Bode diagram: amplitude", "Bode diagram: phase", "polar diagram; dots: highest speed", "bearing forces"
+        )  # fmt: skip
         for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
             panel.set_title(name)
         for panel, speed in zip((first, second), _orbit_speeds(found), strict=False):
@@ -112,7 +114,7 @@ def _doubts(axes: Axes, found: Response, labelled: bool = False) -> None:
 
 def _orbits(axes: Axes, found: Response, speed: int) -> None:
     """The orbits of all points about their resting positions at a speed, by its number; a dot where each is while the
-    mark of the rotor points along x."""
+    mark of the rotor points along x, or the angle of the load that excites alone is 0."""
     for number in range(len(found.points)):
         colour, dash = _line_of(number)
         x, y = MICRO * found.orbit(speed, number).T
@@ -120,7 +122,8 @@ def _orbits(axes: Axes, found: Response, speed: int) -> None:
                   linestyle=GROWING if found.growth[speed] > 0.0 else dash)  # fmt: skip
         axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz; dots: mark along x")
+    dots = "mark along x" if found.excitation == UNBALANCE else f"{found.excitation} at angle 0"
+    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz; dots: {dots}")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
 
@@ -149,3 +152,4 @@ def _polar(axes: Axes, found: Response, number: int, colour: str, dash: object) 
     grows = found.growth > 0.0
     axes.plot(np.where(grows, np.nan, forward.real), forward.imag, color=colour, linestyle=dash)
     axes.plot(np.where(grows, forward.real, np.nan), forward.imag, color=colour, linestyle=GROWING)
+    axes.plot(forward.real[-1], forward.imag[-1], color=colour, marker="o", markersize=4.0)
