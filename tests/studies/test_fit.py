@@ -188,7 +188,7 @@ def test_what_cannot_be_fitted_is_refused_before_a_run(
         fit(frbcli.load_case("jeffcott"), make_run(Rotor()), keys, bounds)
 
 
-@pytest.mark.parametrize("name", ["jeffcott", "turbocharger-car-heat", "squeeze"])
+@pytest.mark.parametrize("name", ["jeffcott", "turbocharger-car-heat", "squeeze", "turbocharger-engine"])
 def test_numbers_that_are_not_of_the_machine_are_never_varied(name: str) -> None:
     """Numbers that tell how a run is made or computed, in every function that varies one of the machine."""
     case = frbcli.load_case(name, [] if name != "squeeze" else ["contact.stiffness=1e8 N/m"])

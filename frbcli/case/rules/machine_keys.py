@@ -7,8 +7,8 @@ import re
 from frbcli.errors import Fault
 
 TABLES = (
-    "rotor", "shaft", "disk", "bearing", "housing", "magnetic_pull", "thrust_bearing", "axial", "oil", "film",
-    "thermal", "contact",
+    "rotor", "shaft", "disk", "bearing", "housing", "force", "magnetic_pull", "base", "thrust_bearing", "axial", "oil",
+    "film", "thermal", "contact",
 )  # fmt: skip
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
 # course and the end of a run.
