@@ -24,7 +24,7 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.columns import film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
-from frbcli.linear.threshold import Threshold, find_threshold
+from frbcli.linear.threshold import Threshold, deciding, find_threshold
 from frbcli.linear.thrust.columns import AXIAL
 from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
 from frbcli.scene.gate.gate import require
@@ -96,19 +96,44 @@ def stability(
 
 
 def threshold_alone(case: Case) -> Stability:
-    """As `stability`, for who wants the threshold with its error, and of the points no errors, which take a fourth of
-    the time. Raises InputError."""
+    """As `stability`, for who wants the threshold with its error alone: the points have no errors, and if films are on
+    cells, most points are on the coarsest mesh. Raises InputError."""
     require(case, RANGE)
-    return _stability(case, default_speeds(case), with_error=False)
+    speeds = default_speeds(case)
+    check_machine(case, speeds)
+    machines = StaticMachines(case, memory=True)
+    sweep = _scouted(case, machines, speeds) or _sweep(case, machines, speeds, with_error=False)
+    return Stability(case, sweep, sweep, *find_threshold(case, machines, sweep))
+
+
+def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -> tuple[StabilityPoint, ...]:
+    """The points at speeds_Hz on the coarsest mesh, of which those that decide where the threshold lies are replaced by
+    those of `machines`.
+
+    () where this decides nothing: films are not on cells or keep oil, whose eigenvalues scatter from mesh to mesh,
+    there is no rest at some speed, or the meshes differ in whether a deciding point is stable.
+    """
+    if not machines.static.on_cells or machines.system.remembers:
+        return ()
+    points = list(_sweep(case, StaticMachines(case, coarse=True), speeds_Hz, with_error=False))
+    if not all(point.rests for point in points):
+        return ()
+    for number in deciding(points):
+        own, _ = _point(case, machines, points[number].speed_Hz, None, None, with_error=False)
+        if not own.rests or (own.growth > 0.0) != (points[number].growth > 0.0):
+            return ()
+        points[number] = own
+    return tuple(points)
 
 
 def _stability(
-    case: Case, asked: Sequence[float], observe: Callable[[int, int], None] | None = None, with_error: bool = True
+    case: Case, asked: Sequence[float], observe: Callable[[int, int], None] | None = None
 ) -> Stability:
     _check_speeds(case, asked)
     speeds = sorted(set(default_speeds(case)) | set(asked))
     check_machine(case, speeds)
-    machines, sweep = _sweep(case, speeds, observe, with_error=with_error)
+    machines = StaticMachines(case, memory=True)
+    sweep = _sweep(case, machines, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
     threshold, note = find_threshold(case, machines, sweep)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
@@ -127,8 +152,8 @@ def stability_points(
     speed is not positive, or a film cannot be linearised.
     """
     check_machine(case, speeds_Hz)
-    machines, points = _sweep(case, speeds_Hz, observe, frequency)
-    return machines.system, points
+    machines = StaticMachines(case, memory=True)
+    return machines.system, _sweep(case, machines, speeds_Hz, observe, frequency)
 
 
 def check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
@@ -140,14 +165,13 @@ def check_machine(case: Case, speeds_Hz: Sequence[float]) -> None:
 
 def _sweep(
     case: Case,
+    machines: StaticMachines,
     speeds_Hz: Sequence[float],
     observe: Callable[[int, int], None] | None = None,
     frequency: Callable[[float], float] | None = None,
     with_error: bool = True,
-) -> tuple[StaticMachines, tuple[StabilityPoint, ...]]:
-    """As stability_points, with the machines at further speeds. with_error: whether errors of the coefficients are
-    wanted."""
-    machines = StaticMachines(case, memory=True)
+) -> tuple[StabilityPoint, ...]:
+    """The points of stability_points. with_error: whether errors of the coefficients are wanted."""
     points: list[StabilityPoint] = []
     near: MachineAtRest | None = None
     ordered = sorted(speeds_Hz, reverse=True)  # from near the centre, where a fast journal rests, outwards
@@ -156,11 +180,11 @@ def _sweep(
         if not points and not point.rests and len(ordered) > TRIED:
             seek = partial(_point, case, machines, near=None, frequency=frequency, with_error=with_error)
             if tried := _none_rests(seek, point, ordered):
-                return machines, tried
+                return tried
         points.append(point)
         if observe is not None:
             observe(len(points), len(speeds_Hz))
-    return machines, tuple(reversed(points))
+    return tuple(reversed(points))
 
 
 def _none_rests(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -57,15 +56,24 @@ def find_threshold(
     slowest, fastest = resting[0], resting[-1]
     if len(resting) == 1:
         return None, _one_speed(slowest, len(sweep))
-    if slowest.growth > 0.0:
+    above = deciding(resting)[-1]
+    if resting[above].growth <= 0.0:
+        return None, f"{STABLE}: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+    if above == 0:
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
         beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
-    for place, (below, above) in enumerate(itertools.pairwise(resting)):
-        if above.growth > 0.0:
-            threshold, problem = _crossing(case, machines, below, above)
-            return threshold, problem + _stable_again(resting[place + 1 :])
-    return None, f"{STABLE}: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+    threshold, problem = _crossing(case, machines, resting[above - 1], resting[above])
+    return threshold, problem + _stable_again(resting[above:])
+
+
+def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
+    """Numbers of the points, with a resting position each, that decide where the threshold lies: the first one at which
+    a motion grows, after the one below it; where none grows, the one that is nearest to it."""
+    growing = next((number for number, point in enumerate(points) if point.growth > 0.0), None)
+    if growing is None:
+        return (int(np.argmax([point.growth for point in points])),)
+    return (growing - 1, growing) if growing > 0 else (growing,)
 
 
 def _one_speed(point: StabilityPoint, tried: int) -> str:

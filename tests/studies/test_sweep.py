@@ -18,7 +18,10 @@ import pytest
 
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
 from frbcli.cli.main import run as frb
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.stability import threshold_alone
+from frbcli.linear.stability_point import point_at_rest
+from frbcli.linear.threshold import find_threshold
 from frbcli.plot.studies.sweep import can_draw, sweep_figure
 from frbcli.studies.sweep import sweep as study
 from frbcli.studies.sweep.points import grid, product, read_list, split_values
@@ -165,6 +168,36 @@ def test_a_threshold_alone_is_that_of_the_stability_with_all_errors(case: Case) 
     assert growths[0] == growths[1]
     assert np.isnan(alone.points[0].films[0].error)
     assert whole.points[0].films[0].error > 0.0
+
+
+FEED_HOLES = 'bearing.supply={kind = "bores", count = 4, diameter = "2 mm", pressure = "1 bar"}'
+
+
+def test_a_threshold_on_cells_is_sought_on_few_and_found_on_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where a speed lies between the thresholds of both meshes, which then disagree about it."""
+    case = load_case("jeffcott", [FEED_HOLES])
+
+    def found(speeds: tuple[float, ...], coarse: bool) -> float:
+        machines = StaticMachines(case, coarse=coarse)
+        points = [point_at_rest(machines.at(2.0 * math.pi * speed, with_error=False), speed) for speed in speeds]
+        threshold, _ = find_threshold(case, machines, points)
+        assert threshold is not None
+        return threshold.speed_Hz
+
+    def on_all_cells(speeds: tuple[float, ...]) -> tuple[int, float]:
+        """(how many of the points, threshold)."""
+        monkeypatch.setattr("frbcli.linear.stability.default_speeds", lambda _: speeds)
+        alone = threshold_alone(case)
+        own = StaticMachines(case)
+        exact = [point_at_rest(own.at(2.0 * math.pi * speed, with_error=False), speed) for speed in speeds]
+        same = [abs(a.growth - b.growth) < 1e-6 * abs(b.growth) for a, b in zip(alone.sweep, exact, strict=True)]
+        assert alone.threshold is not None
+        return sum(same), alone.threshold.speed_Hz
+
+    few, whole = found((170.0, 190.0), True), found((170.0, 190.0), False)
+    assert abs(few - whole) > 1e-6 * whole
+    assert on_all_cells((150.0, 165.0, 190.0, 220.0)) == (2, pytest.approx(whole, rel=1e-8))
+    assert on_all_cells((165.0, 0.5 * (few + whole), 190.0)) == (3, pytest.approx(whole, rel=1e-8))
 
 
 def test_short_thresholds_start_no_processes(case: Case, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
