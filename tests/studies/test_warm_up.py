@@ -50,6 +50,15 @@ def test_kernels_are_compiled_once(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", RUN, str(tmp_path / "run.h5")], env=environment, check=True)
 
 
+def test_rough_surfaces_have_kernels_of_their_own() -> None:
+    """They are compiled beside those of the same machine with smooth ones."""
+    rough = ["contact.model=asperities", "contact.roughness=0.5 um", "contact.summit_radius=20 um",
+             "contact.summit_density=4e10 1/m^2"]  # fmt: skip
+    kinds = [{short.kind for short in short_analyses(frbcli.load_case("jeffcott", given))} for given in ([], rough)]
+    assert {kind[0] for kind in kinds[1]} == {"run", "bearing sheet"}
+    assert not kinds[0] & kinds[1]
+
+
 def test_a_fresh_kernel_is_counted() -> None:
     from numba import njit
 

@@ -52,7 +52,9 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     for analysis in found:
         decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
         chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
-        loaded = analysis not in KINEMATIC and (bool(element_parts(case).loads), machine_inputs(case) is not None)
+        loaded = analysis not in KINEMATIC and (
+            bool(element_parts(case).loads), machine_inputs(case) is not None, case.contact.rough
+        )  # fmt: skip
         kind = (analysis, *chosen, loaded, case.heat is not None, case.output.signals, case.film.bearing_model)
         on_cells = analysis in (BEARING, *KINEMATIC) or form_of(case).by_cells
         yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)
