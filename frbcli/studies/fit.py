@@ -312,6 +312,9 @@ def _numbers(case: Case, keys: Sequence[str], bounds: Mapping[str, tuple[float, 
 
 def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
     known = {value.key: value for value in listed(case)}
+    both = [known[place] for place in (f"{key}.0", f"{key}.1") if place in known]
+    if len(both) == 2 and both[0].value == both[1].value:  # one number of x and y
+        known[key] = both[0]
     if key in known and (fault := machine_fault(key, "--vary")):
         raise InputError(case.name, (fault,))
     if key not in known:

@@ -201,6 +201,19 @@ def test_one_quantity_is_that_of_both_directions_and_the_text_gives_the_case_aga
     assert load_case_text(one.source_text, name="on-support") == one
 
 
+def test_a_setting_reaches_one_direction() -> None:
+    """What is no value of the pair is refused with one that is."""
+    case = on_support(RIGID)
+    assert case.with_settings("bearing.support.stiffness.1=9e6 N/m").elements[0].support == on_support(
+        RIGID, stiffness=["4e6 N/m", "9e6 N/m"]
+    ).elements[0].support  # fmt: skip
+    crossed = case.with_settings({"bearing.stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m", "1e6 N/m"]]})
+    assert crossed.with_settings("bearing.stiffness.0.1=2e5 N/m").elements[0].stiffness[0] == (1e6, 2e5)  # type: ignore[union-attr]
+    for key in ("2", "x", "*.1", "0.1"):
+        with pytest.raises(InputError, match=r"is no value of bearing\.support\.stiffness, which has 2.*stiffness\.0,"):
+            case.with_settings(f"bearing.support.stiffness.{key}=1e6 N/m")
+
+
 def test_the_plan_and_the_sketch_show_supports() -> None:
     told = [each for each in make_plan(on_support(RIGID)).decisions if each.choice == "support"]
     assert len(told) == 1

@@ -28,7 +28,7 @@ modelled, and `frb schema > case.schema.json` writes a schema for editors.
   the top and count counter-clockwise; angles of a displacement count from the x-axis (see
   [conventions](conventions.md)).
 - `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case, and can be repeated.
-  `bearing.1.width` is a key of the second `[[bearing]]`.
+  `bearing.1.width` is a key of the second `[[bearing]]`, `bearing.support.stiffness.1` the second value of a list.
 - An unknown key is a fault. All faults of a file are reported together, each with its line and a remedy. Combinations
   that are not modelled are refused before anything is computed.
 

@@ -219,6 +219,20 @@ def test_a_number_without_effect_is_not_found(measurement: Run) -> None:
         fit(frbcli.load_case("jeffcott", BASE), measurement, ["oil.density"])
 
 
+@pytest.mark.parametrize(
+    ("key", "words"),
+    [("bearing.support.stiffness", "1 speeds in common"), ("bearing.support.damping", 'Did you mean "bearing.support'),
+     ("bearing.support.damping.1", "1 speeds in common"), ("force.0.force.1", "1 speeds in common")],
+)  # fmt: skip
+def test_a_quantity_of_both_directions_is_one_number(key: str, words: str) -> None:
+    """And each of two that differ is one, of supports and of forces; the measurement itself is of no use."""
+    support = {"mass": "1 kg", "stiffness": "1e7 N/m", "damping": ["10 N*s/m", "20 N*s/m"]}
+    push = {"at": "journal", "force": ["1 N", "2 N"], "order": 2.0}
+    case = frbcli.load_case("jeffcott", BASE).with_settings({"bearing.support": support, "force": [push]})
+    with pytest.raises(InputError, match=re.escape(words)):
+        fit(case, make_run(Rotor(speeds_Hz=(100.0, 100.0))), [key])
+
+
 def test_a_measurement_at_a_constant_speed_is_refused() -> None:
     with pytest.raises(InputError, match="1 speeds in common"):
         fit(frbcli.load_case("jeffcott"), make_run(Rotor(speeds_Hz=(100.0, 100.0))), ["bearing.clearance"])

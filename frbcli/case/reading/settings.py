@@ -20,7 +20,8 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
     """`data` with one `key.path=value` set, and the path that was set; `data` itself stays. Raises TomlFault.
 
     The value is TOML where it can be ("3", "true", "{ kind = 'none' }"), else text ("40 um"). An index, or a name,
-    leads into an array of tables: "bearing.0.width", "bearing.front.width"; "bearing.*.width" sets the key in all.
+    leads into an array of tables: "bearing.0.width", "bearing.front.width"; "bearing.*.width" sets the key in all. An
+    index at the end is a value of a list: "bearing.support.stiffness.1" that of y.
     Index 0, the name, or * of a single table are the table itself.
     """
     key, equals, value = setting.partition("=")
@@ -75,20 +76,43 @@ def _insert(table: dict[str, Any], parts: list[str], value: Any, above: Path) ->
     inner = table.get(head, {})
     if isinstance(inner, list):
         table[head] = inner = list(inner)
-        if rest[0] == ALL and len(rest) > 1 and inner:
-            for number, one in enumerate(inner):
-                inner[number] = dict(one)
-                _insert(inner[number], rest[1:], value, (*path, number))
-            return path
-        index = _index(inner, rest, path)
-        inner[index] = dict(inner[index])
-        return _insert(inner[index], rest[1:], value, (*path, index))
+        return _insert_among(inner, rest, value, path)
     if not isinstance(inner, dict):
         whole = ".".join(map(str, path))
         raise _refuse(f"{whole}.{'.'.join(rest)}", f"is set inside {whole}, which is not a table.", f"Set {whole}.")
     table[head] = inner = dict(inner)
     itself = rest[0] in ("0", ALL) or (rest[0] not in inner and rest[0] == inner.get("name"))
     return _insert(inner, rest[1:] if itself and len(rest) > 1 else rest, value, path)
+
+
+def _insert_among(items: list[Any], rest: list[str], value: Any, path: Path) -> Path:
+    """Set a value within a list: in one of its tables or in all, or one of its values, as of a pair [x, y]."""
+    if rest[0] == ALL and len(rest) > 1 and items and all(isinstance(one, dict) for one in items):
+        for number, one in enumerate(items):
+            items[number] = dict(one)
+            _insert(items[number], rest[1:], value, (*path, number))
+        return path
+    if any(not isinstance(one, dict) for one in items):
+        return _insert_value(items, rest, value, path)
+    index = _index(items, rest, path)
+    items[index] = dict(items[index])
+    return _insert(items[index], rest[1:], value, (*path, index))
+
+
+def _insert_value(items: list[Any], rest: list[str], value: Any, path: Path) -> Path:
+    """Set one of the values of a list, which may be lists, as the rows of a matrix."""
+    number = int(rest[0]) if _INDEX.fullmatch(rest[0]) else len(items)
+    deeper = number < len(items) and isinstance(items[number], list)
+    if number >= len(items) or deeper != (len(rest) > 1) or value is None:
+        whole = ".".join(map(str, path))
+        problem = f"is no value of {whole}, which has {len(items)}."
+        remedy = f"Count from 0, e.g. {whole}.0{'.0' if isinstance(items[0], list) else ''}, or set {whole}."
+        raise _refuse(f"{whole}.{'.'.join(rest)}", problem, remedy)
+    if deeper:
+        items[number] = list(items[number])
+        return _insert_value(items[number], rest[1:], value, (*path, number))
+    items[number] = value
+    return (*path, number)
 
 
 def _index(tables: list[Any], rest: list[str], path: Path) -> int:
