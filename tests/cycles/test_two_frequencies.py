@@ -138,6 +138,25 @@ def test_a_small_force_of_order_two_has_the_linear_response() -> None:
     np.testing.assert_allclose(point.harmonics[1], 0.0, atol=1e-4)
 
 
+def test_a_ground_that_moves_with_the_rotor_drives_as_the_inertia_of_all_masses() -> None:
+    """Of order 2: forces of mass times acceleration on the disk and on both journals."""
+    omega = 2.0 * math.pi * 80.0
+    base = 'base={acceleration=["2 m/s^2", "1 m/s^2"], order=2}'
+    plain = jeffcott(0.0, SHORT, base)
+    assert plain.rotor.kind == "jeffcott"
+    push = [
+        {"at": place, "force": [-2.0 * mass, -1.0 * mass], "order": 2.0}
+        for place, mass in (("disk", plain.rotor.mass), ("journal", 0.5 * plain.rotor.journal_mass))
+    ]
+    pushed = jeffcott(0.0, SHORT).with_settings({"force": push})
+    shaken, forced = (
+        sum(motion for order, motion in driven_motions(machine_of(case), omega) if order == 2)
+        for case in (plain, pushed)
+    )
+    assert np.abs(shaken).max() > 0.0
+    np.testing.assert_allclose(shaken, forced, rtol=1e-9)
+
+
 def test_a_whirl_beside_a_force_of_order_two_has_its_line(short: tuple[Machine, CyclePoint]) -> None:
     _, point = short
     push = 'force=[{at="disk", force=["100 N", "0 N"], order=2}]'
