@@ -14,6 +14,7 @@ from pathlib import Path
 
 import frbcli
 from frbcli.cli.main import COMMANDS
+from frbcli.plot.picture import PICTURES
 
 PACKAGE = Path(frbcli.__file__).parent
 
@@ -114,7 +115,10 @@ def roots() -> list[Name]:
     named = [(module, attribute or name) for (module, _, attribute), name in zip(public, frbcli._PUBLIC, strict=True)]
     places = (place.partition(":") for place, *_ in COMMANDS.values())
     commands = [(module, attribute or "command") for module, _, attribute in places]
-    return [("frbcli.cli.process", "main"), ("frbcli", "__getattr__"), ("frbcli", "__dir__"), *named, *commands]
+    drawn = (place.partition(":") for place in PICTURES.values())
+    pictures = [(f"frbcli.plot.{module}", name) for module, _, name in drawn]
+    start = [("frbcli.cli.process", "main"), ("frbcli", "__getattr__"), ("frbcli", "__dir__")]
+    return [*start, *named, *commands, *pictures]
 
 
 def test_commands_and_public_names_reach_all_that_is_there() -> None:

@@ -7,6 +7,7 @@ import re
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeVar
 
@@ -20,8 +21,7 @@ from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
 
 if TYPE_CHECKING:
-    import pandas as pd
-
+    from frbcli.html import Tabular
     from frbcli.plot.style import Picture
     from frbcli.results.files.kinds import Kind
 
@@ -38,17 +38,25 @@ class Outputs:
     csv: Path | None
 
     def write(
-        self, terminal: Terminal, table: Callable[[], pd.DataFrame], picture: Callable[[], Picture],
-        what: str = "picture",
-    ) -> dict[str, Path | None]:  # fmt: skip
-        """Write both, and return their paths as parts of a JSON document; what: the name of the picture in the text."""
+        self, terminal: Terminal, found: Tabular, what: str = "picture", picture: Callable[[], Picture] | None = None
+    ) -> dict[str, Path | None]:
+        """Write those of a result, and return their paths as parts of a JSON document. what: the name of the picture in
+        the text; picture: in place of that of the result."""
         if self.csv is not None:
             from frbcli.results.files.tables import write_table
 
-            write_table(table(), self.csv)
+            write_table(found.to_pandas(), self.csv)
             terminal.result(f"table: {self.csv}")
-        drawn = None if self.picture is None else draw(terminal, picture, self.picture, what)
-        return {"picture": drawn, "csv": self.csv}
+        if self.picture is None:
+            return {"picture": None, "csv": self.csv}
+        return {"picture": draw(terminal, picture or partial(picture_of, found), self.picture, what), "csv": self.csv}
+
+
+def picture_of(result: object) -> Picture:
+    """The picture of a result. Raises InputError where there is none. What draws is imported here."""
+    from frbcli.plot.picture import picture
+
+    return picture(result)
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from frbcli.cycles.method.balance import left_out, packed
+from frbcli.cycles.method.balance import left_out
 from frbcli.cycles.method.continuation import (
     Place,
     Strides,
@@ -21,7 +21,6 @@ from frbcli.cycles.method.continuation import (
 )
 from frbcli.cycles.method.cycle import (
     ASKED,
-    FIRST_HARMONICS,
     FLIP,
     FOLD,
     TORUS,
@@ -29,6 +28,7 @@ from frbcli.cycles.method.cycle import (
     amplitude,
     largest,
     passed_rest,
+    place_at_rest,
     resized_like,
 )
 from frbcli.cycles.method.equilibria import HopfPoint
@@ -107,13 +107,8 @@ def follow_branch(
 def first_place(machine: Machine, hopf: HopfPoint, last: float | None = None) -> Place:
     """The Hopf point as a cycle of no size, with the tangent along its mode. last: the last unknown, its speed over
     the pace if not given."""
-    motion = np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex)
-    along = np.zeros_like(motion)
-    motion[0], along[1] = hopf.equilibrium.u, hopf.mode
     over = hopf.equilibrium.omega / machine.pace if last is None else last
-    y = np.concatenate([packed(motion), [hopf.nu / machine.pace, over]])
-    tangent = np.concatenate([packed(along), [0.0, 0.0]])
-    return Place(y, tangent / np.linalg.norm(tangent))
+    return place_at_rest(hopf.equilibrium.u, hopf.mode, hopf.nu / machine.pace, over)
 
 
 def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:

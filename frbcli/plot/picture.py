@@ -1,73 +1,29 @@
-"""The picture of any result, which a notebook shows."""
+"""The picture of any result, which its command writes and a notebook shows."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any
+from importlib import import_module
 
-from frbcli.bearing_tests.kinematic import KinematicTest
-from frbcli.cycles.maps.stability_map import StabilityMap
-from frbcli.cycles.result import LimitCycles
 from frbcli.errors import Fault, InputError
-from frbcli.linear.bearing_sheet import BearingSheet
-from frbcli.linear.critical_map import CriticalMap
-from frbcli.linear.damped_modes import DampedModes
-from frbcli.linear.modes import Modes
-from frbcli.linear.response import Response
-from frbcli.linear.stability import Stability
-from frbcli.linear.thrust.sheet import ThrustSheet
-from frbcli.plot.machine.bearing import bearing_figure
-from frbcli.plot.machine.campbell import campbell_figure
-from frbcli.plot.machine.critical_map import critical_map_figure
-from frbcli.plot.machine.film import film_figure
-from frbcli.plot.machine.history import history_figure
-from frbcli.plot.machine.limit_cycles import limit_cycles_figure
-from frbcli.plot.machine.modes import modes_figure
-from frbcli.plot.machine.response import response_figure
-from frbcli.plot.machine.shapes import shapes_figure
-from frbcli.plot.machine.stability_map import stability_map_figure
-from frbcli.plot.run.summary import summary_figure
-from frbcli.plot.spectra.ridges import against_figure, fit_figure
-from frbcli.plot.studies.accuracy import accuracy_figure
-from frbcli.plot.studies.compare import comparison_figure
-from frbcli.plot.studies.sweep import can_draw, sweep_figure
 from frbcli.plot.style import Picture
-from frbcli.plot.thrust import thrust_figure
-from frbcli.results.store import Run
-from frbcli.studies.against import AgainstMeasured
-from frbcli.studies.compare import Comparison
-from frbcli.studies.fit import Fit
-from frbcli.studies.ladder import AccuracyLadder
-from frbcli.studies.sweep.sweep import Sweep
 
-
-def _kinematic(found: KinematicTest) -> Picture:
-    return film_figure(found) if found.test == "rotation" else history_figure(found)
-
-
-def _sweep(found: Sweep) -> Picture:
-    if not can_draw(found):
-        raise _refuse("Sweep", "needs one or two keys with several values, and a whirl.", "See its to_pandas().")
-    return sweep_figure(found)
-
-
-PICTURES: dict[type, Callable[[Any], Picture]] = {
-    AccuracyLadder: accuracy_figure,
-    AgainstMeasured: against_figure,
-    BearingSheet: bearing_figure,
-    ThrustSheet: thrust_figure,
-    Comparison: comparison_figure,
-    CriticalMap: critical_map_figure,
-    DampedModes: shapes_figure,
-    Fit: fit_figure,
-    KinematicTest: _kinematic,
-    LimitCycles: limit_cycles_figure,
-    Modes: modes_figure,
-    Response: response_figure,
-    Run: summary_figure,
-    Stability: campbell_figure,
-    StabilityMap: stability_map_figure,
-    Sweep: _sweep,
+PICTURES = {  # class of a result: module in this room, and its function
+    "AccuracyLadder": "studies.accuracy:accuracy_figure",
+    "AgainstMeasured": "spectra.ridges:against_figure",
+    "BearingSheet": "machine.bearing:bearing_figure",
+    "Comparison": "studies.compare:comparison_figure",
+    "CriticalMap": "machine.critical_map:critical_map_figure",
+    "DampedModes": "machine.shapes:shapes_figure",
+    "Fit": "spectra.ridges:fit_figure",
+    "KinematicTest": "machine.history:kinematic_figure",
+    "LimitCycles": "machine.limit_cycles:limit_cycles_figure",
+    "Modes": "machine.modes:modes_figure",
+    "Response": "machine.response:response_figure",
+    "Run": "run.summary:summary_figure",
+    "Stability": "machine.campbell:campbell_figure",
+    "StabilityMap": "machine.stability_map:stability_map_figure",
+    "Sweep": "studies.sweep:sweep_figure",
+    "ThrustSheet": "thrust:thrust_figure",
 }
 
 
@@ -99,12 +55,11 @@ def picture(result: object) -> Picture:
     >>> len(figure.axes)
     2
     """
-    draw = next((draw for kind, draw in PICTURES.items() if isinstance(result, kind)), None)
-    if draw is None:
-        known = ", ".join(sorted(kind.__name__ for kind in PICTURES))
-        raise _refuse(type(result).__name__, "has no picture.", f"There are pictures of: {known}.")
-    return draw(result)
-
-
-def _refuse(kind: str, problem: str, remedy: str) -> InputError:
-    return InputError("picture", (Fault(kind, "", None, problem, remedy),))
+    kinds = (kind.__name__ for kind in type(result).__mro__ if kind.__module__.startswith("frbcli."))
+    place = next((PICTURES[kind] for kind in kinds if kind in PICTURES), None)
+    if place is None:
+        problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
+        raise InputError("picture", (Fault(type(result).__name__, "", None, problem, remedy),))
+    module, _, name = place.partition(":")
+    found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
+    return found

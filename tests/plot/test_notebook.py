@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import inspect
+from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
 
@@ -44,6 +46,14 @@ def test_what_has_no_picture_says_what_has(case: frbcli.Case) -> None:
     with pytest.raises(frbcli.InputError, match=r"Case: has no picture. There are pictures of: AccuracyLadder"):
         picture(case)
     assert len(PICTURES) == 16
+
+
+@pytest.mark.parametrize("kind", PICTURES)
+def test_a_picture_is_of_the_result_that_its_function_takes(kind: str) -> None:
+    module, _, name = PICTURES[kind].partition(":")
+    draw = getattr(import_module(f"frbcli.plot.{module}"), name)
+    taken = next(iter(inspect.signature(draw).parameters.values())).annotation
+    assert taken == kind
 
 
 def test_types_are_told() -> None:

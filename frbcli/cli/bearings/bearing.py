@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.bearing_sheet import BearingSheet
     from frbcli.linear.film_state import FilmState
-    from frbcli.plot.style import Picture
 
 FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
 EXPLANATION = (
@@ -78,17 +77,11 @@ def command(
             "oil_density_kg_m3": case.oil.density,
             "oil_heat_capacity_J_kg_K": heat_capacity(case),
             "points": found.table().documents(),
-            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
+            **places.write(terminal, found),
             "ross": list(elements.values()) or None,
         }
     )
     return None if any(not point.problem for point in found.points) else NotConverged.exit_code
-
-
-def _figure(found: BearingSheet) -> Picture:
-    from frbcli.plot.machine.bearing import bearing_figure
-
-    return bearing_figure(found)
 
 
 def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ross: Path | None) -> None:

@@ -20,7 +20,6 @@ from frbcli.errors import INTERRUPTED, NotConverged
 if TYPE_CHECKING:
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
-    from frbcli.plot.style import Picture
 
 LARGEST = "Values are those of the moment of the largest force."
 
@@ -63,7 +62,7 @@ def run_test(
     terminal.emit({**head, **whole, "results": [_document(found, result) for result in found.results]})
     if not _can_draw(found, terminal):
         outputs = replace(outputs, picture=None)
-    outputs.write(terminal, found.to_pandas, lambda: _figure(found))
+    outputs.write(terminal, found)
     if not found.complete:
         return INTERRUPTED
     return NotConverged.exit_code if any(result.status != "ok" for result in found.results) else None
@@ -76,13 +75,6 @@ def _can_draw(found: KinematicTest, terminal: Terminal) -> bool:
         terminal.remark("No picture: a bearing model has no pressure.")
         return False
     return True
-
-
-def _figure(found: KinematicTest) -> Picture:
-    from frbcli.plot.machine.film import film_figure
-    from frbcli.plot.machine.history import history_figure
-
-    return film_figure(found) if found.test == "rotation" else history_figure(found)
 
 
 def _report(found: KinematicTest, terminal: Terminal) -> None:

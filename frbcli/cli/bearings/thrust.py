@@ -15,7 +15,6 @@ from frbcli.cli.progress import display
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.thrust.sheet import ThrustSheet
-    from frbcli.plot.style import Picture
 
 
 @click.command()
@@ -47,15 +46,9 @@ def command(
             "command": "thrust",
             "case": case.name,
             "points": found.table().documents(),
-            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
+            **places.write(terminal, found),
         }
     )
-
-
-def _figure(found: ThrustSheet) -> Picture:
-    from frbcli.plot.thrust import thrust_figure
-
-    return thrust_figure(found)
 
 
 def _tell(terminal: Terminal, found: ThrustSheet) -> None:

@@ -103,7 +103,7 @@ def command(
         else:
             found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
     _tell(terminal, found)
-    terminal.emit(_document(found) | places.write(terminal, found.to_pandas, lambda: _figure(found, tracks)))
+    terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
 
 
 def _figure(found: LimitCycles, tracks: list[RunTrack]) -> Picture:
@@ -136,14 +136,8 @@ def _map(
         found = stability_map(case, *second, shown.counting(), across)
     _tell_map(terminal, found)
     names = tuple(place.name for place in film_places(case))
-    written = places.write(terminal, found.to_pandas, lambda: _map_figure(found))
+    written = places.write(terminal, found)
     terminal.emit(_map_document(names, found) | written)
-
-
-def _map_figure(found: StabilityMap) -> Picture:
-    from frbcli.plot.machine.stability_map import stability_map_figure
-
-    return stability_map_figure(found)
 
 
 def _tell_map(terminal: Terminal, found: StabilityMap) -> None:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from frbcli.cli.machines.stability_table import tell_largest_error
+from frbcli.cli.outputs import picture_of
 from frbcli.cli.progress import computing
 from frbcli.columns import document, documents, table_of
 
@@ -15,9 +17,8 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
     from frbcli.cli.outputs import Outputs
-    from frbcli.linear.damped_modes import DampedMode, DampedModes
+    from frbcli.linear.damped_modes import DampedMode
     from frbcli.linear.modes import Mode, Modes
-    from frbcli.plot.style import Picture
 
 LONGEST_TABLE = 13  # rows of the text
 TOLD = 3  # slowest modes of each direction
@@ -31,7 +32,7 @@ def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequenc
     for modes in found:
         tell_modes(terminal, modes)
     drawn = natural_modes(case, stiffness) if speeds else found[1]
-    written = places.write(terminal, found[1].to_pandas, lambda: _modes_figure(drawn), "Natural modes")
+    written = places.write(terminal, found[1], "Natural modes", partial(picture_of, drawn))
     terminal.emit(
         {
             "command": "stability",
@@ -42,18 +43,6 @@ def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequenc
             **written,
         }
     )
-
-
-def _modes_figure(modes: Modes) -> Picture:
-    from frbcli.plot.machine.modes import modes_figure
-
-    return modes_figure(modes)
-
-
-def _shapes_figure(found: DampedModes) -> Picture:
-    from frbcli.plot.machine.shapes import shapes_figure
-
-    return shapes_figure(found)
 
 
 def tell_modes(terminal: Terminal, modes: Modes) -> None:
@@ -122,7 +111,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
             "speed_Hz": speed_Hz,
             "error": {"coefficients_relative": found.coefficient_error},
             "modes": [mode | {"motion": motion} for mode, motion in zip(modes, motions, strict=True)],
-            **places.write(terminal, found.to_pandas, lambda: _shapes_figure(found), "mode shapes"),
+            **places.write(terminal, found, "mode shapes"),
         }
     )
 

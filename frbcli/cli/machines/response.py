@@ -12,7 +12,7 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
 from frbcli.cli.machines.stability_table import tell_coefficient_error
 from frbcli.cli.options import speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
 
@@ -81,7 +81,7 @@ def command(
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "error": {"critical_speeds_Hz": found.critical_speed_errors_Hz},
-            **places.write(terminal, found.to_pandas, lambda: _figure(found, tracks, as_map)),
+            **places.write(terminal, found, picture=lambda: _figure(found, tracks, as_map)),
         }
     )
 
@@ -89,11 +89,10 @@ def command(
 def _figure(found: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
     """The critical speed map, or the response with the synchronous motion of a run."""
     from frbcli.linear.critical_map import critical_map
-    from frbcli.plot.machine.critical_map import critical_map_figure
     from frbcli.plot.machine.response import response_figure
 
     if as_map:
-        return critical_map_figure(critical_map(found.case, None, found.resting))
+        return picture_of(critical_map(found.case, None, found.resting))
     return response_figure(found, tracks)
 
 

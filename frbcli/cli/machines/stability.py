@@ -22,7 +22,6 @@ if TYPE_CHECKING:
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.linear.threshold import Threshold
-    from frbcli.plot.style import Picture
 
 
 @click.command()
@@ -65,7 +64,7 @@ def command(
         found = stability(case, speeds or None, shown.counting())
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
     _tell(terminal, found, kind, bool(speeds))
-    written = places.write(terminal, found.to_pandas, lambda: _figure(found), "Campbell diagram")
+    written = places.write(terminal, found, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
         tell_modes(terminal, modes)
@@ -87,12 +86,6 @@ def command(
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
     )
     return None if any(point.rests for point in found.points) else NotConverged.exit_code
-
-
-def _figure(found: Stability) -> Picture:
-    from frbcli.plot.machine.campbell import campbell_figure
-
-    return campbell_figure(found)
 
 
 def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:

@@ -17,7 +17,6 @@ from frbcli.errors import INTERRUPTED
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.plot.style import Picture
     from frbcli.studies.ladder import AccuracyLadder, RungResult
 
 
@@ -47,14 +46,8 @@ def command(
     terminal.emit(_document(found))
     if not found.ladder:
         places = replace(places, picture=None)
-    places.write(terminal, found.to_pandas, lambda: _figure(found))
+    places.write(terminal, found)
     return 0 if found.complete else INTERRUPTED
-
-
-def _figure(found: AccuracyLadder) -> Picture:
-    from frbcli.plot.studies.accuracy import accuracy_figure
-
-    return accuracy_figure(found)
 
 
 def _document(found: AccuracyLadder) -> dict[str, Any]:

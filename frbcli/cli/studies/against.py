@@ -13,7 +13,6 @@ from frbcli.columns import documents, table_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
-    from frbcli.plot.style import Picture
     from frbcli.studies.against import AgainstMeasured
 
 KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
@@ -37,15 +36,9 @@ def beside_measured(
             "measured": file,
             "events": {"computed": found.computed_events, "measured": found.measured_events},
             "deviations": documents(DEVIATIONS, found.deviations()),
-            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
+            **places.write(terminal, found),
         }
     )
-
-
-def _figure(found: AgainstMeasured) -> Picture:
-    from frbcli.plot.spectra.ridges import against_figure
-
-    return against_figure(found)
 
 
 def _tell(terminal: Terminal, found: AgainstMeasured) -> None:

@@ -29,7 +29,6 @@ from frbcli.errors import Fault, InputError
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
-    from frbcli.plot.style import Picture
     from frbcli.studies.compare import Comparison
 
 
@@ -104,14 +103,8 @@ def command(
     terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
     if not all(len(result.run) > 1 for result in found.results):
         places = replace(places, picture=None)
-    places.write(terminal, found.to_pandas, lambda: _figure(found))
+    places.write(terminal, found)
     return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
-
-
-def _figure(found: Comparison) -> Picture:
-    from frbcli.plot.studies.compare import comparison_figure
-
-    return comparison_figure(found)
 
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:

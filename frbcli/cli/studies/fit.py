@@ -18,7 +18,6 @@ from frbcli.cli.studies.measured import measured_options, run_of
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
-    from frbcli.plot.style import Picture
     from frbcli.studies.fit import Fit
 
 EXPLANATION = (
@@ -80,15 +79,9 @@ def command(
             "chi": found.chi,
             "runs": found.runs,
             "case_file": save,
-            **places.write(terminal, found.to_pandas, lambda: _figure(found)),
+            **places.write(terminal, found),
         }
     )
-
-
-def _figure(found: Fit) -> Picture:
-    from frbcli.plot.spectra.ridges import fit_figure
-
-    return fit_figure(found)
 
 
 def _tell(terminal: Terminal, found: Fit) -> None:

@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.branch import STRIDES
-from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
-from frbcli.cycles.method.cycle import FIRST_HARMONICS, largest, resized_like
+from frbcli.cycles.method.cycle import largest, place_at_rest, resized_like
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.follower import Follower, at_speed
 from frbcli.cycles.parts.linearised import StateSpace, state_space
@@ -71,11 +70,7 @@ def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:
             return None
         ends[_critical(machine, space, found.y, resting.omega)[0].real < 0.0] = found.y
     value, mode = _critical(machine, space, ends[0], resting.omega)
-    motion, tangent = (np.zeros((FIRST_HARMONICS + 1, machine.size), dtype=complex) for _ in range(2))
-    motion[0], tangent[1] = ends[0][:-1], mode
-    y = np.concatenate([packed(motion), [value.imag / machine.pace, ends[0][-1]]])
-    direction = np.concatenate([packed(tangent), [0.0, 0.0]])
-    return Place(y, direction / np.linalg.norm(direction))
+    return place_at_rest(ends[0][:-1], mode, value.imag / machine.pace, float(ends[0][-1]))
 
 
 def _equations(machine: Machine, omega: float) -> Callable[[Array], tuple[Array, Array]]:

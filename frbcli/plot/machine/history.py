@@ -5,10 +5,15 @@ from __future__ import annotations
 from matplotlib.figure import Figure
 
 from frbcli.bearing_tests.kinematic import KinematicTest
-from frbcli.plot.machine.film import BAR, LINES
+from frbcli.plot.machine.film import BAR, LINES, film_figure
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 
 HEIGHT = 5.4
+
+
+def kinematic_figure(found: KinematicTest) -> Figure:
+    """The films of a rotation, the history of a squeeze or a whirl."""
+    return film_figure(found) if found.test == "rotation" else history_figure(found)
 
 
 def history_figure(found: KinematicTest) -> Figure:

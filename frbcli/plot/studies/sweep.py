@@ -10,6 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from frbcli.errors import Fault, InputError
 from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, name_of_key, new_figure, styled
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
@@ -48,10 +49,11 @@ def can_draw(sweep: Sweep) -> bool:
 def sweep_figure(sweep: Sweep) -> Figure:
     """Onset of the whirl, or threshold of stability, in Hz, over the one or two keys that change.
 
-    Points without one are marked. Raises ValueError for what `can_draw` refuses.
+    Points without one are marked. Raises InputError for what `can_draw` refuses.
     """
     if not can_draw(sweep):
-        raise ValueError("one or two keys with several values and a whirl are needed")
+        problem, remedy = "needs one or two keys with several values, and a whirl.", "See its to_pandas()."
+        raise InputError("picture", (Fault("Sweep", "", None, problem, remedy),))
     scales = _scales(sweep)
     with styled():
         subtitle = f"{KINDS[sweep.method][1]}, {len(sweep.points)} points"
