@@ -63,11 +63,13 @@ class Bubbly(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        """See Law.scaled."""
         pressure = oil.cavitation if given.saturation_pressure is None else given.saturation_pressure
         return cls(given.bunsen, given.entrained, pressure / oil.scale, given.release_time, given.absorption_time)
 
     @classmethod
     def legend(cls, given: Any) -> str:
+        """See Law.legend."""
         return f"bubbly, $\\alpha_B$ = {given.bunsen:g}, in equilibrium"
 
     def cells(self, w: Array, scales: Scales) -> CellState:

@@ -33,14 +33,17 @@ class Elrod(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        """See Law.scaled."""
         return cls() if given.bulk_modulus is None else cls(given.bulk_modulus / oil.scale)
 
     @classmethod
     def legend(cls, given: Any) -> str:
+        """See Law.legend."""
         modulus = given.bulk_modulus
         return f"Elrod, {'incompressible' if modulus is None else f'bulk modulus {modulus / BAR:.4g} bar'}"
 
     def cells(self, w: Array, scales: Scales) -> CellState:
+        """w = (p - p_cav) / reference in a full cell, whose theta is (3.35), and theta - 1 in others."""
         full = w > 0.0
         above = np.where(full, w, 0.0) * scales.reference
         packed = above / self.bulk_modulus  # ln(theta), (3.35); beyond 1 the law goes on linearly, for Newton's method
@@ -58,6 +61,7 @@ class Elrod(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """See Law.cell."""
         if w > 0.0:
             packed = w * scales.reference / parameters[0]
             held = math.exp(min(packed, 1.0))

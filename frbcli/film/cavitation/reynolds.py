@@ -26,6 +26,7 @@ class Reynolds(Law):
     cost = 1.0
 
     def cells(self, w: Array, scales: Scales) -> CellState:
+        """w = (p - p_cav) / reference in a full cell; minus the source over the reference in others."""
         full = w > 0.0
         zero = np.zeros_like(w)
         return CellState(
@@ -39,6 +40,7 @@ class Reynolds(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """See Law.cell."""
         if w > 0.0:
             return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
         return scales.cavitation, 1.0, -w * scales.reference, 0.0, 0.0, -scales.reference

@@ -22,11 +22,13 @@ class Sommerfeld(Law):
     cost = 1.0
 
     def cells(self, w: Array, scales: Scales) -> CellState:
+        """w = (p - p_cav) / reference."""
         zero, one = np.zeros_like(w), np.ones_like(w)
         return CellState(scales.cavitation + w * scales.reference, one, zero, one * scales.reference, zero, zero)
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
+        """See Law.cell."""
         return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
 
 

@@ -57,14 +57,17 @@ class TwoPhase(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
+        """See Law.scaled."""
         return cls(given.steepness, whirl_steepness=given.whirl_steepness or STAYS)
 
     @classmethod
     def legend(cls, given: Any) -> str:
+        """See Law.legend."""
         return f"two-phase, $x_1$ = {given.steepness:g}"
 
     @staticmethod
     def follow(parameters: Numbers, eccentricity: float, speed: float, whirl: float) -> Numbers:
+        """See Law.follow: x_1 by the share of whirl."""
         steepness, outer_slope, whirling = parameters
         if whirling != STAYS:
             steepness += (whirling - steepness) * whirl

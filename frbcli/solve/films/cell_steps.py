@@ -20,6 +20,8 @@ from frbcli.film.state import NOW, OIL, PASSED, RATE, W_BEFORE, W
 from frbcli.solve.films.grid import GRID
 from frbcli.solve.stage.equations import lagrange
 
+NineArrays = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
+
 
 class Work(NamedTuple):
     """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
@@ -45,6 +47,22 @@ class Work(NamedTuple):
     cross: Array
 
 
+def cell_arrays(wet: Array, sides: int, stages: int) -> NineArrays:
+    """The first nine of Work, from states to stage_flows. sides: of the right-hand sides of the balances."""
+    _, count, m, k = wet.shape
+    return (
+        np.zeros((count, STATES, m, k)),
+        np.zeros((ENTRIES, m, k)),
+        np.zeros((m, k, k)),
+        np.zeros((count, m, k, k + sides)),
+        np.zeros((count, m, k)),
+        np.zeros((count, m, k)),
+        np.zeros((count, m, k)),
+        np.zeros((stages, count, m, k)),
+        np.zeros((stages, count, FLOWS)),
+    )
+
+
 def make_cell_work(films: VolumeFilms, wet: Array, stages: int) -> Work:
     """Scratch for films on cells and their state wet (WET, F, m, k)."""
     _, count, m, k = wet.shape
@@ -52,15 +70,7 @@ def make_cell_work(films: VolumeFilms, wet: Array, stages: int) -> Work:
     slots = 1 + int(films.feed_holes["slot"].max()) if feed_holes else 0
     coupled = count if feed_holes else 0
     return Work(
-        np.zeros((count, STATES, m, k)),
-        np.zeros((ENTRIES, m, k)),
-        np.zeros((m, k, k)),
-        np.zeros((count, m, k, k + SIDES + slots)),
-        np.zeros((count, m, k)),
-        np.zeros((count, m, k)),
-        np.zeros((count, m, k)),
-        np.zeros((stages, count, m, k)),
-        np.zeros((stages, count, FLOWS)),
+        *cell_arrays(wet, SIDES + slots, stages),
         np.zeros(count, GRID),
         np.zeros((count, 4)),
         np.zeros((coupled, m, k)),

@@ -14,24 +14,22 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY
-from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
+from frbcli.film.cells.balance.balances import ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.newton_step import damp, imbalance
 from frbcli.film.cells.balance.states import (
     FRACTION,
     FRACTION_SLOPE,
     PRESSURE_SLOPE,
-    STATES,
     cell_states,
     follow_law,
     hold,
 )
 from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.elimination.ring_solver import solve_ring_at
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
 from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, gap_at_ends, land_balances
 from frbcli.film.cells.tilted.loads import land_loads
-from frbcli.solve.films.cell_steps import oil_fraction
+from frbcli.solve.films.cell_steps import cell_arrays, oil_fraction
 from frbcli.solve.films.cells import (
     AHEAD,
     CELL_SHARE,
@@ -89,15 +87,7 @@ def make_tilted_work(films: TiltedVolumes, wet: Array, stages: int) -> TiltedWor
     grids: Records = np.zeros(ENDS * count, GRID)
     grids["balance"] = SOLVED  # also of those that no land has
     return TiltedWork(
-        np.zeros((lands, STATES, m, k)),
-        np.zeros((ENTRIES, m, k)),
-        np.zeros((m, k, k)),
-        np.zeros((lands, m, k, k + ALL_SIDES)),
-        np.zeros((lands, m, k)),
-        np.zeros((lands, m, k)),
-        np.zeros((lands, m, k)),
-        np.zeros((stages, lands, m, k)),
-        np.zeros((stages, lands, FLOWS)),
+        *cell_arrays(wet, ALL_SIDES, stages),
         grids,
         np.zeros((4 * count, 4 * count)),
         np.zeros((count, 4)),

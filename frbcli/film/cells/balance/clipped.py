@@ -29,6 +29,20 @@ def rise(p: float, n: float, s: float) -> tuple[float, float, float, float, floa
     )  # fmt: skip
 
 
+@compiled(inline=True)
+def shared(p: float, q: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
+    """Shares that count in the cells of p and of q, one of which at least is positive, and their derivatives by p, q
+    and S."""
+    a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
+    if q <= 0.0:
+        to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = rise(p, q, s)
+    elif p <= 0.0:
+        to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = rise(q, p, s)
+    else:
+        to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
+    return to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s
+
+
 @compiled()
 def _above(
     cavity: float, states: Array, fields: Array, i: int, j: int, one: int, other: int
@@ -60,13 +74,7 @@ def clipped_push(
             f_y += ring[PUSH_Y, i] * at * cavity
             if p > 0.0 or q > 0.0:
                 s = b + z - p - q
-                a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
-                if q <= 0.0:
-                    to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = rise(p, q, s)
-                elif p <= 0.0:
-                    to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = rise(q, p, s)
-                else:
-                    to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
+                to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = shared(p, q, s)
                 at_x, at_y = at * ring[PUSH_X, i], at * ring[PUSH_Y, i]
                 behind_x, behind_y = behind * ring[PUSH_X, n], behind * ring[PUSH_Y, n]
                 f_x += at_x * to_p + behind_x * to_q

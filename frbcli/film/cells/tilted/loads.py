@@ -9,8 +9,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balance.clipped import rise
-from frbcli.film.cells.balance.plain_clipped import CURVED
+from frbcli.film.cells.balance.clipped import shared
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.data import BETWEEN_MIDDLES, LOAD, NO_CLIP, PUSH_X, PUSH_Y
 from frbcli.film.cells.tilted.data import MIDDLES
@@ -51,13 +50,7 @@ def _pressed_between(film: np.record, ring: Array, cells: Array, states: Array, 
             if p <= 0.0 and q <= 0.0:
                 continue
             s = push[3, before, j] + push[3, after, j] - p - q
-            a_p, a_q, a_s, c_p, c_q, c_s = 0.5, 0.0, -0.5 * CURVED, 0.0, 0.5, -0.5 * CURVED
-            if q <= 0.0:
-                to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = rise(p, q, s)
-            elif p <= 0.0:
-                to_q, to_p, c_q, c_p, c_s, a_q, a_p, a_s = rise(q, p, s)
-            else:
-                to_p, to_q = a_p * p + a_s * s, c_q * q + c_s * s
+            to_p, to_q, a_p, a_q, a_s, c_p, c_q, c_s = shared(p, q, s)
             at, behind = cells[LOAD, i, j], cells[LOAD, n, j]
             push[2, i, j] += at * to_p
             push[2, n, j] += behind * to_q
