@@ -8,8 +8,8 @@ from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from frbcli.columns import Column, Shown, named
-from frbcli.cycles.result import SPEED, CyclePoint, RestingPoint, UnbalancedWhirl
+from frbcli.columns import Column, Shown, named, with_uncertainty
+from frbcli.cycles.result import SPEED, CyclePoint, RestingPoint, SpecialPoint, UnbalancedWhirl
 
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
@@ -21,6 +21,7 @@ TEMPERATURE = "temperature of a film, with heat"
 RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
+FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
 
 
 def by_film(films: Sequence[str], array: Any) -> dict[str, Any]:
@@ -31,6 +32,15 @@ def by_film(films: Sequence[str], array: Any) -> dict[str, Any]:
 def _largest(films: Sequence[str]) -> Column:
     return Column("eccentricity_max", "", "largest eccentricity, by film",
                   lambda point: by_film(films, point.eccentricity_max), flat=False)  # fmt: skip
+
+
+def _largest_uncertainty(films: Sequence[str]) -> Column:
+    def by_name(point: Any) -> dict[str, Any] | None:
+        found = point.eccentricity_max_uncertainty
+        return None if found is None else by_film(films, found)
+
+    return Column("eccentricity_max_uncertainty", "", "uncertainty of the largest eccentricity, by film", by_name,
+                  flat=False)  # fmt: skip
 
 
 def _temperatures(films: Sequence[str], heat: bool) -> tuple[Column, ...]:
@@ -68,6 +78,8 @@ def cycle_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
         *_temperatures(films, heat),
         Column("torque", "N m", "mean torque that turns the rotor against its films"),
         Column("kind", "", "kind of a special point, `asked` at a speed that was asked for", lambda p: p.kind or None),
+        FREQUENCY_UNCERTAINTY,
+        _largest_uncertainty(films),
     )  # fmt: skip
 
 
@@ -113,28 +125,49 @@ WHIRLS = (
 )  # fmt: skip
 
 
+def _in_last_digits(head: str, digits: int, value: str, uncertainty: Callable[[SpecialPoint], float]) -> Column:
+    """A number of a SpecialPoint, for the terminal, with the uncertainty of its last digits. value: its attribute."""
+    return Column(value, "", "", lambda point: with_uncertainty(getattr(point, value), uncertainty(point), digits),
+                  shown=(Shown(head),), key="", flat=False)  # fmt: skip
+
+
+def _largest_shown(point: SpecialPoint) -> str:
+    film = int(point.eccentricity_max.argmax())
+    found = point.eccentricity_max_uncertainty
+    return with_uncertainty(float(point.eccentricity_max[film]), None if found is None else float(found[film]), 4)
+
+
 def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -> tuple[Column, ...]:
     """The columns of a SpecialPoint of a diagram over the speed or another number."""
+    speed = _in_last_digits("Hz", 2, "value", attrgetter("uncertainty_Hz"))
     return (
         Column("kind", "", "`hopf`, `fold`, `flip` or `torus`", shown=(Shown("point"),)),
         Column("branch", "", "number of the branch, from 0; none where none was followed"),
         Column("branch", "", "", lambda point: None if point.branch is None else point.branch + 1,
                shown=(Shown("branch"),), key="", flat=False),
-        replace(VALUE, shown=(Shown(unit or over, ".2f" if over == SPEED else ".6g"),)),
+        VALUE if over == SPEED else replace(VALUE, shown=(Shown(unit or over, ".6g"),)),
+        *([speed] if over == SPEED else []),
         SPEED_COLUMN,
-        replace(FREQUENCY, shown=(Shown("whirl Hz", ".2f"),)),
+        FREQUENCY,
+        _in_last_digits("whirl Hz", 2, "frequency_Hz", attrgetter("frequency_uncertainty_Hz")),
         Column("ratio", "", "frequency over the rotor speed", lambda point: point.frequency_Hz / point.speed_Hz,
                shown=(Shown("ratio", ".4f"),), key="", flat=False),
         _largest(films),
-        Column("largest", "", "", lambda point: point.eccentricity_max.max(), shown=(Shown("eps max", ".4f"),), key="",
-               flat=False),
+        Column("largest", "", "", _largest_shown, shown=(Shown("eps max"),), key="", flat=False),
         CRITICALITY,
-        Column("criticality", "", "", lambda point: point.criticality or "", shown=(Shown(""),), key="", flat=False),
+        Column("criticality", "", "", _remark, shown=(Shown(""),), key="", flat=False),
         LYAPUNOV,
         Column("lyapunov_uncertainty", "1/s", "its uncertainty"),
-        Column("speed_uncertainty", "Hz", "uncertainty of the speed of a Hopf point", attrgetter("uncertainty_Hz")),
-        Column("frequency_uncertainty", "Hz", "uncertainty of its frequency", attrgetter("frequency_uncertainty_Hz")),
+        Column("speed_uncertainty", "Hz", "uncertainty of the speed of a Hopf point or a fold",
+               attrgetter("uncertainty_Hz")),
+        FREQUENCY_UNCERTAINTY,
+        _largest_uncertainty(films),
+        Column("certain", "", "of a fold whether films of another mesh have it, too; none where that is not known"),
     )  # fmt: skip
+
+
+def _remark(point: SpecialPoint) -> str:
+    return "uncertain" if point.certain is False else point.criticality or ""
 
 
 def map_point_columns(films: Sequence[str]) -> tuple[Column, ...]:
@@ -199,6 +232,10 @@ def diagram_columns(
         *(column for film, name in enumerate(films)
           for column in of_point(Column("eccentricity_max", "", "largest eccentricity", _eccentricity(film)),
                                  film=name if several else "")),
+        *(column for film, name in enumerate(films)
+          for column in of_point(Column("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed",
+                                        _eccentricity_uncertainty(film)),
+                                 film=name if several else "")),
         *(column for film, name in enumerate(films if heat else ())
           for column in of_point(Column("temperature", "K", TEMPERATURE, _temperature(film)),
                                  film=name if several else "")),
@@ -206,6 +243,10 @@ def diagram_columns(
             *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _ring_speed(ring)) for ring in range(rings)),
             Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
                    lambda point: getattr(point, "torque_N_m", math.nan)),
+            Column("speed_uncertainty", "Hz", "uncertainty of the speed of a fold",
+                   lambda point: getattr(point, "speed_uncertainty_Hz", math.nan)),
+            Column("frequency_uncertainty", "Hz", "uncertainty of the frequency of a cycle, at its speed",
+                   lambda point: getattr(point, "frequency_uncertainty_Hz", math.nan)),
             *([whirl] if unbalance else []),
             *(Column(f"amplitude of {line}", "", "amplitude of a line over the clearance, of the film where it is "
                      "largest", _amplitude(line)) for line in lines),
@@ -223,6 +264,14 @@ def _eccentricity(film: int) -> Callable[[Any], float]:
     return lambda point: float(
         point.eccentricity[film] if isinstance(point, RestingPoint) else point.eccentricity_max[film]
     )
+
+
+def _eccentricity_uncertainty(film: int) -> Callable[[Any], float]:
+    def value(point: Any) -> float:
+        found = getattr(point, "eccentricity_max_uncertainty", None)
+        return math.nan if found is None else float(found[film])
+
+    return value
 
 
 def _temperature(film: int) -> Callable[[Any], float]:

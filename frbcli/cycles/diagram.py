@@ -17,6 +17,7 @@ from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
 from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle
 from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting, SpeedCourse
 from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error
 from frbcli.cycles.method.seed import seed_cycle
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
@@ -55,13 +56,14 @@ class CycleCount:
 @dataclass(frozen=True)
 class Walk:
     """What a diagram goes over. over: name of the number; course, resting: the resting positions, whose values times
-    `scale` are in the unit of the number; follower: of its branches."""
+    `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles."""
 
     over: str
     course: EquilibriumCourse
     resting: Resting
     scale: float
     follower: Follower
+    meshes: tuple[OtherMesh, ...] = ()
 
     @property
     def unit(self) -> str:
@@ -82,9 +84,11 @@ class Walk:
         return follow_branch(self.follower, first_place(machine, hopf, self.last_unknown(hopf.equilibrium)), tell)
 
 
-def over_speed(course: SpeedCourse, resting: Resting, follower: Follower) -> Walk:
+def over_speed(
+    course: SpeedCourse, resting: Resting, follower: Follower, meshes: tuple[OtherMesh, ...] = ()
+) -> Walk:
     """A walk over the speed of the rotor in Hz."""
-    return Walk(SPEED, course, resting, 0.5 / math.pi, follower)
+    return Walk(SPEED, course, resting, 0.5 / math.pi, follower, meshes)
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
@@ -106,9 +110,10 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
         followed += [] if seeded is None else [(None, seeded)]
     special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
     found = tuple(
-        CycleBranch(hopf, tuple(_cycle(walk, cycle) for cycle in branch.cycles), branch.note)
+        CycleBranch(hopf, tuple(_with_error(walk, cycle) for cycle in branch.cycles), branch.note)
         for hopf, branch in followed
     )
+    notes += [_uncertain(point) for point in special_cycles(found) if point.certain is False]
     return LimitCycles(
         case=case,
         over=walk.over,
@@ -127,8 +132,29 @@ def special_cycles(branches: Sequence[CycleBranch]) -> Iterator[SpecialPoint]:
     for number, branch in enumerate(branches):
         for point in branch.points:
             if point.kind in (FOLD, FLIP, TORUS):
-                place = point.value, point.speed_Hz, point.frequency_Hz
-                yield SpecialPoint(point.kind, number, *place, point.eccentricity_max)
+                yield SpecialPoint(
+                    kind=point.kind,
+                    branch=number,
+                    value=point.value,
+                    speed_Hz=point.speed_Hz,
+                    frequency_Hz=point.frequency_Hz,
+                    eccentricity_max=point.eccentricity_max,
+                    uncertainty_Hz=point.speed_uncertainty_Hz,
+                    frequency_uncertainty_Hz=point.frequency_uncertainty_Hz,
+                    eccentricity_max_uncertainty=point.eccentricity_max_uncertainty,
+                    certain=_certain(point),
+                )
+
+
+def _certain(point: CyclePoint) -> bool | None:
+    """Whether a fold was found on films of another mesh, too; None of other cycles and where it was not sought."""
+    sought = point.kind == FOLD and point.eccentricity_max_uncertainty is not None
+    return math.isfinite(point.speed_uncertainty_Hz) if sought else None
+
+
+def _uncertain(point: SpecialPoint) -> str:
+    """What is to be said of a fold that was not found on films of another mesh."""
+    return f"The fold at {point.speed_Hz:.4g} Hz is uncertain: it was not found with the same films on another mesh."
 
 
 def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
@@ -194,6 +220,20 @@ def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
         eigenvalues=point.eigenvalues,
         stable=point.stable,
         temperatures_K=machine.temperatures,
+    )
+
+
+def _with_error(walk: Walk, cycle: Cycle) -> CyclePoint:
+    """A cycle with its errors by the mesh of the films, if other meshes are known."""
+    point = _cycle(walk, cycle)
+    if not walk.meshes:
+        return point
+    error, pace = cycle_error(walk.meshes, cycle), cycle.machine.pace
+    return replace(
+        point,
+        speed_uncertainty_Hz=hertz(error.speed * pace),
+        frequency_uncertainty_Hz=hertz(error.frequency * pace),
+        eccentricity_max_uncertainty=error.eccentricity,
     )
 
 

@@ -15,12 +15,14 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
+from frbcli.equilibrium.static_films import other_plans
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
@@ -110,7 +112,17 @@ def _walk(
     if system.rotor.over_speed is not None:
         return changing_walk(system, slowest, fastest, asked)
     resting = resting_curve(system, machine, slowest, fastest)
-    return over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked))
+    meshes = _other_meshes(case, plan, slowest, fastest)
+    return over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked), meshes)
+
+
+def _other_meshes(case: Case, plan: Plan, slowest: float, fastest: float) -> tuple[OtherMesh, ...]:
+    """The machine on films of other meshes, for the errors of cycles; none of films that are made of cells, whose
+    tables would cost more than the diagram. Speeds in rad/s."""
+    if plan.form.fine_when_static:
+        return ()
+    others = ((make_machine(make_system(case, other), fastest), share) for other, share in other_plans(plan))
+    return tuple(OtherMesh(Follower(machine, slowest, fastest), share) for machine, share in others)
 
 
 def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:

@@ -51,7 +51,9 @@ class CyclePoint:
     cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; torque_N_m: mean, that turns the rotor against its films;
     stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics:
     (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
-    speed that was asked for; temperatures_K: (F,) of the films, empty without heat.
+    speed that was asked for; temperatures_K: (F,) of the films, empty without heat; speed_uncertainty_Hz: of a fold;
+    frequency_uncertainty_Hz, eccentricity_max_uncertainty (F,): by the mesh of the films, at the same speed, NaN where
+    no such cycle was found on films of another mesh; the latter is None if none was sought.
     """
 
     value: float
@@ -65,6 +67,9 @@ class CyclePoint:
     harmonics: Complex
     kind: str = ""
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
+    speed_uncertainty_Hz: float = math.nan
+    frequency_uncertainty_Hz: float = math.nan
+    eccentricity_max_uncertainty: Array | None = None
 
     def orbit(self, film: int = 0, count: int = 360) -> Array:
         """(count, 2) displacements of a journal over the clearance, at equal moments of a period."""
@@ -115,8 +120,10 @@ class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
     point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
     cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
-    criticality.py; eccentricity_max: (F,); uncertainty_Hz, frequency_uncertainty_Hz: of the speed and the frequency of
-    a Hopf point, by the mesh of the films, of films that keep their oil of the speed alone.
+    criticality.py; eccentricity_max: (F,); uncertainty_Hz, frequency_uncertainty_Hz: of the speed of Hopf points and
+    folds and of the frequency, by the mesh of the films, of films that keep their oil of the speed alone;
+    eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a fold was found on films of another mesh,
+    None of others and where it was not sought.
     """
 
     kind: str
@@ -130,6 +137,8 @@ class SpecialPoint:
     lyapunov_uncertainty: float = math.nan
     uncertainty_Hz: float = math.nan
     frequency_uncertainty_Hz: float = math.nan
+    eccentricity_max_uncertainty: Array | None = None
+    certain: bool | None = None
 
 
 @dataclass(frozen=True)

@@ -129,11 +129,12 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
     def made(plan: Plan, share: float = 0.0) -> MeshFilms:
         return MeshFilms(plan, make_system(case, plan, rotor, top_Hz), share)
 
-    return StaticFilms(case, made(plan), lambda: tuple(made(*other) for other in _others(plan)), top_Hz)
+    return StaticFilms(case, made(plan), lambda: tuple(made(*other) for other in other_plans(plan)), top_Hz)
 
 
-def _others(plan: Plan) -> tuple[tuple[Plan, float], ...]:
-    """Plans of other meshes, with their shares; none for a bearing model, whose error is not known."""
+def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
+    """Plans of other meshes, with the share of the difference to each that is the error; none for a bearing model,
+    whose error is not known."""
     if not plan.form.solved:
         return ()
     if plan.form.by_cells:

@@ -223,13 +223,22 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
     for number, branch in enumerate(found.branches):
         for point in branch.points:
             if point.kind == ASKED:
-                how = "stable" if point.stable else "unstable"
-                at = f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {point.frequency_Hz:.3f} Hz, {how}"
-                terminal.result(f"{at}, eccentricity {point.eccentricity_max.max():.5f}")
+                terminal.result(f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {_in_words(point)}")
     _tell_with_unbalance(terminal, found)
     for note in (*found.notes, *_left_out(found)):
         terminal.sentence(note)
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
+
+
+def _in_words(point: CyclePoint) -> str:
+    """A cycle at a speed that was asked for, with the uncertainties in the last digits."""
+    from frbcli.columns import with_uncertainty
+
+    film, found = int(point.eccentricity_max.argmax()), point.eccentricity_max_uncertainty
+    frequency = with_uncertainty(point.frequency_Hz, point.frequency_uncertainty_Hz, 3)
+    uncertainty = None if found is None else float(found[film])
+    eccentricity = with_uncertainty(float(point.eccentricity_max[film]), uncertainty, 5)
+    return f"{frequency} Hz, {'stable' if point.stable else 'unstable'}, eccentricity {eccentricity}"
 
 
 def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:

@@ -11,9 +11,10 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
-from frbcli.cycles.result import SPEED, CycleBranch, LimitCycles
+from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint
 from frbcli.plot.spectra.run_track import RunTrack
 from frbcli.plot.style import (
+    BAND,
     BLACK,
     BLUE,
     GREEN,
@@ -37,6 +38,7 @@ MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip
 ROOM = 1.05  # top of the frequencies over the largest one
 PIECES = 8  # straight pieces between two cycles
 WHIRL = "whirl with unbalance"
+ERROR = "error by the mesh"
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
@@ -74,12 +76,15 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
+        _band(axes, branch, values, [_eccentricity_error(point, film) for point in branch.points], number)
         _whirls(axes, branch, [whirl.eccentricity_max[film] for whirl in branch.with_unbalance], number)
     for kind, (marker, label) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
         if points:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
+            errors = [point.uncertainty_Hz for point in points], [_eccentricity_error(point, film) for point in points]
+            _bars(axes, *at, *errors)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
 
@@ -112,11 +117,14 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
     for number, branch in enumerate(found.branches):
         values = np.array([point.frequency_Hz for point in branch.points])
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
+        _band(axes, branch, values, [point.frequency_uncertainty_Hz for point in branch.points], number)
         _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, told=False)
     for kind, (marker, _) in MARKS.items():
         points = found.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
+        errors = ([getattr(point, f"{of}uncertainty_Hz") for point in points] for of in ("", "frequency_"))
+        _bars(axes, *at, *errors)
     axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
     axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.unit))
@@ -135,6 +143,29 @@ def _curve(axes: Axes, branch: CycleBranch, y: Array, colour: str, label: str | 
         x, y = PchipInterpolator(along, x)(fine), PchipInterpolator(along, y)(fine)
         stable = stable[pieces // PIECES] & stable[-(-pieces // PIECES)]
     _line(axes, x, y, stable, colour, label)
+
+
+def _eccentricity_error(point: CyclePoint | SpecialPoint, film: int) -> float:
+    """Uncertainty of the largest eccentricity in a film, NaN where it is not known."""
+    found = point.eccentricity_max_uncertainty
+    return np.nan if found is None else float(found[film])
+
+
+def _band(axes: Axes, branch: CycleBranch, y: Array, errors: Sequence[float], number: int) -> None:
+    """The uncertainty of a branch, above and below it; none next to a fold that lies elsewhere on another mesh."""
+    x, half = np.array([point.value for point in branch.points]), np.array(errors)
+    known = np.isfinite(half)
+    label = None if ERROR in axes.get_legend_handles_labels()[1] else ERROR
+    if known.any():
+        axes.fill_between(x, y - half, y + half, where=known.tolist(), color=COLOURS[number % len(COLOURS)], alpha=BAND,
+                          linewidth=0.0, label=label)  # fmt: skip
+
+
+def _bars(axes: Axes, x: Sequence[float], y: Sequence[float], by_x: Sequence[float], by_y: Sequence[float]) -> None:
+    """The uncertainties of special points, where they are known."""
+    halves = [np.nan_to_num(np.array(errors, dtype=float)) for errors in (by_x, by_y)]
+    if any(half.any() for half in halves):
+        axes.errorbar(x, y, halves[1], halves[0], linestyle="", color=BLACK, linewidth=1.0, capsize=2.0, zorder=4)
 
 
 def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, told: bool = True) -> None:
