@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from PIL import Image
 from synthetic_run import Rotor, make_run
@@ -94,6 +95,28 @@ def test_all_panels_of_a_picture_follow() -> None:
     assert [axes.get_xlim() for axes in figure.axes] == [(0.0, 100.0)] * 2
     assert figure.axes[0].get_ylim() == (0.0, 100.0)
     assert figure.axes[1].get_ylim() != (0.0, 100.0)  # another quantity
+
+
+def test_bars_of_a_campbell_diagram_are_the_errors_of_its_eigenvalues() -> None:
+    """A bar for each dot, and none where the coefficients are given and their errors are not known."""
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "speed.from=150 Hz", "speed.to=200 Hz"])
+    found = frbcli.stability(case, [150.0])
+    above, below = campbell_figure(found).axes
+    told = [(point.speed_Hz, mode.error / (2.0 * np.pi)) for point in found.sweep for mode in point.modes_with_errors]
+    assert found.threshold is not None
+    np.testing.assert_allclose(sorted(bars_of(above)), sorted(told), rtol=1e-9)
+    for axes in (above, below):
+        (span,) = axes.patches
+        assert span.get_width() == pytest.approx(2.0 * found.threshold.speed_uncertainty_Hz)
+    band = below.collections[-1].get_paths()[0].vertices
+    assert np.ptp(band[band[:, 0] == 200.0, 1]) == pytest.approx(2.0 * found.sweep[-1].critical_error)
+    assert bars_of(campbell_figure(frbcli.stability(frbcli.load_case("seal"), [50.0])).axes[0]) == []
+
+
+def bars_of(axes: Axes) -> list[tuple[float, float]]:
+    """Place and half length of each vertical bar."""
+    lines = [collection for collection in axes.collections if isinstance(collection, LineCollection)]
+    return [(bar[0, 0], 0.5 * (bar[1, 1] - bar[0, 1])) for each in lines for bar in each.get_segments()]
 
 
 def test_linear_amplitudes_are_in_micrometres(run: Run) -> None:

@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from frbcli.linear.stability import Stability
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.linear.threshold import Threshold
-from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, new_figure, styled
+from frbcli.plot.style import BAND, BLACK, BLUE, GREY, VERMILION, new_figure, styled
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
 DOT, SMALL_DOT = 15.0, 6.0  # pt^2
@@ -21,7 +21,8 @@ def campbell_figure(stability: Stability) -> Figure:
     """Damped eigenfrequencies of all oscillating motions over the swept speeds, and the growth of the critical one.
 
     Motions that grow are filled dots in both panels, at zero frequency where they do not oscillate. Motions that decay
-    without oscillating have no frequency and are left out, those faster than the frequency axis as well.
+    without oscillating have no frequency and are left out, those faster than the frequency axis as well. Bars and bands
+    are the expected errors by the mesh of the films.
     """
     points = [point for point in stability.sweep if point.rests]
     case = stability.case
@@ -37,9 +38,10 @@ def campbell_figure(stability: Stability) -> Figure:
 
 
 def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
-    """Damped eigenfrequencies of the points with films."""
-    pairs = [(point.speed_Hz, value) for point in points for value in point.modes]
-    speeds, values = np.array([pair[0] for pair in pairs]), np.array([pair[1] for pair in pairs], dtype=complex)
+    """Damped eigenfrequencies of the points with films, with bars of their expected errors."""
+    told = [(point.speed_Hz, *mode) for point in points for mode in point.modes_with_errors]
+    speeds, errors = (np.array([row[column] for row in told], dtype=float) for column in (0, 2))
+    values = np.array([value for _, value, _ in told], dtype=complex)
     frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0
     fastest = max((point.speed_Hz for point in points), default=1.0)
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
@@ -51,6 +53,10 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
         speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="decays"
     )
     axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
+    for which, colour in ((~grows, BLUE), (grows, VERMILION)):
+        some = which & (errors > 0.0)  # NaN where they are not known
+        axes.errorbar(speeds[some], frequencies[some], errors[some] / (2 * np.pi), linestyle="", ecolor=colour,
+                      elinewidth=0.8, capsize=1.5, zorder=1.8)  # fmt: skip
     axes.set_xlim(0.0, fastest * (1.0 if len(points) > 1 else BESIDE_ONE))
     axes.set_ylim(0.0, top)
     axes.set_ylabel("damped frequency in Hz")
@@ -69,14 +75,19 @@ def _draw_growth(axes: Axes, points: list[StabilityPoint]) -> None:
     axes.axhline(0.0, color=BLACK, linewidth=0.8)
     low, high = axes.get_ylim()
     axes.set_ylim(min(low, -GROWTH_FLOOR), max(high, GROWTH_FLOOR))
+    error = np.array([point.critical_error for point in points])
+    axes.fill_between(speeds, growth - error, growth + error, color=BLACK, alpha=BAND, linewidth=0.0, zorder=2.5)
     axes.set_xlabel("rotor speed in Hz")
     axes.set_ylabel("growth in 1/s")
 
 
 def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold) -> None:
     above, _ = panels
+    error = threshold.speed_uncertainty_Hz
     for axes in panels:
         axes.axvline(threshold.speed_Hz, color=BLACK, linewidth=0.9, linestyle=(0, (4, 3)))
+        if error > 0.0:
+            axes.axvspan(threshold.speed_Hz - error, threshold.speed_Hz + error, color=BLACK, alpha=BAND, linewidth=0.0)
     above.plot(threshold.speed_Hz, threshold.frequency_Hz, marker="D", color=BLACK, markersize=5, zorder=4)
     left = threshold.speed_Hz > 0.5 * above.get_xlim()[1]
     above.annotate(

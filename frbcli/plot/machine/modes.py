@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.linear.modes import SHOWN, Mode, Modes
-from frbcli.plot.style import BLACK, BLUE, GREY, ORANGE, VERMILION, new_figure, styled
+from frbcli.plot.style import BAND, BLACK, BLUE, GREY, ORANGE, VERMILION, new_figure, styled
 from frbcli.units import display
 
 LINES = {"forward": (BLUE, "-"), "backward": (ORANGE, (0, (5, 2)))}
@@ -35,15 +36,19 @@ def modes_figure(modes: Modes) -> Figure:
 
 
 def _draw_campbell(axes: Axes, modes: Modes) -> None:
+    """Frequencies over the speed, with bands of what the reduction of the shaft changes."""
+    error = 0.0 if modes.error is None else modes.error.frequency
     points = sorted(modes.points, key=lambda point: point.speed_Hz)
     fastest = points[-1].speed_Hz or 1.0
     for direction, (colour, dashes) in LINES.items():
         for number in range(max(len(point.directed(direction)) for point in points)):
             with_mode = [point for point in points if len(point.directed(direction)) > number]
             speeds = [point.speed_Hz for point in with_mode]
-            frequencies = [point.directed(direction)[number].frequency_Hz for point in with_mode]
+            frequencies = np.array([point.directed(direction)[number].frequency_Hz for point in with_mode])
             label = f"{direction} whirl" if number == 0 else None
             axes.plot(speeds, frequencies, color=colour, linestyle=dashes, linewidth=1.4, label=label)
+            low, high = (1.0 - error) * frequencies, (1.0 + error) * frequencies
+            axes.fill_between(speeds, low, high, color=colour, alpha=BAND, linewidth=0.0)
     axes.plot([0.0, fastest], [0.0, fastest], color=GREY, linestyle=(0, (1, 2)), label="rotor speed")
     axes.set_xlim(0.0, fastest)
     axes.set_ylim(0.0, HEADROOM * max(fastest, modes.free_Hz[0]))
