@@ -95,12 +95,12 @@ class March:
         self._segments = [segment for segment in segments if segment.start < profile.end]
         self._profile = profile.with_stops(segment.start for segment in self._segments)
         self._inputs = RunInputs.of(case, segments[0].system)
-        self._axis = None if case.axial is None else _axis_of(case, self._profile)
         self._touched: float | None = None  # time in s at which a collar touches its pads
         self._take_up(0)
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
         self._control = control_of(case, plan, system.asperities)
+        self._axis = None if case.axial is None else _axis_of(case, self._profile, self._control.output_step)
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
@@ -359,8 +359,8 @@ class March:
         )
 
 
-def _axis_of(case: Case, profile: SpeedProfile) -> RunAxis | None:
+def _axis_of(case: Case, profile: SpeedProfile, step: float) -> RunAxis | None:
     """The axis of a run under an axial load."""
     from frbcli.runs.axis import RunAxis  # films on pads take a second to import
 
-    return RunAxis.of(case, profile)
+    return RunAxis.of(case, profile, step)

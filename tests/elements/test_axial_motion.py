@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -92,6 +93,60 @@ def test_a_load_that_lifts_the_collar_fast_is_refused() -> None:
     with pytest.raises(InputError, match=r"below oil.cavitation_pressure would carry \d+% of the load"):
         motion_of(fast)
     motion_of(case_of('[["0 s", "60 N"], ["0.04 s", "40 N"], ["1 s", "40 N"]]', rising))
+
+
+PADS = """
+    [[thrust_bearing]]
+    inner_radius = "5 mm"
+    outer_radius = "11 mm"
+    pads = 4
+    pad_angle = "75 deg"
+    taper_angle = "50 deg"
+    taper = "20 um"
+    end_play = "100 um"
+    """
+WARM = ('oil.viscosity={ grade = "SAE 10W-40" }', "oil.density=830", "thermal.supply_temperature=50 degC",
+        "thermal.housing=60 degC", "film.theory=short", "speed.from=100", "speed.to=100", "speed.duration=0.2",
+        "start.position=resting")  # fmt: skip
+WARMING = [["0 s", "50 degC"], ["1 s", "60 degC"]]
+
+
+def warm_case(*more: str) -> Case:
+    """A rotor that does not tilt, in films and on pads with heat, at one speed."""
+    return frbcli.load_case("jeffcott", [*WARM, *more])
+
+
+def test_heat_of_films_and_of_pads_stand_beside_each_other(tmp_path: Path) -> None:
+    """The collar is warm as at rest under its load; the films of the journals are as without it, bit for bit."""
+    pads = tomllib.loads(PADS)["thrust_bearing"]
+    case = warm_case().with_settings({"thrust_bearing": pads, "axial.load": "10 N"})
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    alone = frbcli.runup(warm_case(), tmp_path / "alone.h5")
+    for name in alone.signals:
+        np.testing.assert_array_equal(run[name], alone[name], err_msg=name)
+    (state,) = frbcli.thrust_sheet(case, speeds_Hz=[100.0]).points
+    assert state.load == pytest.approx(10.0, rel=1e-4)
+    assert run["thrust_film_thickness_m"] == pytest.approx(state.gap, rel=1e-3)
+    assert run["thrust_loss_W"] == pytest.approx(state.power, rel=1e-3)
+    cold = frbcli.thrust_sheet(case.with_settings({"thermal": None, "oil.temperature": "50 degC"}), speeds_Hz=[100.0])
+    assert cold.points[0].power > 1.05 * state.power  # and so the heat is told from none
+
+
+@pytest.mark.parametrize(
+    ("key", "given"),
+    [
+        ("supply_temperature", WARMING),
+        ("housing", WARMING),
+        ("shaft", {"capacity": "1 J/K", "conductance": "1 W/K", "temperature": WARMING}),
+    ],
+)
+def test_pads_do_not_follow_a_temperature_over_time(key: str, given: object, tmp_path: Path) -> None:
+    pads = tomllib.loads(PADS)["thrust_bearing"]
+    case = warm_case().with_settings({"thrust_bearing": pads, "axial.load": "10 N", f"thermal.{key}": given})
+    with pytest.raises(InputError, match="films on the pads do not follow") as refused:
+        frbcli.runup(case, tmp_path / "run.h5")
+    assert [fault.key for fault in refused.value.faults] == [f"thermal.{key}"]
+    frbcli.make_plan(case.with_settings({"axial": None}))  # one remedy
 
 
 def test_run_records_its_axis(tmp_path: Path) -> None:

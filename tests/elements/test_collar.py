@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from marches import DISK, SPAN, D, rigid_shaft
 
 import frbcli
 from frbcli.case.schema import Case
@@ -118,6 +119,27 @@ def test_conical_motion_of_a_rigid_shaft_has_its_closed_form(case: Case) -> None
     translation = math.sqrt(2.0 * SPRING / mass)
     assert np.abs(found - 1j * translation).min() < 1e-9 * translation
     assert abs(stiffness.imag) > 0.1 * abs(stiffness.real - 2.0 * SPRING * ARM**2)  # so that its sign counts
+
+
+def test_sheets_have_the_loads_that_the_collar_leaves_to_the_journals() -> None:
+    """A rigid shaft with a disk beside its bearings: their forces and the moment -K a of the collar, whose tilt a
+    follows from the places of the journals, hold the weight."""
+    pads = {key: value for key, value in PADS.items() if key != "position"} | {"inner_radius": 5.5e-3, "position": 2e-3}
+    more = {"thrust_bearing": [pads], "axial.load": 40.0, "disk.0.position": 0.015, "rotor.modes": 2}
+    case = rigid_shaft("film.theory=short").with_settings(more)
+    collar, points = collar_of(case), frbcli.bearing_sheet(case, [300.0]).points
+    assert collar is not None
+    omega, z = 2.0 * math.pi * 300.0, 0.5 * SPAN * np.array([-1.0, 1.0])
+    loads = np.array([point.load for point in points])
+    places = np.array([point.clearance * point.displacement for point in points])
+    growth = (places[1] - places[0]) / SPAN
+    held = -collar.rest(omega).tilt_stiffness @ np.array([-growth[1], growth[0]])
+    shaft = DENSITY * 0.25 * math.pi * D**2 * 0.02
+    assert loads.sum(axis=0) == pytest.approx([0.0, -9.81 * (shaft + DISK)], abs=1e-8)
+    weight = 0.005 * 9.81 * DISK  # about x through the middle of the shaft, M_x = -z F_y
+    assert -(z @ loads[:, 1]) == pytest.approx(weight + held[0], rel=1e-6)
+    assert z @ loads[:, 0] == pytest.approx(held[1], abs=1e-6 * weight)
+    assert np.hypot(*held) > 0.01 * weight
 
 
 def test_without_an_axial_load_the_machine_is_as_without_the_bearing(case: Case) -> None:

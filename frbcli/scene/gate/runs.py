@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime
+from frbcli.case.surroundings.time_tables import WALLS
 from frbcli.errors import Fault
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.solutions import solution_fault
@@ -57,13 +59,27 @@ def changing_supply_faults(case: Case) -> Iterator[Fault]:
         yield Fault(f"{key}.supply.pressure", "over time", None, problem, remedy)
 
 
-def axial_faults(case: Case) -> Iterable[Fault]:
+def axial_faults(case: Case) -> Iterator[Fault]:
     """A collar does not lie on its pads at the speeds of a case."""
     if case.axial is None:
-        return ()
+        return
     from frbcli.elements.collar.collar import uncarried_faults  # films on pads take a second to import
 
-    return uncarried_faults(case)
+    yield from uncarried_faults(case)
+
+
+def axial_heat_faults(case: Case) -> Iterator[Fault]:
+    """The films of a collar are as warm as at rest at the speed of the moment, with temperatures that stay."""
+    if case.axial is None or case.heat is None:
+        return
+    walls = {wall: getattr(case.heat, wall) for wall in WALLS}
+    given = {"supply_temperature": case.heat.supply_temperature}
+    given |= {wall: getattr(value, "temperature", value) for wall, value in walls.items()}
+    for key, value in given.items():
+        if isinstance(value, OverTime):
+            problem = "changes over time, which the temperatures of the films on the pads do not follow."
+            remedy = "Give one temperature, or leave [axial] out."
+            yield Fault(f"thermal.{key}", value.told, None, problem, remedy)
 
 
 def speed_faults(case: Case) -> Iterable[Fault]:

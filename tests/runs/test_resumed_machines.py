@@ -1,0 +1,64 @@
+"""Runs of machines that tilt or move along their axis: interrupted and resumed they are those in one piece."""
+
+from __future__ import annotations
+
+import signal
+from itertools import count
+from pathlib import Path
+
+import numpy as np
+import pytest
+from marches import rigid_shaft
+
+from frbcli.results.store import Run
+from frbcli.runs import march
+from frbcli.runs.run import runup
+
+LOOKS = 8  # steps between two looks at the clock
+TIMES = ("speed.from=250 Hz", "speed.duration=10 ms", "output.step=50 us")
+CELLS = ("film.solution=cells", "accuracy.mesh=[4, 24]")
+TILT = (*CELLS, "film.tilt=follows")
+FED = tuple(f'bearing.{side}.supply={{kind="circumferential-groove", pressure="2 bar"}}' for side in (0, 1))
+COLLAR = (
+    'thrust_bearing=[{position="2 mm", inner_radius="5.5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
+    'taper_angle="50 deg", taper="20 um", end_play="100 um"}]',
+    'axial.load=[["0 s", "10 N"], ["4 ms", "20 N"], ["10 ms", "12 N"]]',
+)
+HEAT = ('oil.viscosity={grade="SAE 10W-40"}', "thermal.supply_temperature=60 degC", "thermal.housing=70 degC")
+MACHINES = {
+    "collar": ("film.theory=short", *COLLAR),
+    "collar and heat": ("film.theory=short", *COLLAR, *HEAT),
+    "tilt": (*TILT, "film.cavitation=reynolds"),
+    "tilt and oil": (*TILT, "film.cavitation=elrod", *FED),
+    "tilt and collar": (*TILT, *COLLAR),
+}
+
+
+def assert_same(run: Run, other: Run) -> None:
+    """Bit for bit, but for what the clock says."""
+    assert list(run.signals) == list(other.signals)
+    for name in run.signals:
+        np.testing.assert_array_equal(run[name], other[name], strict=True, err_msg=name)
+    assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
+
+
+@pytest.mark.parametrize("settings", MACHINES.values(), ids=MACHINES)
+def test_a_resumed_run_is_bit_equal(
+    settings: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(march, "BUDGET", LOOKS)
+    case, broken, reached = rigid_shaft(*TIMES, *settings), tmp_path / "broken.h5", [0.0]
+    whole = runup(case, tmp_path / "whole.h5")
+    assert whole.status == "finished"
+    for stop_at in (3, 2):
+        looks = count(1)
+
+        def stop(_: object, looks: count[int] = looks, stop_at: int = stop_at) -> None:
+            if next(looks) == stop_at:
+                signal.raise_signal(signal.SIGINT)
+
+        stopped = runup(case, broken, resume=True, observe=stop)
+        assert stopped.status == "interrupted"
+        reached.append(stopped.t_end_s)
+        assert reached[-2] < reached[-1] < whole.t_end_s
+    assert_same(runup(case, broken, resume=True), whole)
