@@ -68,6 +68,10 @@ class RestingFilm:
         """Relative eccentricity of the journal."""
         return math.hypot(*self.displacement)
 
+    def seen(self, displacement: Array) -> Array:
+        """(c,) what the film sees of its journal at a displacement (2,) in any unit: with its tilt, where it tilts."""
+        return displacement if self.tilting is None else np.concatenate([displacement, self.tilting.tilt])
+
 
 def coefficients_of(films: Sequence[RestingFilm]) -> tuple[Array, Array]:
     """(films, c, c) stiffness and damping of films at rest, or of none, by the c coordinates that they see."""
@@ -146,11 +150,12 @@ def place_error(own: Array, others: Sequence[tuple[Array, float]]) -> float:
 
 
 def force_error(static: StaticFilms, i: int, place: Array, total: float) -> float:
-    """Relative error of the force of film i at `place` (2,) in m, from another mesh; NaN where it is not known."""
+    """Relative error of the force of film i at `place` (c,), from another mesh; NaN where it is not known."""
     if not static.others:
         return math.nan
     other = static.others[0]
-    mine, force = (films.system.force(i, place, np.zeros(2), total).force for films in (static.own, other))
+    still = np.zeros_like(place)
+    mine, force = (films.system.force(i, place, still, total).force[:2] for films in (static.own, other))
     size = float(np.hypot(*mine))
     return other.share * float(np.hypot(*(force - mine))) / size if size > 0.0 else 0.0
 

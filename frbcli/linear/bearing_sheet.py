@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Column, Table, table_of
 from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, place_error, resting_film
 from frbcli.equilibrium.resting import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
@@ -58,13 +58,19 @@ class BearingSheet(Tabular):
         model = self.case.film.bearing_model
         return tuple(label_of(model) if model else law_named(law).label for law in self.laws)
 
+    @property
+    def columns(self) -> tuple[Column, ...]:
+        """What is told of each film and state."""
+        tilting = any(point.tilting is not None for point in self.points)
+        return sheet_columns(self.case.contact.rough, tilting)
+
     def of(self, film: str) -> tuple[FilmState, ...]:
         """The states of one film that were found."""
         return tuple(point for point in self.points if point.film == film and not point.problem)
 
     def table(self) -> Table:
         """One row per film and state."""
-        return table_of(sheet_columns(self.case.contact.rough), self.points)
+        return table_of(self.columns, self.points)
 
 
 def bearing_sheet(

@@ -47,13 +47,17 @@ PLACE_ERROR = Column("displacement_error", "", "expected error of the displaceme
 # Of a RestingFilm
 FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR, PLACE_ERROR)
 
-# Of a RestingFilm whose journal tilts
+
+def _tilting(name: str) -> Callable[[Any], Any]:
+    return lambda film: None if film.tilting is None else getattr(film.tilting, name)
+
+
+# Of a RestingFilm or FilmState whose journal tilts
 TILTING = (
-    Column("tilt", "rad", "tilt of the journal against its shell", attrgetter("tilting.tilt"), shape=(2,),
-           more="about x and y"),
-    Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dt`", attrgetter("tilting.tilt_stiffness"), shape=(2, 2)),
-    Column("tilt_damping", "N m s", "damping in tilt `-dM/dt'`", attrgetter("tilting.tilt_damping"), shape=(2, 2)),
-)  # fmt: skip
+    Column("tilt", "rad", "tilt of the journal against its shell", _tilting("tilt"), shape=(2,), more="about x and y"),
+    Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dt`", _tilting("tilt_stiffness"), shape=(2, 2)),
+    Column("tilt_damping", "N m s", "damping in tilt `-dM/dt'`", _tilting("tilt_damping"), shape=(2, 2)),
+)
 
 
 def film_columns(films: Iterable[Any]) -> tuple[Column, ...]:
@@ -125,9 +129,9 @@ MIXED_FRICTION = (
            shown=(Shown("contact", ".3g", table=MIXED),)),
 )  # fmt: skip
 
-def sheet_columns(rough: bool) -> tuple[Column, ...]:
-    """Of the FilmStates of a case with rough surfaces, or without."""
-    return (*SHEET, *MIXED_FRICTION) if rough else SHEET
+def sheet_columns(rough: bool, tilting: bool) -> tuple[Column, ...]:
+    """Of the FilmStates of a case: whether its surfaces are rough, and whether its journals tilt."""
+    return (*SHEET, *(TILTING if tilting else ()), *(MIXED_FRICTION if rough else ()))
 
 
 GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above 0 it hides the unbalance response",

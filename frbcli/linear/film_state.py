@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
-from frbcli.equilibrium.coefficients import LEAST, RestingFilm, force_error, settled_force
+from frbcli.equilibrium.coefficients import LEAST, RestingFilm, TiltingFilm, force_error, settled_force
 from frbcli.equilibrium.static_films import FieldFilms, StaticFilms
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import CavitationFactor, loads
@@ -61,7 +61,8 @@ class FilmState:
 
     error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
     p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the
-    numbers are NaN; mixed: between rough surfaces, whose friction is part of torque and power.
+    numbers are NaN; mixed: between rough surfaces, whose friction is part of torque and power; tilting: of a film whose
+    journal tilts.
     """
 
     film: str
@@ -94,6 +95,7 @@ class FilmState:
     side_flow_error: float = math.nan
     problem: str = ""
     mixed: MixedFriction | None = None
+    tilting: TiltingFilm | None = None
 
     @property
     def eccentricity(self) -> float:
@@ -152,8 +154,8 @@ class Fields:
 
     @classmethod
     def of(cls, volume: FieldFilm, d: Array, speeds: tuple[float, float], factor: CavitationFactor) -> Fields:
-        """Those of a steady film. d: (2,) displacement over the clearance; speeds: of journal and shell in rad/s;
-        factor: see loads. Raises NotConverged."""
+        """Those of a steady film. d: see FieldFilm; speeds: of journal and shell in rad/s; factor: see loads. Raises
+        NotConverged."""
         journal, shell = speeds
         p_max, torques, flow = -math.inf, np.zeros(2), 0.0
         for film, motion in volume.parts(d, journal + shell):
@@ -175,7 +177,7 @@ def _field_errors(
     off = 0.0 if math.isnan(at_rest.place_error) else min(at_rest.place_error, 0.5 * (1.0 - e))
     out = d + off * (d / e if e > 0.0 else np.array([0.0, -1.0]))
     try:
-        here, there = (astuple(Fields.of(film.coarser, place, speeds, factor)) for place in (d, out))
+        here, there = (astuple(Fields.of(film.coarser, at_rest.seen(place), speeds, factor)) for place in (d, out))
     except NotConverged:
         return Fields(*(math.nan,) * len(astuple(found)))
     return Fields(
@@ -202,7 +204,7 @@ def film_state(
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
-    ends = d[None] if volume is None else volume.own.ends(d)
+    ends = d[None] if volume is None else volume.own.ends(at_rest.seen(d))
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
     state = FilmState(
@@ -219,12 +221,13 @@ def film_state(
         error=at_rest.error,
         place_error=at_rest.place_error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
-        force_error=force_error(static, i, d * c, total),
+        force_error=force_error(static, i, at_rest.seen(d * c), total),
         viscosity=section.viscosity,
         clearance=c,
         temperature=temperature,
         film_thickness_error=c * at_rest.place_error,
         mixed=MixedFriction.of(system, i, at_rest, slip, shell),
+        tilting=at_rest.tilting,
     )
     return state if volume is None else _with_fields(case, volume, state, at_rest, speeds)
 
@@ -234,7 +237,7 @@ def _with_fields(
 ) -> FilmState:
     """A state with torque, loss, flow and pressure. speeds: of journal and shell, rad/s. Raises NotConverged."""
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
-    found = Fields.of(volume.own, state.displacement, speeds, factor)
+    found = Fields.of(volume.own, at_rest.seen(state.displacement), speeds, factor)
     errors = _field_errors(volume, found, at_rest, speeds, factor)
     torque, power, flow = found.torque, found.power, found.side_flow
     if state.mixed is not None:

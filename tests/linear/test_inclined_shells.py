@@ -10,7 +10,7 @@ import pytest
 from frbcli import bearing_sheet, load_case, rotation, sommerfeld_chart
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points
-from frbcli.scene.gate.analysis import RUN, STABILITY
+from frbcli.scene.gate.analysis import RUN, STABILITY, WHIRL
 from frbcli.scene.gate.gate import faults
 
 SPEED, CLEARANCE, WIDTH, MRAD = 50.0, 35e-6, 0.02, 0.5
@@ -87,7 +87,10 @@ def test_a_bearing_alone_has_a_chart_until_an_end_touches() -> None:
 @pytest.mark.parametrize(
     ("case", "settings", "analysis", "told"),
     [
-        ("jeffcott", [SHELL.format(1, 0)], RUN, "Leave it out here."),
+        ("jeffcott", [SHELL.format(1, 0)], WHIRL, "Leave it out"),
+        ("jeffcott", [SHELL.format(1, 0), "film.coupling=co-simulation"], RUN, 'Write coupling = "auto".'),
+        ("jeffcott", [SHELL.format(4, 0)], RUN, "Write less than 3.5 mrad."),
+        ("turbocharger-car", [SHAFT], RUN, 'Write film.tilt = "follows"'),
         ("jeffcott", [SHELL.format(4, 0)], STABILITY, "Write less than 3.5 mrad."),
         ("jeffcott", [SHELL.format(1, 0), "film.theory=short"], STABILITY, 'Write theory = "finite".'),
         ("jeffcott", [SHELL.format(1, 0), "film.cavitation=elrod"], STABILITY, "Take half-sommerfeld or reynolds."),
@@ -104,4 +107,6 @@ def test_what_is_not_modelled_is_refused_with_a_remedy(
 def test_the_remedies_work() -> None:
     assert not faults(load_case("jeffcott", [SHELL.format(3.4, 0)]), STABILITY)
     assert not faults(load_case("jeffcott", [SHELL.format(1, 0), "film.cavitation=reynolds"]), STABILITY)
+    assert not faults(load_case("jeffcott", [SHELL.format(1, 0)]), RUN)
+    assert not faults(load_case("turbocharger-car", [SHAFT, "film.tilt=follows"]), RUN)
     assert not faults(load_case("turbocharger-car", [SHAFT, "film.tilt=follows"]), STABILITY)

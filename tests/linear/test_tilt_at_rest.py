@@ -19,6 +19,7 @@ from frbcli.equilibrium.static_films import static_films as films_of
 from frbcli.errors import InputError
 from frbcli.film.cells.tilted.force import tilted_force
 from frbcli.linear.columns import FILM, film_columns, point_columns
+from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.body import COORDINATES
@@ -187,8 +188,50 @@ def test_what_does_not_tilt_is_refused(name: str, settings: tuple[str, ...], key
     assert key in [fault.key for fault in refused.value.faults]
 
 
-def test_cycles_and_sheets_do_not_follow() -> None:
-    for ask in (frbcli.limit_cycles, frbcli.bearing_sheet, frbcli.accuracy):
+def sheet_of(*more: str) -> tuple[FilmState, FilmState]:
+    """The films of both bearings of a rigid shaft at its speed."""
+    one, other = frbcli.bearing_sheet(rigid_shaft(*more), [SPEED]).points
+    assert not one.problem
+    return one, other
+
+
+def test_a_sheet_without_a_tilt_is_as_before() -> None:
+    """The weight in the middle of a rigid shaft: the films of both cases differ by their cells alone, 8 along in place
+    of 40, of second order."""
+    (tilted, _), (flat, _) = sheet_of("film.tilt=follows"), sheet_of()
+    assert tilted.load == pytest.approx(flat.load, rel=1e-6, abs=1e-9)
+    for name in ("power", "side_flow", "p_max", "film_thickness_min"):
+        assert getattr(tilted, name) == pytest.approx(getattr(flat, name), rel=1.0 / 8**2), name
+    assert flat.tilting is None
+
+
+def test_a_sheet_follows_the_tilt() -> None:
+    """A disk on the one and on the other side of the bearings: the two machines are mirror images, with the tilts
+    turned, and the least gap is at the end of a bearing to which its journal comes nearest."""
+    case = "film.tilt=follows", "film.cavitation=reynolds"
+    (left, right), mirrored = (sheet_of(*case, f"disk.0.position={place} m") for place in (0.012, 0.008))
+    assert right.power > left.power  # the heavier loaded one
+    for film, image in zip((left, right), mirrored[::-1], strict=True):
+        assert film.tilting is not None
+        assert image.tilting is not None
+        assert image.tilting.tilt == pytest.approx(-film.tilting.tilt, rel=1e-5)
+        for name in ("power", "side_flow", "p_max", "film_thickness_min", "friction_coefficient"):
+            assert getattr(image, name) == pytest.approx(getattr(film, name), rel=1e-5), name
+        (x, y), (about_x, about_y) = film.displacement, 0.5 * WIDTH / film.clearance * film.tilting.tilt
+        farthest = max(math.hypot(x + side * about_y, y - side * about_x) for side in (-1.0, 1.0))
+        assert film.film_thickness_min == pytest.approx(film.clearance * (1.0 - farthest), rel=1e-4)
+        assert farthest > film.eccentricity + 1e-3
+        assert film.force_error < 0.1
+    (stable,) = stability_points(rigid_shaft(*case, "disk.0.position=0.012 m"), [SPEED])[1]
+    assert stable.films[1].displacement == pytest.approx(right.displacement, rel=1e-6)
+    table = frbcli.bearing_sheet(rigid_shaft(*case, "disk.0.position=0.012 m"), [SPEED]).to_pandas()
+    assert table["tilt_x_rad"][1] == pytest.approx(right.tilting.tilt[0], rel=1e-9)  # type: ignore[union-attr]
+
+
+def test_charts_loads_and_cycles_do_not_follow() -> None:
+    """A load on a journal leaves its tilt open, and so does an eccentricity."""
+    case = rigid_shaft("film.tilt=follows")
+    for ask in (frbcli.limit_cycles, frbcli.sommerfeld_chart, lambda case: frbcli.bearing_sheet(case, [SPEED], 5.0)):
         with pytest.raises(InputError) as refused:
-            ask(rigid_shaft("film.tilt=follows"))
+            ask(case)
         assert "film.tilt" in [fault.key for fault in refused.value.faults]

@@ -11,6 +11,7 @@ import pytest
 from marches import SPEED, WIDTH, rigid_shaft
 
 import frbcli
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
@@ -30,6 +31,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING, SOLVES, STEPS, Control, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
+from frbcli.studies.accuracy import ladder, planned_rung
 
 MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width
 CONTROL = Control(1e-6, 24.0, 1e-3, 1e-4, 0.9999, 0.0)
@@ -141,12 +143,74 @@ def test_shells_out_of_line_hold_the_journals_where_they_rest() -> None:
     assert np.abs(apart).max() > 1e-3 * system.clearances[0]
 
 
+def inclined(kind: str, side: float, *more: str) -> System:
+    """A rotor that moves in its plane in a shell that is not in line, inclined to the one or the other side."""
+    shell = f'bearing.misalignment=["{side * 0.5} mrad", "{side * -0.3} mrad"]'
+    case = load_case(kind, ["film.theory=finite", "film.cavitation=half-sommerfeld", MESH, shell, *more])
+    return make_system(case, make_plan(case))
+
+
+@pytest.mark.parametrize("kind", ["rigid", "jeffcott"])
+def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line(kind: str) -> None:
+    """Both of its films carry it, and no moment turns it. A shell inclined the other way is the mirror image, in which
+    the rotor moves alike."""
+    system, mirrored = (inclined(kind, side, "rotor.unbalance=0") for side in (1.0, -1.0))
+    rest = resting_position(system, OMEGA)
+    found, _, _ = run(system, 5e-3, rest.displacements)
+    clearance = system.clearances[0]
+    assert np.abs(system.films.seen(system.rotor.journals) @ (found - rest.displacements).T).max() < 1e-5 * clearance
+    assert 2.0 * rest.films[0].force[1] == pytest.approx(-system.rotor.static_load.sum(), rel=1e-6)
+    assert np.abs(rest.films[0].force[2:]).max() > 0.0
+    flat = resting_position(inclined(kind, 1e-6), OMEGA)
+    assert np.abs(rest.journals[0, :2] - flat.journals[0, :2]).max() > 1e-3 * clearance
+    other = resting_position(mirrored, OMEGA)
+    assert other.journals[0, :2] == pytest.approx(rest.journals[0, :2], abs=1e-7 * clearance)
+    assert other.journals[0, 2:] == pytest.approx(-rest.journals[0, 2:], rel=1e-12)
+
+
+def test_a_rotor_that_does_not_tilt_whirls_alike_in_shells_inclined_to_both_sides() -> None:
+    motions = []
+    for side in (1.0, -1.0, 1e-6):
+        system = inclined("rigid", side)
+        aside = np.full(system.rotor.size, 0.3 * system.clearances[0])
+        motions.append(run(system, 3e-3, aside)[0] / system.clearances[0])
+    one, other, flat = motions
+    assert np.abs(one - other).max() < 1e-9
+    assert np.abs(one - flat).max() > 1e-3
+
+
+def test_a_run_tells_the_given_tilt(tmp_path: Path) -> None:
+    settings = ["film.theory=finite", MESH, 'bearing.misalignment=["0.5 mrad", "-0.3 mrad"]', "speed.from=100 Hz",
+                "speed.to=100 Hz", "speed.duration=5 ms", "output.step=1 ms"]  # fmt: skip
+    found = frbcli.runup(load_case("jeffcott", settings), tmp_path / "run.h5")
+    assert found["tilt_x_rad"] == pytest.approx(-5e-4, rel=1e-9)
+    assert found["tilt_y_rad"] == pytest.approx(3e-4, rel=1e-9)
+    assert np.all(found["end_eccentricity"] > found["eccentricity"])
+
+
 def test_plan_counts_cells_over_the_whole_width() -> None:
     """A film that follows the tilt has as many cells on each half of its width as one that does not."""
     flat, follows = (make_plan(rigid_shaft(*more, "film.solution=cells")) for more in ((), ("film.tilt=follows",)))
     assert flat.cells is not None
     assert follows.cells == (flat.cells[0], 2 * flat.cells[1])
     assert follows.tolerance == flat.tolerance
+
+
+SHELL = 'bearing.misalignment=["0.5 mrad", "0 mrad"]'
+
+
+@pytest.mark.parametrize(
+    "case",
+    [rigid_shaft("film.tilt=follows"), load_case("jeffcott", ["film.theory=finite", SHELL])],
+    ids=["journals", "shell"],
+)
+def test_a_ladder_counts_cells_as_the_plan_does(case: Case) -> None:
+    """The rung of the plan, written as the setting of a case, is the plan again."""
+    plan = make_plan(case)
+    own = planned_rung(plan)
+    assert own.mesh is not None
+    assert make_plan(case.with_settings(f"accuracy.mesh=[{own.mesh[0]}, {own.mesh[1]}]")).cells == plan.cells
+    assert own in list(ladder(case, own))
 
 
 REFUSED = {

@@ -125,10 +125,10 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
     few of them."""
     from frbcli.columns import legend, table_of
     from frbcli.film.cavitation.table import law_named
-    from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM, sheet_columns
+    from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
     from frbcli.linear.film_state import heat_capacity
 
-    columns, points = sheet_columns(found.case.contact.rough), len(found.of(films[0]))
+    columns, points = found.columns, len(found.of(films[0]))
     full = full or points <= FEW_POINTS
     rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
     for film, label in zip(found.films, found.labels, strict=True):

@@ -20,8 +20,8 @@ Part = tuple[VolumeFilm, Motion]
 
 
 class FieldFilm(Protocol):
-    """A whole bearing as the parts that are solved for it. d: (2,) displacement of the journal over the clearance;
-    total: omega_J + omega_S in rad/s."""
+    """A whole bearing as the parts that are solved for it. d: (2,) displacement of the journal over the clearance, with
+    its tilts in rad behind it, (4,), of a film that sees them; total: omega_J + omega_S in rad/s."""
 
     @property
     def section(self) -> Section:

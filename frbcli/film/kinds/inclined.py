@@ -7,15 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.motion import Motion
-from frbcli.film.cells.tilted.balances import tilted_outflow
-from frbcli.film.cells.tilted.force import TiltedFilm
-from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
-from frbcli.film.kinds.fields import Part
-from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.film.kinds.tilted import TiltedField, TiltedFilms
 from frbcli.film.rectangles.film import FilmForce
 
 PLANE = slice(0, 2)  # of the four coordinates of a journal that tilts: its displacement
@@ -51,30 +45,11 @@ class InclinedFilms(Films):
 
 
 @dataclass(frozen=True)
-class InclinedFilm:
+class InclinedFilm(TiltedField):
     """The fields of a film with a given tilt (2,) of the journal against the shell in rad. See FieldFilm."""
 
-    film: TiltedFilm
     tilt: Array
 
-    @property
-    def section(self) -> Section:
-        """See FieldFilm."""
-        return self.film.section
-
-    def ends(self, d: Array) -> Array:
-        """See FieldFilm."""
-        return self.film.ends(np.concatenate([self.section.clearance * d, self.tilt]))
-
-    def parts(self, d: Array, total: float) -> tuple[Part, ...]:
-        """See FieldFilm."""
-        clearance = self.section.clearance
-        place = np.concatenate([d * clearance, self.tilt])
-        moved = (land.map @ place / clearance for land in self.film.lands)
-        motions = (Motion((u[0], u[1]), (0.0, 0.0), total, (u[2], u[3])) for u in moved)
-        return tuple((land.film, motion) for land, motion in zip(self.film.lands, motions, strict=True))
-
-    @staticmethod
-    def outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
-        """See FieldFilm."""
-        return tilted_outflow(film, motion, solution)
+    def coordinates(self, d: Array) -> Array:
+        """See TiltedField."""
+        return np.concatenate([self.section.clearance * d, self.tilt])

@@ -13,7 +13,9 @@ import numpy as np
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.balance.plain import gap_on
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.tilted.balances import tilted_outflow
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import (
     COORDINATES,
@@ -24,9 +26,11 @@ from frbcli.film.cells.tilted.force import (
     tilted_force,
 )
 from frbcli.film.compared import FINER
+from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil
 from frbcli.film.kinds.contract import Compared, Films
+from frbcli.film.kinds.fields import Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
 from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
@@ -144,6 +148,40 @@ class TiltedFilms(Films):
     def smallest_gap(self, i: int, d: Array) -> Array:
         """See Films.smallest_gap."""
         return least_gaps(self.own[i].section, d)
+
+    @property
+    def fields(self) -> tuple[TiltedField, ...]:
+        """See Films.fields."""
+        return tuple(map(TiltedField, self.own))
+
+@dataclass(frozen=True)
+class TiltedField:
+    """The fields of a film whose journal tilts. See FieldFilm."""
+
+    film: TiltedFilm
+
+    @property
+    def section(self) -> Section:
+        """See FieldFilm."""
+        return self.film.section
+
+    def coordinates(self, d: Array) -> Array:
+        """(4,) of the journal in m and rad."""
+        return np.concatenate([self.section.clearance * d[:2], d[2:]])
+
+    def ends(self, d: Array) -> Array:
+        """See FieldFilm."""
+        return self.film.ends(self.coordinates(d))
+
+    def parts(self, d: Array, total: float) -> tuple[Part, ...]:
+        """See FieldFilm."""
+        place, still = self.coordinates(d), np.zeros(COORDINATES)
+        return tuple((land.film, land.motion(place, still, total)) for land in self.film.lands)
+
+    @staticmethod
+    def outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+        """See FieldFilm."""
+        return tilted_outflow(film, motion, solution)
 
 
 def _content(land: TiltedLand, motion: Motion, w: Array) -> Array:

@@ -9,13 +9,13 @@ from typing import ClassVar
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.forms.tilted import FOLLOWED, TiltedForm, film_faults, law_faults, misalignment_faults
-from frbcli.scene.gate.analysis import SHEETS
+from frbcli.scene.forms.tilted import RUNS, TiltedForm, film_faults, law_faults, misalignment_faults, run_faults
+from frbcli.scene.gate.analysis import FILMS, RANGE, RUN, SHEETS, STABILITY
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import misaligned
 
-AT_REST = (*FOLLOWED, *SHEETS)
+AT_REST = (FILMS, STABILITY, RANGE, *SHEETS)
 WITHOUT = "Leave bearing.misalignment out."
 
 
@@ -24,7 +24,7 @@ def _shaft_faults(case: Case) -> Iterator[Fault]:
     if case.given_rotor is not None and shaft_of(case).tilts:
         for key, value in misaligned(case):
             problem = "tilts the shell, and the journal of this rotor tilts as well."
-            remedy = f'Write film.tilt = "follows" for stability, damped modes and response. {WITHOUT}'
+            remedy = f'Write film.tilt = "follows". {WITHOUT}'
             yield Fault(key, value, None, problem, remedy)
 
 
@@ -33,10 +33,11 @@ class InclinedForm(TiltedForm):
     """The cells of films that follow a tilt, with one that is given."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(_shaft_faults, AT_REST),
-        Rule(lambda case: film_faults(case, WITHOUT), AT_REST),
+        Rule(_shaft_faults, (*AT_REST, *RUNS)),
+        Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
-        Rule(misalignment_faults, AT_REST),
+        Rule(lambda case: run_faults(case, WITHOUT), (RUN,)),
+        Rule(misalignment_faults, (*AT_REST, *RUNS)),
     )
 
 

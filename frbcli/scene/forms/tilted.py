@@ -16,7 +16,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.gate.analysis import ALL, COMPARISON, FILMS, RANGE, RUN, STABILITY
+from frbcli.scene.gate.analysis import ALL, BEARING, COMPARISON, FILMS, LADDER, RANGE, RUN, STABILITY
 from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.shafts.table import shaft_of
@@ -27,13 +27,13 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED, RUNS = (FILMS, STABILITY, RANGE), (RUN, COMPARISON)
+FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING), (RUN, COMPARISON, LADDER)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
 
 def _analysis_faults(_: Case) -> Faults:
-    problem = "is for runs, stability, damped modes and response."
+    problem = "is for runs, bearing sheets under the load of a rotor, stability, damped modes and response."
     yield Fault(KEY, ASKED, None, problem, 'Write film.tilt = "none" here, or call `frb runup`.')
 
 
@@ -76,25 +76,25 @@ def law_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
             yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
 
 
-def _run_faults(case: Case) -> Iterator[Fault]:
-    """What a run does not follow in films that tilt."""
+def run_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+    """What a run does not follow in films that tilt. without: see film_faults."""
     recorded = [kind for kind in case.output.signals if kind != "film-thickness"]
     if recorded:
         problem = "are not recorded of films that tilt, but for film-thickness."
-        yield Fault("output.signals", ", ".join(recorded), None, problem, f"Leave them out. {WITHOUT}")
+        yield Fault("output.signals", ", ".join(recorded), None, problem, f"Leave them out. {without}")
     if case.film.coupling == "co-simulation":
         problem = "exchanges forces, and a film that tilts has moments, too."
         yield Fault("film.coupling", "co-simulation", None, problem, 'Write coupling = "auto".')
     if case.contact.policy == "elastic":
         problem = "is that of a journal in the middle of its shell, and one that tilts touches at an end."
-        yield Fault("contact.policy", "elastic", None, problem, f'Write policy = "stop". {WITHOUT}')
+        yield Fault("contact.policy", "elastic", None, problem, f'Write policy = "stop". {without}')
     for place, key in zip(film_places(case), film_keys(case), strict=True):
         if place.geometry.supply.surface == "journal":
             problem = "lets the openings turn with the journal, which a film that tilts does not follow."
-            yield Fault(f"{key}.supply.on", "journal", None, problem, f'Write on = "shell". {WITHOUT}')
+            yield Fault(f"{key}.supply.on", "journal", None, problem, f'Write on = "shell". {without}')
         if getattr(place.geometry, "clearance_steps", ()) and law_named(case.cavitation(place.geometry)).keeps_oil:
             problem = "moves the oil of a film into another gap, which one that tilts does not follow."
-            yield Fault(f"{key}.clearance_steps", "", None, problem, f"Take a law that keeps no oil. {WITHOUT}")
+            yield Fault(f"{key}.clearance_steps", "", None, problem, f"Take a law that keeps no oil. {without}")
 
 
 def misalignment_faults(case: Case) -> Iterator[Fault]:
@@ -122,13 +122,18 @@ class TiltedForm(CellForm):
         Rule(_machine_faults, (*FOLLOWED, *RUNS)),
         Rule(film_faults, (*FOLLOWED, *RUNS)),
         Rule(law_faults, FOLLOWED),
-        Rule(_run_faults, (RUN,)),
+        Rule(run_faults, (RUN,)),
         Rule(misalignment_faults, (*FOLLOWED, *RUNS)),
     )
 
     def solve_us(self, plan: Plan) -> float:
         """See FilmForm."""
         return super().solve_us(replace(plan, cells=self.of_half(cells_of(plan))))
+
+    def mesh_of(self, plan: Plan) -> tuple[int, int]:
+        """See FilmForm: as accuracy.mesh counts them."""
+        around, along = self.of_half(cells_of(plan))
+        return along, around
 
     def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
         """See CellForm: cells are counted over the whole width."""

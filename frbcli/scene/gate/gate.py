@@ -16,7 +16,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.forms.inclined import AT_REST
-from frbcli.scene.forms.tilted import ASKED, RUNS
+from frbcli.scene.forms.tilted import RUNS
 from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
 from frbcli.scene.gate.analysis import (
     ALL,
@@ -82,8 +82,7 @@ RULES = (
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *AT_REST, *RUNS))),
-    Rule(lambda case: () if case.film.tilt == ASKED else kinematic.misalignment_faults(case), RUNS),
-    Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), AT_REST),
+    Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), (*AT_REST, *RUNS)),
     Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),
     Rule(_of_films(runs.form_faults), (RUN,)),

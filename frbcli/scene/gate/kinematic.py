@@ -120,5 +120,5 @@ def end_faults(case: Case) -> Iterator[Fault]:
 def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells that are not in line, where journal and shell are taken to be parallel."""
     for key, value in misaligned(case):
-        problem = "tilts the shell, which rotations, runs with film.tilt and machines at rest follow; others do not."
+        problem = "tilts the shell, which rotations, runs and machines at rest follow; others do not."
         yield Fault(key, value, None, problem, "Leave it out here.")

@@ -83,7 +83,7 @@ def form_of(case: Case) -> FilmForm:
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
     choices = {NO_FILM: _no_film, GIVEN: _given, PUBLISHED: _published, SOLUTIONS: _solutions}
-    choices |= {CELLS: _volumes, TILTED: _volumes}
+    choices |= {CELLS: _volumes, TILTED: _volumes, INCLINED: _volumes}
     return choices.get(form_of(case), _rectangles)(case, target)
 
 
@@ -105,13 +105,13 @@ def _published(case: Case, _: float) -> FilmChoice:
 def _volumes(case: Case, target: float) -> FilmChoice:
     eccentricity = expected_eccentricity(case)
     worst = worst_film(case, eccentricity)
-    form = TILTED if form_of(case) == TILTED else CELLS
+    form = TILTED if form_of(case).inclines else CELLS  # a run has no films of their own for a tilt that is given
     cells, cells_why = _cells(case, worst, target)
     error, cells = worst.of(cells), form.of_whole(cells)
     theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
     mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
     if form == TILTED:
-        mesh_why += "; over the whole width, since the film follows the tilt of its journal"
+        mesh_why += "; over the whole width, since its gap is not even along the axis"
     elif case.film.solution == "cells":
         mesh_why += "; film.solution is set in the case"
     elif all(law_named(model).tabulated for model in case.cavitations):
