@@ -69,10 +69,17 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
         raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
     if not isinstance(model.label, str) or not model.label.isprintable():
         raise wrong(model, "label", "is not text.", "Write the name of the model in pictures.")
+    if not (isinstance(model.sheared, float | int) and 0.0 <= model.sheared <= 1.0):
+        raise wrong(model, "sheared", "is no share of the gap.", "Write 1.0, or 0.0 for a journal that does not spin.")
     _check_keys(model)
-    from frbcli.film.bearing_model.compiled import compiled_model  # numba takes longer to import than a case to read
+    from frbcli.film.bearing_model.compiled import (  # numba takes longer to import than a case to read
+        compiled_flow,
+        compiled_model,
+    )
 
     compiled_model(model)
+    if model.flow is not None:
+        compiled_flow(model)
 
 
 def _check_keys(model: BearingModel) -> None:

@@ -17,6 +17,9 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import Array, compiled
+from frbcli.film.bearing_model.film import CLEARANCE as MODEL_CLEARANCE
+from frbcli.film.bearing_model.film import VISCOSITY as MODEL_VISCOSITY
+from frbcli.film.bearing_model.film import model_flow
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import (
@@ -27,7 +30,7 @@ from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.state import OIL, RATE
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, MODELS, by_kind, kind_of
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
 from frbcli.solve.stage.rough_contact import rubbing
@@ -124,7 +127,7 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
 def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: RUNNING
-    if kind_of(films) == CELLS:
+    if kind_of(films) in (CELLS, MODELS):
         return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
             heat, films, work, turning, journal, bodies, wet, taken, clearances, drag
         )
@@ -169,9 +172,8 @@ def _carry(
         if numbers[BY_FORMULA] != 0.0:
             now[FLOW, f] = now[SHARE_OF_SUPPLY, f] * made[FORMULA, f] * c * c * c / now[ETA, f]
         else:
-            w_x, w_y = r_x + 0.5 * total * d_y, r_y - 0.5 * total * d_x
             scale = now[SCALE, f] / now[SHARE_OF_SUPPLY, f]
-            now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale)
+            now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, r_x, r_y, total, scale)
         now[SHARE, f] = oil_share(films, work, f)
     heat_step(capacity, links, made, numbers, now, step, state[BOOKS + bodies.shape[0] :], gain, state)
     return int(_follow(heat, films, drag, clearances, wet, True))
@@ -225,9 +227,10 @@ def _write(state: Array, now: Array, gain: Array, out_heat: Array, first: int, l
 
 
 def leaving(
-    ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float
-) -> float:
-    """Flow through the ends of film f over its clearance, m^2/s, see end_flow."""
+    ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, total: float,
+    scale: float,
+) -> float:  # fmt: skip
+    """Flow through the ends of film f over its clearance, m^2/s, see end_flow; total: omega_J + omega_S."""
     raise NotImplementedError
 
 
@@ -252,31 +255,54 @@ def _scale_oil(wet: Array, f: int, factor: float) -> None:
 
 
 def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
-    """Films on cells <- pressures and law of film f at its scale; tabulated films are asked for scaled velocities."""
+    """Films on cells <- pressures and law of film f at its scale, bearing models <- viscosity and clearance; tabulated
+    films are asked for scaled velocities."""
     raise NotImplementedError
 
 
 @overload(leaving, inline="always")
-def _leaving(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+def _leaving(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: ignore[no-untyped-def]
     if kind_of(films) == CELLS:
-        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: (
+        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
             ends.units[f]
             * side_flow(
                 films.films[f], films.ring[f], films.cells[f], work.states[f],
                 work.grids[f].x, work.grids[f].y, ends.far_open[f] != 0,
             )
         )  # fmt: skip
-    if isinstance(ends, types.UniTuple):
-        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)
-    if len(ends) == 1:
-        return lambda ends, films, work, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
+    if kind_of(films) == MODELS:
+        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
+            model_flow(films[f], d_x, d_y, v_x, v_y, total) / films[f].parameters[MODEL_CLEARANCE]
+        )
+    return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: _flow_of(
+        ends, f, d_x, d_y, v_x + 0.5 * total * d_y, v_y - 0.5 * total * d_x, scale
+    )
 
-    def several(ends, films, work, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+
+def _flow_of(ends: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
+    """end_flow of film f of those whose outflow follows from w."""
+    raise NotImplementedError
+
+
+@overload(_flow_of, inline="always")
+def _flow_of_one(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
+    if isinstance(ends, types.UniTuple):
+        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)
+    if len(ends) == 1:
+        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
+
+    def several(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
         if f == 0:
             return end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
-        return leaving(ends[1:], films, work, f - 1, d_x, d_y, w_x, w_y, scale)
+        return _flow_of(ends[1:], f - 1, d_x, d_y, w_x, w_y, scale)
 
     return several
+
+
+@compiled()
+def _set_model(parameters: Array, now: Array, f: int) -> None:
+    """set_scale of bearing models."""
+    parameters[MODEL_VISCOSITY], parameters[MODEL_CLEARANCE] = now[ETA, f], now[CLEARANCE, f]
 
 
 @compiled()
@@ -321,5 +347,6 @@ by_kind(
     set_scale,
     inline=True,
     others=lambda ends, films, f, now, reference: None,
+    models=lambda ends, films, f, now, reference: _set_model(films[f].parameters, now, f),
     cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference),
 )

@@ -29,7 +29,7 @@ from frbcli.scene.gate.analysis import (
 from frbcli.scene.gate.gate import require
 
 PAGE = DOCS / "matrix.md"
-MODEL = "own"
+MODEL, FLOWLESS = "own", "own-without-flow"
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
 TWO_PHASE = "film.cavitation=two-phase"
 GROOVES = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressure="2 bar"}'
@@ -125,6 +125,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and clearance steps": ("jeffcott", (OIL, HEAT, STEP)),
     "heat and the published form": ("jeffcott", (OIL, HEAT, *PUBLISHED)),
     "heat and a bearing model of one's own": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
+    "heat and a bearing model that does not tell its flow": ("jeffcott", (OIL, HEAT, f"film.theory={FLOWLESS}")),
     "heat and co-simulation": ("jeffcott", (OIL, HEAT, APART)),
     "heat and floating rings": ("floating-ring-heat", ()),
     "heat and squeeze film dampers": ("jeffcott", (OIL, HEAT, DAMPER)),
@@ -171,7 +172,8 @@ Reason = tuple[str, str, str]  # key, problem and remedy
 
 def page() -> str:
     """The page in Markdown."""
-    frbcli.add_bearing(BearingModel(MODEL, "one's own", _force))
+    frbcli.add_bearing(BearingModel(MODEL, "one's own", _force, flow=_flow))
+    frbcli.add_bearing(BearingModel(FLOWLESS, "one's own, without its flow", _force))
     try:
         reasons: dict[Reason, list[str]] = {}  # with the values of the key
         names = list(ANALYSES)
@@ -184,6 +186,7 @@ def page() -> str:
             rows.append(f"| {name} | {_cell(reasons, refused(case, settings, RUN))} |")
     finally:
         frbcli.remove_bearing(MODEL)
+        frbcli.remove_bearing(FLOWLESS)
     notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
     return "\n".join([HEAD, *rows, "", "Why not, and what to do:", "", *notes, ""])
 
@@ -220,6 +223,10 @@ def refused(name: str, settings: Sequence[str], analysis: str) -> tuple[Fault, .
 
 def _force(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
     return -1e6 * dx - 1e3 * vx, -1e6 * dy - 1e3 * vy
+
+
+def _flow(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
+    return 1e-6
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""A bearing model is checked before anything runs: finite forces everywhere, derivatives that are those."""
+"""A bearing model is checked before anything runs: finite forces and flows everywhere, derivatives that are those."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from dataclasses import astuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.bearing_model.compiled import CENTRAL, compiled_model
-from frbcli.film.bearing_model.film import BearingModelFilm
+from frbcli.film.bearing_model.compiled import CENTRAL, compiled_flow, compiled_model
+from frbcli.film.bearing_model.film import NO_FLOW, BearingModelFilm, model_flow
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.rectangles.film_force import film_force
 
@@ -30,7 +30,8 @@ SLOW = 60.0  # rad/s: size of the velocities of a journal that hardly turns
 def model_film(model: BearingModel, dimensions: BearingDimensions, values: tuple[float, ...]) -> BearingModelFilm:
     """The film of a bearing; values: of the model's keys, in their order."""
     numbers = np.array((*astuple(dimensions), *values), dtype=np.float64)
-    return BearingModelFilm(compiled_model(model).address, 0, dimensions.clearance, numbers)
+    flow = NO_FLOW if model.flow is None else compiled_flow(model).address
+    return BearingModelFilm(compiled_model(model).address, flow, 0, numbers)
 
 
 def problem_of(model: BearingModel, film: BearingModelFilm, omega: float) -> str:
@@ -40,16 +41,21 @@ def problem_of(model: BearingModel, film: BearingModelFilm, omega: float) -> str
         if not np.all(np.isfinite(film_force(film._replace(central=1), *state))):
             what = "force" if model.derivatives is None else "force or derivative"
             return f"has no finite {what} at {_told(film, state)}"
+        if film.flow != NO_FLOW and not 0.0 <= model_flow(film, *state) < math.inf:
+            return f"tells a flow of {model_flow(film, *state):.4g} m^3/s at {_told(film, state)}"
     return "" if model.derivatives is None else _wrong_derivatives(film, omega)
 
 
 def fingerprint(film: BearingModelFilm, omega: float) -> str:
-    """Digest of the forces of a bearing, to nine digits: models of one name that differ have different ones."""
-    states = (_state(place, motion, omega) for place, motion in itertools.product(PLACES, MOTIONS))
+    """Digest of the forces and flows of a bearing, to nine digits: models of one name that differ have different
+    ones."""
+    states = [_state(place, motion, omega) for place, motion in itertools.product(PLACES, MOTIONS)]
     forces = np.array([film_force(film, *state)[:2] for state in states])
     sizes = np.hypot(forces[:, 0], forces[:, 1])[:, None]
     forces = np.where(sizes > ROUND_OFF * sizes.max(), np.round(forces / np.maximum(sizes, TINY), 9) + 0.0, 0.0)
     told = [*(f"{size:.8e}" for size in sizes.ravel() * (forces != 0.0).any(axis=1)), *map(str, forces.ravel())]
+    if film.flow != NO_FLOW:
+        told += [f"{model_flow(film, *state):.8e}" for state in states]
     return hashlib.sha256(" ".join(told).encode()).hexdigest()[:16]
 
 

@@ -1,4 +1,4 @@
-"""A bearing model compiled: one C function that fills in force and derivatives, called by its address.
+"""A bearing model compiled: a C function that fills in force and derivatives, and one for its flow, called by address.
 
 So the kernels of the time loop are compiled once for all models, as they are for cavitation laws, and a changed model
 never meets an old compiled one: what is compiled here lives as long as the process.
@@ -28,7 +28,8 @@ from frbcli.film.jitted import jitted
 # is left, which is what forces of films change with, velocities over their size.
 ONE_SIDED, CENTRAL = 1.5e-8, 6e-6
 SLOWEST = 1.0  # rad/s: times the clearance, the least size of a velocity
-FORCE, DERIVATIVES = 2, 8  # numbers that the two functions return
+FORCE, DERIVATIVES, FLOW = 2, 8, 1  # numbers that the functions return
+MEANT = {FORCE: "(F_x, F_y) in N", DERIVATIVES: "the eight derivatives of (F_x, F_y)", FLOW: "one number, in m^3/s"}
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(types.intp, *[types.float64] * MOTION, _POINTER, _POINTER)
@@ -36,6 +37,7 @@ _first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
 # Stand in the templates below for those of one model.
 force: Any = None
 derivatives: Any = None
+flow: Any = None
 Record: Any = None
 COUNT = 1
 
@@ -43,15 +45,31 @@ COUNT = 1
 @cache
 def compiled_model(model: BearingModel) -> Any:
     """The C function of a model. Raises InputError if numba cannot compile it, or it returns something else."""
-    record: Any = namedtuple("Bearing", model.parameters)  # type: ignore[misc]
-    shared: dict[str, Any] = {"Record": record, "COUNT": len(model.parameters)}
-    shared["force"] = _checked(model, "force", model.force, record, FORCE)
+    record = _record(model)
+    functions = {"force": _checked(model, "force", model.force, record, FORCE)}
     template: Any = _by_differences
     if model.derivatives is not None:
-        shared["derivatives"] = _checked(model, "derivatives", model.derivatives, record, DERIVATIVES)
+        functions["derivatives"] = _checked(model, "derivatives", model.derivatives, record, DERIVATIVES)
         template = _by_derivatives
-    function = FunctionType(template.__code__, {**globals(), **shared}, template.__name__)
-    return c_function(function, _SIGNATURE)
+    return _made(template, record, functions)
+
+
+@cache
+def compiled_flow(model: BearingModel) -> Any:
+    """The C function of the flow of a model that tells it. Raises InputError as compiled_model."""
+    record = _record(model)
+    return _made(_flow_alone, record, {"flow": _checked(model, "flow", model.flow, record, FLOW)})
+
+
+def _record(model: BearingModel) -> Any:
+    """The type of the record that the functions of a model take."""
+    return namedtuple("Bearing", model.parameters)
+
+
+def _made(template: Any, record: Any, functions: dict[str, Any]) -> Any:
+    """The C function of a template, in which the functions of a model stand."""
+    shared = {"Record": record, "COUNT": len(record._fields), **functions}
+    return c_function(FunctionType(template.__code__, {**globals(), **shared}, template.__name__), _SIGNATURE)
 
 
 def _checked(model: BearingModel, name: str, function: Any, record: Any, count: int) -> Any:
@@ -70,10 +88,10 @@ def _checked(model: BearingModel, name: str, function: Any, record: Any, count: 
         raise wrong(model, name, f"cannot be compiled by numba: {_reason(error)}.", remedy) from error
     base: Any = types.BaseTuple
     found: tuple[Any, ...] = tuple(returned) if isinstance(returned, base) else ()
+    found = (returned,) if count == FLOW else found
     if len(found) != count or not all(isinstance(kind, types.Float | types.Integer) for kind in found):
-        problem = f"returns {returned}, not {count} numbers."
-        meant = "(F_x, F_y) in N" if count == FORCE else "the eight derivatives of (F_x, F_y)"
-        raise wrong(model, name, problem, f"Return {meant}.")
+        problem = f"returns {returned}, not {count} number{'s' * (count > 1)}."
+        raise wrong(model, name, problem, f"Return {MEANT[count]}.")
     return compiled
 
 
@@ -96,6 +114,14 @@ def _by_derivatives(central, d_x, d_y, v_x, v_y, omega, given, answer):  # type:
     out[0], out[1] = force(d_x, d_y, v_x, v_y, omega, bearing)
     for i in range(NUMBERS - 2):
         out[2 + i] = values[i]
+
+
+def _flow_alone(central, d_x, d_y, v_x, v_y, omega, given, answer):  # type: ignore[no-untyped-def]
+    """The flow of a model as the first of the numbers."""
+    out = carray(answer, (NUMBERS,))
+    out[0] = np.nan
+    bearing = Record(*_first(carray(given, (COUNT,)), COUNT))
+    out[0] = flow(d_x, d_y, v_x, v_y, omega, bearing)
 
 
 def _by_differences(central, d_x, d_y, v_x, v_y, omega, given, answer):  # type: ignore[no-untyped-def]

@@ -44,7 +44,10 @@ class BearingModel:
     key with choices counts them from 0, one that is not given is NaN. It is asked within the clearance only, |d| < C.
     derivatives: takes the same and returns eight numbers, those of F_x, then F_y by d_x, d_y in N/m, and those of F_x,
     then F_y by v_x, v_y in N s/m; if it is not given they are taken by central differences.
-    Both are functions compiled by numba.njit, or plain ones that numba can compile; see docs/adding-a-model.md.
+    flow: takes the same and returns the oil that leaves the open ends of one whole bearing, in m^3/s; a case with heat
+    needs it, unless its thermal.side_flow is "concentric". sheared: share of the gap in which the slip of journal and
+    shell shears oil: 0 of a damper, whose journal does not spin. The power of the film follows from it and the force.
+    All are functions compiled by numba.njit, or plain ones that numba can compile; see docs/adding-a-model.md.
     keys: of the table [film.NAME]; meaning: of that table, a sentence.
     """
 
@@ -54,6 +57,8 @@ class BearingModel:
     derivatives: Callable[..., Any] | None = None
     keys: tuple[Key, ...] = ()
     meaning: str = ""
+    flow: Callable[..., Any] | None = None
+    sheared: float = 1.0
 
     @property
     def parameters(self) -> tuple[str, ...]:

@@ -1,5 +1,5 @@
-"""Films whose force follows from the motion alone: closed forms, tables, chains between axial grooves, solutions that
-were tabulated before, and bearing models."""
+"""Films whose force follows from the motion alone: closed forms, tables, chains between axial grooves, and solutions
+that were tabulated before."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from frbcli.film.bearing_model.table import model_named
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.form import FilmForm, SolveCounts
-from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS
+from frbcli.scene.gate.analysis import ALL, KINEMATIC, RUN, SHEETS, SPEED_CYCLES
 from frbcli.scene.gate.rule import Rule, motion_omega, oil_flow_signal, refusal, run_omega, sheet_omega
 from frbcli.scene.keys import film_keys
 from frbcli.scene.tilt import tilt_refusal
@@ -44,6 +44,13 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
         ("cavitation", "in the model", "film.cavitation and bearing.ends have no effect"),
         ("film", str(GIVEN), TOLD.format(by)),
     )
+
+
+def _flowless(case: Case) -> str | None:
+    """The model, where heat leaves with an oil flow that it does not tell."""
+    model = chosen_model(case)
+    asked = case.heat is not None and case.heat.side_flow == "film"
+    return case.film.theory if asked and model is not None and model.flow is None else None
 
 
 def _with_heat(case: Case) -> str | None:
@@ -101,9 +108,18 @@ def _force_faults(case: Case, omega: float) -> Iterator[Fault]:
 
 RULES = (
     refusal(
-        ALL, "film.theory", _with_heat,
-        "gives a force, but not the power that its film takes up nor the oil that leaves it, and [thermal] needs both",
-        "Write finite, short or auto.",
+        ALL, "film.theory", _flowless, "does not tell the oil that leaves its film and takes the heat along",
+        "Give BearingModel a function flow(d_x, d_y, v_x, v_y, omega, bearing) that returns it in m^3/s "
+        '(docs/adding-a-model.md), or write thermal.side_flow = "concentric".',
+    ),
+    refusal(
+        KINEMATIC, "film.theory", _with_heat, "gives these tests its force alone, without the heat of its film",
+        'Write thermal.model = "none" here, or call `frb bearing` or `frb runup`.',
+    ),
+    refusal(
+        (SPEED_CYCLES,), "film.theory", _with_heat,
+        "may follow the viscosity in any way, and in limit cycles with heat forces are multiples of each other",
+        'Write thermal.model = "none", with the viscosity at the temperature of the film, or take a run-up.',
     ),
     Rule(_key_faults, (RUN, *KINEMATIC, *SHEETS)),
     tilt_refusal(

@@ -21,8 +21,9 @@ from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.elements import ElementFilms
 from frbcli.film.kinds.inclined import InclinedFilms
+from frbcli.film.kinds.models import ModelFilms
 from frbcli.film.kinds.none import NoFilms
-from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms, TableFilms
+from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.published.data import element_film
@@ -146,7 +147,7 @@ def _tilted_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: f
 
 def _models(case: Case, _: Plan, __: float | None) -> Films:
     sections = tuple(whole_section(case, place.geometry) for place in film_places(case))
-    return TableFilms(_clearances(case), tuple(bearing_film(case, section) for section in sections), sections)
+    return ModelFilms(_clearances(case), tuple(bearing_film(case, section) for section in sections))
 
 
 def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:

@@ -2,6 +2,7 @@
 
 - none at all, an empty tuple;
 - a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
+- a tuple of BearingModelFilm, a tuple of FilmData that follow viscosity and clearance by functions of their own;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
 - TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py;
 - ElementFilm, the one film of a machine: elements of the published two-phase form, see elements.py.
@@ -17,11 +18,12 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS
+from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.cells.tilted.data import TiltedVolumes
 from frbcli.film.published.data import ElementFilm
 
-NONE, TABLES, CELLS, TILTED, ELEMENTS = "none", "tables", "cells", "tilted", "elements"
+NONE, TABLES, MODELS, CELLS, TILTED, ELEMENTS = "none", "tables", "models", "cells", "tilted", "elements"
 _KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED, ElementFilm: ELEMENTS}
 
 
@@ -29,6 +31,10 @@ def kind_of(films: Any) -> str:
     """The kind of films, or of a type of films that the compiler knows."""
     if isinstance(films, types.BaseTuple) and not isinstance(films, types.BaseNamedTuple) and len(films) == 0:
         return NONE
+    if isinstance(films, types.UniTuple) and getattr(films.dtype, "instance_class", None) is BearingModelFilm:
+        return MODELS
+    if type(films) is tuple and films and isinstance(films[0], BearingModelFilm):
+        return MODELS
     return _KINDS.get(getattr(films, "instance_class", type(films)), TABLES)
 
 

@@ -20,7 +20,7 @@ from frbcli.solve.films.elements import (
     write_element_oil,
 )
 from frbcli.solve.films.grid import GRID
-from frbcli.solve.films.kinds import CELLS, ELEMENTS, TILTED, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, ELEMENTS, MODELS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 from frbcli.solve.state import Array
 
@@ -68,7 +68,7 @@ def make_work(
     if kind == TILTED:
         return make_tilted_work(films, wet, stages)
     none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros(0, GRID), np.zeros((0, 0)))
-    if scales is None:
+    if scales is None or kind == MODELS:
         return none
     return Scaled(*none, scales) if shares is None else Supplied(*none, scales, shares)
 
