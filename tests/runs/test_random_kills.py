@@ -44,7 +44,7 @@ MACHINES = [
 
 
 def go_on(machine: Machine, path: Path, life: float) -> None:
-    """Go on with the run, with a checkpoint after each look at the clock, until a signal of the system ends the process.
+    """Go on with the run, with a checkpoint after each look at the clock, until a signal ends the process.
 
     life: CPU time in s, which is the same part of a run on a busy machine.
     """
