@@ -179,7 +179,7 @@ def test_contact_at_an_end_is_one_fault_whose_remedy_helps() -> None:
     ("bearing sheet", TILT, "motion.tilt"),
     ("squeeze", TILT, "motion.tilt"),
     ("whirl", 'motion.velocity=["1 mm/s", "0 mm/s"]', "motion.velocity"),
-    ("run", 'bearing.misalignment=["0.1 mrad", "0 mrad"]', "bearing.misalignment"),
+    ("squeeze", 'bearing.misalignment=["0.1 mrad", "0 mrad"]', "bearing.misalignment"),
 ])  # fmt: skip
 def test_refused_elsewhere(analysis: str, setting: str, key: str) -> None:
     case = case_of(setting, 'motion.frequency="50 Hz"')

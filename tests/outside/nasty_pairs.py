@@ -52,6 +52,7 @@ BASES: tuple[tuple[str, tuple[str, ...]], ...] = (
     ("floating-ring", ()),
     ("turbocharger-car", ()),
 )  # fmt: skip
+HEATED = 6  # the base with heat
 COMMANDS: tuple[tuple[str, ...], ...] = (
     ("check", "CASE", "--all"),
     ("rotation", "CASE", "-o", "OUT.png"),
@@ -87,6 +88,21 @@ FACTORS = (0.0, -1.0, 1e-12, 1e-6, 1e-3, 0.01, 0.1, 0.3, 0.9, 1.1, 3.0, 10.0, 10
 PLAIN = (0.0, -0.0, -1.0, 1e-15, 1e-9, 1e-3, 1.0, 0.999999, 1e3, 1e15)
 WORDS = ("", "nan", "[]", "true", "1e400 m", "35 u m", "elrod", "none", "auto", "3", "{ kind = 'none' }")
 
+# Seeds from this one on have an input over time in place of one value or of both, half of them sound: keys with
+# the size of their values, and what is in the files that they name.
+OVER_TIME = 100_000
+INPUTS = (("bearing.supply.pressure", 2e5), ("thermal.supply_temperature", 340.0), ("thermal.housing", 330.0),
+          ("speed", 50.0), ("force", 10.0), ("base", 2.0))  # fmt: skip
+SOUND = (0.9, 1.0, 1.1)  # times the size
+TIMES = (0.0, 0.0, 1e-9, 0.02, 0.1, 0.3, 1.0, 1e6, -1.0)  # s
+TABLES: dict[str, tuple[tuple[object, object], ...]] = {
+    "good": ((0.0, 1.0), (0.05, 1.1), (1.0, 1.0)), "steep": ((0.0, 1.0), (1e-6, 1.1), (2e-6, 0.9), (1.0, 1.0)),
+    "falling": ((0.0, 1.0), (0.5, 1.0), (0.2, 1.0)), "short": ((0.0, 1.0), (0.01, 1.0)),
+    "late": ((0.03, 1.0), (1.0, 1.0)),
+    "gap": tuple((0.01 * i, 1.0 + 0.01 * i) for i in range(40) if i not in (20, 21, 22)),
+    "huge": ((0.0, 1e30), (1.0, -1e30)), "words": ((0.0, "nan"), ("one", 1.0)), "empty": (),
+}  # fmt: skip
+
 
 class TooLong(BaseException):
     """A command took longer than it may."""
@@ -97,6 +113,8 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
     chance = random.Random(seed)
     command = COMMANDS[seed % len(COMMANDS)]
     source, settings = BASES[0] if command[0] == "fit" else BASES[chance.randrange(len(BASES))]
+    if seed >= OVER_TIME and command[0] != "fit":
+        source, settings = BASES[chance.choice((0, HEATED, HEATED))]
     if "--stiffness" in command and chance.random() < 0.8:
         source, settings = BASES[-1]
     settings = (*settings, *SHORT_RUN, MOTION, *NEEDS.get(command[0], ()))
@@ -111,7 +129,26 @@ def trial(seed: int) -> tuple[tuple[str, ...], str, list[str]]:
         else:
             number = value.value * chance.choice(FACTORS) if chance.random() < 0.8 else chance.choice(PLAIN)
             nasty.append(f"{value.key}={number!r}")
+    if seed >= OVER_TIME:
+        nasty = [*nasty[: chance.randrange(2)], _over_time(chance)]
     return command, source, [*settings, *nasty]
+
+
+def _over_time(chance: random.Random) -> str:
+    """A setting of an input over time, by nasty points or by a file."""
+    key, size = chance.choice(INPUTS)
+    sound = chance.random() < 0.5
+    file = f'file = "{key}-{"good" if sound else chance.choice((*TABLES, "nowhere"))}.csv"'
+    if key == "force":
+        return f'force=[{{ at = "journal", {file} }}]'
+    if key == "base":
+        return f"base={{ {file} }}"
+    points = [[chance.choice(TIMES), size * chance.choice(FACTORS)] for _ in range(chance.randrange(1, 5))]
+    if sound:
+        points = [[time, size * chance.choice(SOUND)] for time in (0.0, 0.05, 1.0)]
+    if key == "speed":
+        return f"speed={{ {chance.choice((file, f'points = {points}'))} }}"
+    return f"{key}={chance.choice((f'{{ {file} }}', str(points)))}"
 
 
 @functools.cache
@@ -179,10 +216,19 @@ def measured(path: Path) -> None:
     np.savetxt(path, table, delimiter=",", header="t,n,x,y", comments="")
 
 
+def tables() -> None:
+    """The files that inputs over time name."""
+    for key, size in INPUTS:
+        for name, rows in TABLES.items():
+            lines = [f"{t},{x * size if isinstance(x, float) else x}" for t, x in rows]
+            Path(f"{key}-{name}.csv").write_text("\n".join(["time,value", *lines]), encoding="utf-8")
+
+
 def main(folder: str, seeds: list[str]) -> None:
     """A line of JSON for each seed."""
     os.chdir(folder)
     measured(Path("measured.csv"))
+    tables()
     for seed in seeds:
         sys.stdout.write(json.dumps(tried(int(seed))) + "\n")
         sys.stdout.flush()

@@ -49,3 +49,9 @@ def test_every_command_that_takes_a_case_is_tried() -> None:
 @pytest.mark.parametrize("batch", range(BATCHES))
 def test_two_nasty_values_break_no_command(batch: int, tmp_path: Path) -> None:
     tried(tmp_path, range(batch * BATCH, (batch + 1) * BATCH))
+
+
+@pytest.mark.nightly
+def test_an_input_over_time_and_a_nasty_value_break_no_command(tmp_path: Path) -> None:
+    """Pressures, temperatures, speeds, forces and motions of the ground: points and files, good and bad ones."""
+    tried(tmp_path, range(nasty_pairs.OVER_TIME, nasty_pairs.OVER_TIME + BATCH))

@@ -158,7 +158,7 @@ def test_every_shipped_machine_is_drawn(name: str) -> None:
         assert note.endswith(".")
         assert "nan" not in drawing
         grounds = 2 * len(case.elements) * (1 if case.shaft else 2) + 2 * (case.housing is not None)
-        assert drawing.count('class="ground"') == grounds
+        assert drawing.count('class="ground"') == grounds + bool(case.bases)
     assert bool(film_sketches(case)) == bool(case.films)
 
 

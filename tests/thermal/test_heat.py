@@ -382,6 +382,15 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
     assert found == pytest.approx(0.4 * 900.0 * 12.5e-3 * 35e-6 * 20e-3, rel=1e-3)
 
 
+def test_warm_films_take_the_end_flow_of_cold_ones() -> None:
+    """Neither viscosity nor clearance changes its table, which takes as long as many balances of heat."""
+    case = load_case("jeffcott")
+    films = make_system(case, make_plan(case)).films
+    warm = films.scaled(np.full(films.count, 3.0), 1.1 * np.asarray(films.clearances))
+    assert warm is not None
+    assert [flow.table is cold.table for flow, cold in zip(warm.heat_ends(), films.heat_ends(), strict=True)] == [True]
+
+
 def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
     case = load_case("axial-groove", settings)

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -106,7 +107,10 @@ def _corner(section: Section, modes: AxialModes, slopes: Array, kept: int) -> fl
     return float(np.sum((slopes * modes.project(pressure) / decay)[kept:])) / section.pressure_scale
 
 
+@lru_cache(maxsize=64)
 def _slope_table(radius_to_width: float, short: bool, seals: tuple[float, float]) -> tuple[Array, Array]:
+    """Table and ring of a TableEndFlow, which nobody writes to; kept, since neither viscosity nor clearance changes
+    them and a balance of heat makes films of many."""
     vertices = ring_vertices(MESH.circumferential, CONTRACTION)
     ends = np.append(vertices, 2.0 * np.pi)
     theta = np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])]))[: MESH.circumferential + 1]
