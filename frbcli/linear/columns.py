@@ -129,6 +129,7 @@ MIXED_FRICTION = (
            shown=(Shown("contact", ".3g", table=MIXED),)),
 )  # fmt: skip
 
+
 def sheet_columns(rough: bool, tilting: bool) -> tuple[Column, ...]:
     """Of the FilmStates of a case: whether its surfaces are rough, and whether its journals tilt."""
     return (*SHEET, *(TILTING if tilting else ()), *(MIXED_FRICTION if rough else ()))

@@ -154,6 +154,7 @@ class TiltedFilms(Films):
         """See Films.fields."""
         return tuple(map(TiltedField, self.own))
 
+
 @dataclass(frozen=True)
 class TiltedField:
     """The fields of a film whose journal tilts. See FieldFilm."""
