@@ -179,6 +179,22 @@ def test_a_rotor_that_does_not_tilt_whirls_alike_in_shells_inclined_to_both_side
     assert np.abs(one - flat).max() > 1e-3
 
 
+def test_small_motions_in_a_shell_out_of_line_grow_as_the_eigenvalues_say(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The whirl of a Jeffcott rotor about its rest on the same cells, beside the linearised machine."""
+    monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
+    case = load_case("jeffcott", ["film.theory=finite", "film.cavitation=sommerfeld", MESH, "rotor.unbalance=0 g*mm",
+                                  'bearing.misalignment=["0.8 mrad", "0.3 mrad"]'])  # fmt: skip
+    system = make_system(case, make_plan(case))
+    point = stability_points(case, [SPEED])[1][0]
+    rest, journal = resting_position(system, OMEGA).displacements, system.rotor.journals[0, :2]
+    aside = 1e-4 * system.clearances[0] * np.linalg.pinv(journal) @ np.array([1.0, 0.0])
+    found, _, _ = run(system, 40e-3, rest + aside, None, Control(1e-9, 60.0, 1e-3, 1e-4, 0.9999, 0.0))
+    x, y = (journal @ (found - rest).T)[:, 100:]
+    fitted = slowest(x + 1j * y, 1e-4, 16)
+    nearest = point.eigenvalues[np.argmin(np.abs(point.eigenvalues - fitted))]
+    assert abs(fitted - nearest) < 1e-3 * abs(nearest)
+
+
 def test_a_run_tells_the_given_tilt(tmp_path: Path) -> None:
     settings = ["film.theory=finite", MESH, 'bearing.misalignment=["0.5 mrad", "-0.3 mrad"]', "speed.from=100 Hz",
                 "speed.to=100 Hz", "speed.duration=5 ms", "output.step=1 ms"]  # fmt: skip
