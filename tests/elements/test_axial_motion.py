@@ -23,6 +23,18 @@ LENGTH, TOP, MASS = 0.08, 500.0, 0.03157
 STILL = '{ from = "500 Hz", to = "500 Hz", duration = "0.04 s" }'
 
 
+PADS = """
+    [[thrust_bearing]]
+    inner_radius = "5 mm"
+    outer_radius = "11 mm"
+    pads = 4
+    pad_angle = "75 deg"
+    taper_angle = "50 deg"
+    taper = "20 um"
+    end_play = "100 um"
+    """
+
+
 def case_of(load: str, speed: str = '{ from = "0 Hz", to = "500 Hz", duration = "0.5 s" }', more: str = "") -> Case:
     spring = 'kind = "coefficients", stiffness = "2e6 N/m", damping = "40 N*s/m"'
     return frbcli.load_case_text(
@@ -36,15 +48,8 @@ def case_of(load: str, speed: str = '{ from = "0 Hz", to = "500 Hz", duration = 
         oil = {{ viscosity = "8 mPa*s", density = "830 kg/m^3" }}
         axial = {{ load = {load} }}
         {more}
-        [[thrust_bearing]]
+        {PADS}
         position = "20 mm"
-        inner_radius = "5 mm"
-        outer_radius = "11 mm"
-        pads = 4
-        pad_angle = "75 deg"
-        taper_angle = "50 deg"
-        taper = "20 um"
-        end_play = "100 um"
         """
     )
 
@@ -95,16 +100,6 @@ def test_a_load_that_lifts_the_collar_fast_is_refused() -> None:
     motion_of(case_of('[["0 s", "60 N"], ["0.04 s", "40 N"], ["1 s", "40 N"]]', rising))
 
 
-PADS = """
-    [[thrust_bearing]]
-    inner_radius = "5 mm"
-    outer_radius = "11 mm"
-    pads = 4
-    pad_angle = "75 deg"
-    taper_angle = "50 deg"
-    taper = "20 um"
-    end_play = "100 um"
-    """
 WARM = ('oil.viscosity={ grade = "SAE 10W-40" }', "oil.density=830", "thermal.supply_temperature=50 degC",
         "thermal.housing=60 degC", "film.theory=short", "speed.from=100", "speed.to=100", "speed.duration=0.2",
         "start.position=resting")  # fmt: skip
