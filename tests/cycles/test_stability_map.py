@@ -147,3 +147,19 @@ def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str]
     assert run([*over, "--and-from", "9 mm", "--and-to", "11 mm"]) == 2
     assert run([*over, "--and", "bearing.clearance", "--and-from", "48 um", "--and-to", "52 um"]) == 2
     assert "both numbers of the map" in capsys.readouterr().err
+
+
+@pytest.mark.nightly
+def test_a_branch_over_a_force_turns_back_where_its_range_ends_near_the_fold() -> None:
+    """Jeffcott rotor in short bearings at 200 Hz under a force across its weight: the whirl that begins with the force
+    is that with the speed, and the branch has its fold although its film nearly rests for a moment there, where 80
+    harmonics leave more than 1e-7 of the clearance."""
+    side = 'force = [{ at = "disk", force = ["%r N", "0 N"] }]'
+    case = frbcli.load_case("jeffcott", ["film.theory = short", side % 10.0])
+    found = frbcli.limit_cycles_over(case, "force.0.force.0", "60 N", "85 N", 200.0)
+    (hopf,), (fold,) = found.of("hopf"), found.of("fold")
+    with_it = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory = short", side % hopf.value]))
+    assert with_it.threshold is not None
+    assert with_it.threshold.speed_Hz == pytest.approx(200.0, rel=1e-6)
+    assert hopf.value < fold.value < 85.0
+    assert max(cycle.value for cycle in found.branches[0].points) == pytest.approx(fold.value, rel=1e-6)

@@ -45,7 +45,8 @@ def test_indices_of_symbols_are_subscripts(title: str, shown: str) -> None:
 @pytest.mark.parametrize(
     ("key", "unit", "words"),
     [("oil.viscosity", "mPa*s", "oil viscosity in mPa s"), ("bearing.0.inner.clearance", "um",
-      "bearing 0 inner clearance in µm"), ("disk.mass", "", "disk mass")],
+      "bearing 0 inner clearance in µm"), ("disk.mass", "", "disk mass"),
+     ("force.0.force.1", "N", "force 0 force y in N")],
 )  # fmt: skip
 def test_axes_name_keys_in_words(key: str, unit: str, words: str) -> None:
     assert name_of_key(key, unit) == words

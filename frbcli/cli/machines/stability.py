@@ -94,17 +94,19 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
 
     tell_points(terminal, found, every_speed)
     tell_coefficient_error(terminal, found.points)
-    terminal.result(_sentence(found))
+    terminal.sentence(_sentence(found))
     tell_collar(terminal, found)
     warmest = found.points[-1]
     if warmest.warm is not None:
         tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
     if kind is not None:
-        terminal.result(_character(kind))
+        terminal.sentence(_character(kind))
     for film in unfed_films(found.case):
         terminal.sentence(film.remark)
     if step_times(found.case):
-        terminal.result("Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run.")
+        terminal.sentence(
+            "Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run."
+        )
 
 
 def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
@@ -155,7 +157,7 @@ def _character(kind: ThresholdKind) -> str:
     if kind.fold_Hz is None:
         return "The threshold is hard (subcritical): the whirl jumps to a large one."
     return (
-        "The threshold is hard (subcritical): the whirl jumps to a large one, which a\n"
+        "The threshold is hard (subcritical): the whirl jumps to a large one, which a "
         f"disturbance leads to from {kind.fold_Hz:.1f} Hz on."
     )
 

@@ -49,6 +49,7 @@ REFITS = 4  # of a fold with more harmonics
 TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
 MOST_AT_FOLD = (2400, 450)  # the same at a fold, beside which a film may be nearly at rest for a moment
 SPARE = 0.1  # of it: what the last harmonics have where there are too many
+LOOSE = 10.0  # times it: what may be left out with the most harmonics, as by a film that nearly rests for a moment
 NARROWER = 0.6  # share of the smallest gap that one step may leave
 NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 
@@ -149,7 +150,7 @@ class Follower:
                 wanted = max(FIRST_HARMONICS, int(used[-1]) + 2)
                 return place if wanted >= harmonics else resized(place, c, wanted)
             if harmonics >= MOST_HARMONICS:
-                return None
+                return place if tail < LOOSE * allowed else None
             place = resized(place, c, min(MOST_HARMONICS, harmonics + max(2, harmonics // 3)))
             found = corrected(self.equations(place), place.y, place.tangent)
             if found is None or found.side * place.side < 0:  # of another part of the branch that passes close by

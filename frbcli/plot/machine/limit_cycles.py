@@ -51,7 +51,8 @@ def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> 
     case = found.case
     count = len(found.films)
     with styled():
-        words = "resting positions and limit cycles, dashed where unstable"
+        at = "" if found.over == SPEED else f" at {found.equilibria[0].speed_Hz:g} Hz"
+        words = f"resting positions and limit cycles{at}, dashed where unstable"
         figure = new_figure(case.heading, words, 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
