@@ -17,6 +17,7 @@ from time import monotonic
 from types import FrameType
 from typing import TYPE_CHECKING, NoReturn
 
+from frbcli.cli.libraries import prepare_libraries
 from frbcli.cli.streams import OutputLost, OutputStream, closing_code, take_streams
 from frbcli.errors import INTERRUPTED
 from frbcli.runs.record.interrupt import SIGNALS
@@ -114,10 +115,7 @@ def main() -> NoReturn:
     out, err = take_streams()
     leaving, interruption = Leaving(out, err), Interruption()
     gc.set_threshold(YOUNG, *gc.get_threshold()[1:])
-    # Pictures go into files: no window system is asked for, and one that matplotlib does not know stops nothing.
-    os.environ["MPLBACKEND"] = "agg"
-    # The matrices here are small: a second thread of the linear algebra costs CPU time and gains none.
-    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    prepare_libraries()
     try:
         interruption.listen()
         from frbcli.cli.main import run

@@ -18,6 +18,7 @@ import numpy as np
 from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
@@ -227,8 +228,28 @@ def picture(figure: Figure, suffix: str, dpi: int = 150, own_letters: bool = Fal
     """A figure as one of FORMATS. own_letters: of an SVG, as outlines, so that it looks the same everywhere."""
     content = io.BytesIO()
     with styled(), mpl.rc_context({"svg.fonttype": "path"} if own_letters else {}):
-        figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
+        if suffix == ".png":
+            _draw_png(figure, dpi, content)
+        else:
+            figure.savefig(content, dpi=dpi, format=suffix[1:], metadata=FORMATS[suffix])
     return content.getvalue()
+
+
+def _draw_png(figure: Figure, dpi: float, content: io.BytesIO) -> None:
+    """Lay a figure out and draw it, once; matplotlib's `savefig` draws a figure with a layout twice."""
+    engine, own_dpi, canvas = figure.get_layout_engine(), figure.dpi, figure.canvas
+    figure.dpi = dpi
+    try:
+        if engine is not None:
+            engine.execute(figure)
+            figure.set_layout_engine("none")
+        agg: Any = FigureCanvasAgg(figure)  # its methods have no types
+        agg.print_png(content, metadata=FORMATS[".png"])
+    finally:
+        if engine is not None:
+            figure.set_layout_engine(engine)
+        figure.set_canvas(canvas)
+        figure.dpi = own_dpi
 
 
 def refused(path: Path, problem: str, remedy: str) -> InputError:

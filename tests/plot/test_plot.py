@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import subprocess
 import sys
 from dataclasses import replace
@@ -27,7 +28,7 @@ from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
-from frbcli.plot.style import LABEL_ROWS, new_figure, save_figure
+from frbcli.plot.style import LABEL_ROWS, new_figure, picture, save_figure, styled
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -317,6 +318,17 @@ def test_pictures_are_written_as_their_name_says_and_alike_each_time(run: Run, t
 def test_pictures_that_cannot_be_written_are_refused(tmp_path: Path, name: str) -> None:
     with pytest.raises(InputError):
         save_figure(Figure(), tmp_path / name)
+
+
+def test_a_png_is_the_one_that_matplotlib_saves(run: Run) -> None:
+    """It is laid out once for its resolution; a second one is as if matplotlib had saved the first, too."""
+    figure, theirs = summary_figure(run), summary_figure(run)
+    for _ in range(2):
+        saved = io.BytesIO()
+        with styled():
+            theirs.savefig(saved, dpi=72)
+        assert picture(figure, ".png", 72) == saved.getvalue()
+    assert figure.dpi == theirs.dpi
 
 
 def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:

@@ -528,7 +528,7 @@ def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
 
 
 def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    from matplotlib.figure import Figure
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     runup(load_case("jeffcott", SETTINGS), "run.h5")
     Path("run-summary.png").write_text("older")
@@ -536,7 +536,7 @@ def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pyt
     def broken(*_: object, **__: object) -> None:
         raise ValueError("no")
 
-    monkeypatch.setattr(Figure, "savefig", broken)
+    monkeypatch.setattr(FigureCanvasAgg, "print_png", broken)
     assert frb(["plot", "run.h5", "--what", "summary"]) == 2
     assert Path("run-summary.png").read_text() == "older"
 

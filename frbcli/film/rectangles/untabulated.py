@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import functools
 import math
 from dataclasses import dataclass
 
@@ -10,7 +9,8 @@ import numpy as np
 
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.kept import kept_beside
 from frbcli.film.parabola import summit
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
@@ -79,25 +79,27 @@ def section_pressure(
     section: Section, mesh: Mesh, eccentricity: float, w_r: float, w_t: float
 ) -> SectionPressure:
     """Solve one section in the frame of the line of centres for the velocity (w_r, w_t) in 1/s."""
-    modes = _modes(mesh.axial, section.seals)
+    eigenvalues, loads, *shapes = _modes(mesh.axial, section.seals)
     vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
-    decays = (section.radius / section.width) ** 2 * modes.eigenvalues
+    decays = (section.radius / section.width) ** 2 * eigenvalues
     points, weights = np.polynomial.legendre.leggauss(LINES)
     z = 0.5 * (points + 1.0)
     sigma, (a, b) = section.far_pressure / section.pressure_scale, sealed_shape(section.seals)
-    values, shapes = np.zeros((2 * len(vertices), LINES)) + sigma * (a + b * z), modes.at(z)
+    values, along = np.zeros((2 * len(vertices), LINES)) + sigma * (a + b * z), np.column_stack(shapes)
     for first in range(0, len(decays), MODES_AT_ONCE):
         some = slice(first, first + MODES_AT_ONCE)
-        fields = unit_fields(vertices, eccentricity, decays[some], modes.loads[some])
-        values += (w_r * fields[0] + w_t * fields[1]).T @ shapes[some]
+        fields = unit_fields(vertices, eccentricity, decays[some], loads[some])
+        values += (w_r * fields[0] + w_t * fields[1]).T @ along[some]
     return SectionPressure(vertices, z, 0.5 * weights, values)
 
 
-@functools.lru_cache(maxsize=2)
-def _modes(elements: int, seals: tuple[float, float]) -> AxialModes:
-    """Modes of a section with so many elements along; on fine meshes they take longer than all else, at every
-    position."""
-    return axial_modes(axial_vertices(elements), seals)
+@kept_beside(clipped_line)
+def _modes(elements: int, seals: tuple[float, float]) -> Array:
+    """(2 + LINES, k) eigenvalues, loads and values at the Gauss points of the modes of a section with so many elements
+    along. They are kept on disk: on fine meshes they take longer than all else, and on any the solver of the
+    eigenproblem takes long to import."""
+    modes, points = axial_modes(axial_vertices(elements), seals), np.polynomial.legendre.leggauss(LINES)[0]
+    return np.vstack([modes.eigenvalues, modes.loads, modes.at(0.5 * (points + 1.0)).T])
 
 
 def largest_pressure(

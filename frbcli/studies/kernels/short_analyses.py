@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,7 +11,7 @@ from frbcli.bearing_tests import kinematic
 from frbcli.case.schema import Case
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.stability import stability_points
-from frbcli.runs.inputs import machine_inputs
+from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.run import runup
 from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.gate.gate import faults
@@ -19,11 +19,12 @@ from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Decision
 
 MOMENT_s = 1e-3  # of a run
 PERIODS = 1e-3  # of a squeeze or a whirl
 # Decisions of a plan that choose the kernels
-COMPILED_FOR = ("bearings", "theory", "cavitation", "coupling", "film", "integrator")
+COMPILED_FOR = ("bearings", "channels", "theory", "cavitation", "coupling", "film", "integrator")
 CELLS, OTHERS = "cells", "others"  # kernels of finite-volume films; all others, which are compiled apart from them
 
 
@@ -50,14 +51,32 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
         make_plan(case)  # raises the faults of a machine
     found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
     for analysis in found:
-        decisions = kinematic_plan(case, test=analysis) if analysis in KINEMATIC else make_plan(case)
-        chosen = tuple(made.value for made in decisions.decisions if made.choice in COMPILED_FOR)
-        loaded = analysis not in KINEMATIC and (
-            bool(element_parts(case).loads), machine_inputs(case) is not None, case.contact.rough
-        )  # fmt: skip
-        kind = (analysis, *chosen, loaded, case.heat is not None, case.output.signals, case.film.bearing_model)
+        machine = analysis not in KINEMATIC
+        plan = make_plan(case) if machine else kinematic_plan(case, test=analysis)
+        kind = analysis, *(machine_kernels(case, plan.decisions) if machine else _film_kernels(case, plan.decisions))
         on_cells = analysis in (BEARING, *KINEMATIC) or form_of(case).by_cells
         yield ShortAnalysis(case, analysis, kind, CELLS if on_cells else OTHERS)
+
+
+def machine_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ...]:
+    """What determines the kernels of a machine in an analysis, with the decisions of its plan: two machines that agree
+    in it have the same."""
+    inputs = machine_inputs(case)
+    return (
+        *_film_kernels(case, decisions),
+        bool(element_parts(case).loads),
+        inputs is not None,
+        films_change(case),
+        case.contact.rough,
+        case.start.position,
+    )
+
+
+def _film_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ...]:
+    """The same of its films and their heat."""
+    chosen = tuple(made.value for made in decisions if made.choice in COMPILED_FOR)
+    heat = None if case.heat is None else case.heat.side_flow
+    return *chosen, form_of(case), heat, case.output.signals, case.film.bearing_model
 
 
 def moment_of_run(case: Case) -> Case:

@@ -23,7 +23,7 @@ from frbcli.results.files.kinds import TABLES
 from frbcli.results.files.lock import locked
 from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.kernels.short_analyses import COMPILED_FOR, moment_of_run
+from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
 from frbcli.studies.sweep.columns import point_columns, reason
 from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid
@@ -233,8 +233,7 @@ def _compile(tasks: Sequence[Task]) -> None:
     """Run a moment of one task of each kind, so that its kernels are compiled once and not in every process."""
     kinds: dict[object, Task] = {}
     for task in tasks:
-        decisions = make_plan(task.case).decisions
-        kinds.setdefault(tuple(made.value for made in decisions if made.choice in COMPILED_FOR), task)
+        kinds.setdefault(machine_kernels(task.case, make_plan(task.case).decisions), task)
     for task in kinds.values():
         with TemporaryDirectory(prefix="frb-sweep-") as folder:
             run = Path(folder) / "moment.h5"
