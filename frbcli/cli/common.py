@@ -86,8 +86,8 @@ class Terminal:
         self.table(title, table.heads(name), table.cells(name))
 
     def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
-        """Print a table, a part of the results; several, which repeat the first column, where one would be too wide
-        for its words. rows: as many cells as columns each, shown by str()."""
+        """Print a table, a part of the results, without a head where no column has a name; several, which repeat the
+        first column, where one would be too wide for its words. rows: as many cells as columns each, shown by str()."""
         if self.quiet:
             return
         from rich import box
@@ -99,6 +99,7 @@ class Terminal:
         for kept in _parts(columns, cells, console.width):
             named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
             table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+            table.show_header = any(named)
             for column, width in zip(named, _widths(named, shown, console.width), strict=True):
                 table.add_column(column, overflow="fold", width=width)
             for row in shown:

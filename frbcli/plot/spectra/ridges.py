@@ -12,14 +12,14 @@ from matplotlib.figure import Figure
 from frbcli.analysis.spectra.ridges import Ridges
 from frbcli.plot.signals import MICRO
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, run_spectra
-from frbcli.plot.style import BLACK, BLUE, GREY, VERMILION, in_words, legend_below, name_of_key, new_figure, styled
+from frbcli.plot.style import BLACK, BLUE, VERMILION, in_words, legend_below, name_of_key, new_figure, styled
 from frbcli.studies.against import AgainstMeasured
 from frbcli.studies.fit import Fit
 from frbcli.units import display
 
 Drawn = tuple[str, Ridges, dict[str, Any]]
 
-MEASURED: dict[str, Any] = {"color": BLACK, "marker": "o", "markersize": 3.0, "linestyle": "none"}
+MEASURED: dict[str, Any] = {"color": BLACK, "marker": "o", "markersize": 3.0, "linestyle": "none", "zorder": 3.0}
 COMPUTED: dict[str, Any] = {"color": BLUE, "linestyle": "-"}
 BEFORE: dict[str, Any] = {"color": VERMILION, "linestyle": (0, (4, 2)), "linewidth": 0.9}
 
@@ -37,10 +37,10 @@ def fit_figure(found: Fit) -> Figure:
         ("measured", found.measured, MEASURED), ("before", found.before, BEFORE), ("after", found.after, COMPUTED),
     ]  # fmt: skip
     with styled():
-        figure = new_figure(case.heading, numbers, height=7.4)
-        panels = figure.subplots(3, 1, sharex=True)
-        _draw_ridges(panels, drawn)
-        legend_below(figure, panels[0])
+        panels = 3 if any(ridges.whirls.any() for _, ridges, _ in drawn) else 1
+        figure = new_figure(case.heading, numbers, height=3.0 + 2.2 * (panels - 1))
+        _draw_ridges(list(figure.subplots(panels, 1, sharex=True, squeeze=False)[:, 0]), drawn)
+        legend_below(figure, figure.axes[0])
     return figure
 
 
@@ -70,23 +70,22 @@ def against_figure(found: AgainstMeasured) -> Figure:
 
 
 def _draw_ridges(panels: Sequence[Axes], drawn: Sequence[Drawn]) -> None:
-    """Ridges of several runs on three axes: synchronous amplitude of x, frequency and amplitude of the whirl."""
-    above, middle, below = panels
+    """Ridges of several runs: synchronous amplitude of x, and on two more axes frequency and amplitude of the whirl. A
+    single point of a line has a marker."""
+    above, *whirls = panels
     for name, found, look in drawn:
-        whirl = np.where(found.whirls, 1.0, np.nan)
         above.plot(found.speed_Hz, MICRO * found.synchronous[:, 0], label=name, **look)
-        middle.plot(found.speed_Hz, whirl * found.whirl_Hz, **look)
-        below.plot(found.speed_Hz, whirl * MICRO * found.whirl, **look)
-        if np.isfinite(found.onset_Hz):
-            colour = look["color"]
-            middle.axvline(found.onset_Hz, color=str(colour), linewidth=0.8, linestyle=(0, (1, 2)))
+        alone: dict[str, Any] = {"marker": "."} if np.count_nonzero(found.whirls) == 1 else {}
+        for axes, values in zip(whirls, (found.whirl_Hz, MICRO * found.whirl), strict=False):
+            axes.plot(found.speed_Hz, np.where(found.whirls, values, np.nan), **alone | look)
+        if whirls and np.isfinite(found.onset_Hz):
+            whirls[0].axvline(found.onset_Hz, color=str(look["color"]), linewidth=0.8, linestyle=(0, (1, 2)))
     above.set_ylabel("synchronous in µm")
-    middle.set_ylabel("whirl in Hz")
-    below.set_ylabel("whirl in µm")
     above.set_ylim(bottom=0.0)
-    below.set_ylim(bottom=0.0)
-    middle.annotate("dotted: onset", (1.0, 0.0), (-3, 3), xycoords="axes fraction", textcoords="offset points",
-                    ha="right", fontsize=7.5, color=GREY)  # fmt: skip
+    if whirls:
+        whirls[0].set_ylabel("whirl in Hz, dotted: onset")
+        whirls[1].set_ylabel("whirl in µm")
+        whirls[1].set_ylim(bottom=0.0)
     for axes in panels[:-1]:
         axes.tick_params(labelbottom=False)
-    below.set_xlabel("rotor speed in Hz")
+    panels[-1].set_xlabel("rotor speed in Hz")
