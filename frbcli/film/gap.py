@@ -78,7 +78,7 @@ class Section:
 
     width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
     far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
-    open end that the ends let out, 1 without seals.
+    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most.
     """
 
     radius: float
@@ -96,6 +96,7 @@ class Section:
     holes: tuple[Hole, ...] = field(default=())
     lobes: LobedShell | None = None
     sealed: float = 1.0
+    largest_flow: float = math.inf
 
     @property
     def seals(self) -> tuple[float, float]:
@@ -129,7 +130,8 @@ def whole_width(section: Section) -> Section:
     on it, without a plane of symmetry."""
     if section.far == "groove":
         return section
-    return replace(section, width=section.bearing_width, copies=1, far=section.near)
+    whole = section.copies * section.largest_flow
+    return replace(section, width=section.bearing_width, copies=1, far=section.near, largest_flow=whole)
 
 
 def ends_at_ambient(section: Section) -> Section:

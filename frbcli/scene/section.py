@@ -40,6 +40,7 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         holes=holes,
         lobes=_lobes(bearing),
         sealed=bearing.sealed,
+        largest_flow=bearing.supply.largest_flow / copies,
     )
 
 

@@ -36,6 +36,7 @@ GROOVES = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressur
 HOLES = 'bearing.supply={{kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="{}"}}'
 POCKET = 'bearing.supply={kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
 SLOTS = 'bearing.supply={kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
+FLOW = 'bearing.supply={kind="circumferential-groove", pressure="2 bar", flow="0.2 l/min"}'
 HEAT = 'thermal={model="lumped", supply_temperature="70 degC"}'
 OIL = "oil.viscosity={grade='SAE 10W-40'}"
 HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
@@ -102,6 +103,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
     "rigid housing": ("jeffcott", ('housing={mass="40 kg", mounts=[{stiffness="1e8 N/m"}]}',)),
+    "supply that gives a flow at the most": ("jeffcott", ("film.cavitation=elrod", FLOW)),
     "sealed ends": ("jeffcott", ("bearing.ends={sealed=0.3}",)),
     "magnetic pull": ("jeffcott", ('magnetic_pull=[{at="disk", pull="1e5 N/m"}]',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),

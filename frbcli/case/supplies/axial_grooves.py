@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from frbcli.case.quantities import Angle, Count, OpeningAngle
-from frbcli.case.supplies.supply import Openings, Outline, Ramp, SpacedSupply, SupplyPressure
+from frbcli.case.supplies.supply import LargestFlow, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
 from frbcli.film.gap import AxialGroove, Edge
 
 
@@ -20,6 +20,7 @@ class AxialGrooves(SpacedSupply):
     opening_angle: OpeningAngle = Field(description="angle of one groove")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
+    flow: LargestFlow = None
 
     divides: ClassVar[bool] = True
 

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from frbcli.case.quantities import Angle, Count, Length, OpeningAngle
-from frbcli.case.supplies.supply import Outline, Ramp, SpacedSupply, SupplyPressure
+from frbcli.case.supplies.supply import LargestFlow, Outline, Ramp, SpacedSupply, SupplyPressure
 
 
 class AxialSlots(SpacedSupply):
@@ -20,6 +20,7 @@ class AxialSlots(SpacedSupply):
     length: Length = Field(description="axial length of a slot")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
+    flow: LargestFlow = None
 
     openings_word: ClassVar[str] = "slots"
     sizes: ClassVar[tuple[str, ...]] = ("length",)

@@ -11,7 +11,7 @@ from pydantic import Field
 from frbcli.case.quantities import Angle, Count, Fraction, Length
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number
-from frbcli.case.supplies.supply import MIDDLE, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
+from frbcli.case.supplies.supply import MIDDLE, LargestFlow, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
 from frbcli.film.gap import Edge
 from frbcli.units import NUMBER, display
 
@@ -27,6 +27,7 @@ class Bores(SpacedSupply):
     on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
+    flow: LargestFlow = None
 
     @property
     def surface(self) -> Literal["journal", "shell", "housing"]:

@@ -8,7 +8,7 @@ from typing import ClassVar, Literal
 from pydantic import Field
 
 from frbcli.case.quantities import Fraction
-from frbcli.case.supplies.supply import MIDDLE, Openings, Outline, PressureSupply, Ramp, SupplyPressure
+from frbcli.case.supplies.supply import MIDDLE, LargestFlow, Openings, Outline, PressureSupply, Ramp, SupplyPressure
 from frbcli.errors import Fault
 from frbcli.film.gap import Edge
 
@@ -23,6 +23,7 @@ class CircumferentialGroove(PressureSupply):
     axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
+    flow: LargestFlow = None
 
     plain: ClassVar[bool] = True
     side_flow_factor: ClassVar[float] = 1.0

@@ -7,7 +7,7 @@ from typing import Literal
 from pydantic import Field
 
 from frbcli.case.quantities import Angle, Length, OpeningAngle
-from frbcli.case.supplies.supply import Outline, PressureSupply, Ramp, SupplyPressure
+from frbcli.case.supplies.supply import LargestFlow, Outline, PressureSupply, Ramp, SupplyPressure
 
 
 class Pocket(PressureSupply):
@@ -19,6 +19,7 @@ class Pocket(PressureSupply):
     width: Length = Field(description="axial width of the pocket")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
+    flow: LargestFlow = None
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
         """See OilSupply."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
 from pydantic import Field
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import RiseTime
+from frbcli.case.quantities import Flow, RiseTime
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number
 from frbcli.case.surroundings.over_time import InputPressure, OverTime, largest, values_of
@@ -32,6 +32,14 @@ SupplyPressure = Annotated[
 ]
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
+]
+
+LargestFlow = Annotated[
+    Flow | None,
+    Field(
+        description="the most oil that the supply gives to the whole bearing: where the film would take more at "
+        "`pressure`, the pressure falls until it takes this"
+    ),
 ]
 
 
@@ -80,6 +88,11 @@ class OilSupply(Model):
     def over_time(self) -> OverTime | None:
         """Its pressure over time, None where that does not change."""
         return None
+
+    @property
+    def largest_flow(self) -> float:
+        """The most oil in m^3/s that it gives to the whole bearing, infinite where its pressure stays."""
+        return math.inf
 
     def gauge(self, ambient: float) -> float:
         """The pressure of the supply over the ambient one, Pa; 0 where nothing supplies."""
@@ -183,6 +196,7 @@ class PressureSupply(OilSupply):
     if TYPE_CHECKING:
         pressure: float | OverTime
         ramp: float
+        flow: float | None
 
     def absolute(self, ambient: float) -> float:
         """See OilSupply."""
@@ -199,10 +213,16 @@ class PressureSupply(OilSupply):
         return self.ramp
 
     @property
+    def largest_flow(self) -> float:
+        """See OilSupply."""
+        return math.inf if self.flow is None else self.flow
+
+    @property
     def words(self) -> str:
         """See OilSupply."""
         up_to = "" if self.over_time is None else "up to "
-        return f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
+        told = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
+        return told if self.flow is None else f"{told}, at most {display(self.flow, 'm^3/s')}"
 
 
 class SpacedSupply(PressureSupply):

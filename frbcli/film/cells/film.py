@@ -58,7 +58,7 @@ class Flows:
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
     before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
-    oil carries any."""
+    oil carries any; filling: of openings whose supply gives a flow at the most, see feed.py."""
 
     w: Array
     state: CellState
@@ -66,6 +66,7 @@ class VolumeSolution:
     flows: Flows
     before: Array
     gas: FreeGas | None = None
+    filling: float = 1.0
 
 
 def reference_pressure(section: Section, motion: Motion) -> float:

@@ -18,6 +18,7 @@ from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.carried import UPWIND, before_upstream
+from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
 from frbcli.film.cells.balance.gas import Carried, KeptGas, free_gas
 from frbcli.film.cells.balance.plain import CellBalances, gap_on
 from frbcli.film.cells.balance.states import (
@@ -32,7 +33,7 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
-from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.data import GIVEN_PRESSURE, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion, Storage
@@ -81,6 +82,7 @@ class FilmSolver:
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
         self._before, self._carried = np.full((m, k), UPWIND), Carried(np.zeros((m, k)), np.zeros((m, k)))
+        self._fraction = 1.0  # in the openings
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
     def steady(self, motion: Motion, start: Array | None = None, upwind: bool = False) -> VolumeSolution:
@@ -91,8 +93,29 @@ class FilmSolver:
         of REPEATED solutions holding the oil fractions of the one before.
 
         start: (m, k) unknown to begin from, else a full film; upwind: whether oil is carried upwind by every law.
-        Raises FilmUnsolved.
+        Where the supply gives a flow at the most, the openings are filled accordingly. Raises FilmUnsolved.
         """
+        if not is_limited(self.film.section):
+            return self._steady(motion, start, upwind)
+
+        def solve(filling: float, near: VolumeSolution | None) -> VolumeSolution:
+            return self.filled(filling, motion, start if near is None else near.w, upwind)
+
+        return limited(self.film, motion, solve)
+
+    def filled(self, filling: float, motion: Motion, start: Array | None, upwind: bool = False) -> VolumeSolution:
+        """The steady film with its openings at a filling, see feed.py. Raises FilmUnsolved."""
+        self._fill(filling)
+        return replace(self._steady(motion, start, upwind), filling=filling)
+
+    def _fill(self, filling: float) -> None:
+        share, self._fraction = feed_at(self.film, filling)
+        own, _, _, cells = self._parts
+        far = self.film.section.far_pressure / self.film.section.pressure_scale
+        own.far.pressure = share * far if self.film.section.far == "groove" else 0.0
+        cells[GIVEN_PRESSURE] = share * self.film.grid.fixed_pressure
+
+    def _steady(self, motion: Motion, start: Array | None, upwind: bool) -> VolumeSolution:
         grid, law = self.film.grid, self.film.law
         self._before = np.full(grid.shape, UPWIND)
         rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
@@ -190,6 +213,8 @@ class FilmSolver:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
         self._states[CARRIED_GAS], self._states[TURNOVER] = self._carried
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
+        if self._fraction < 1.0:
+            self._states[FRACTION][self.film.grid.fixed] = self._fraction
         self._states[BEFORE_UPSTREAM] = self._before
         self._flow(motion, storage.past)
         states, kept = self._states, self._area * storage.factor

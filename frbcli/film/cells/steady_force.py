@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
+from frbcli.film.cells.balance.feed import ALL, taken
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, TURNOVER
 from frbcli.film.cells.data import volume_films
@@ -19,6 +21,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 
+NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 HELD, CARRIED = 1e-9, 1e9  # s: moved so little or so much by a velocity that one of the two derivatives is all there is
 
 
@@ -52,6 +55,8 @@ def steady_force(
 
 def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> FilmForce:
     """Force and derivatives of a steady film that is solved, in SI units."""
+    if solution.filling < ALL:
+        return _force_at_flow(film, motion, solution)
     data, c, (m, k) = volume_films([film]), film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
@@ -67,3 +72,25 @@ def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
     return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.w)
+
+
+def _force_at_flow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> FilmForce:
+    """See settled_force, of a film that takes what its supply gives: so it does when the journal moves, and the filling
+    of its openings follows. By central differences of force and flow over the filling and the motion."""
+    c, solver, nudge = film.section.clearance, FilmSolver(film), NUDGE * (1.0 - math.hypot(*motion.d))
+    sizes = (NUDGE * max(abs(solution.filling), NUDGE), nudge, nudge, nudge * motion.rate, nudge * motion.rate)
+
+    def at(number: int, change: float) -> Array:
+        """(3,) force and flow with a change of filling, displacement or velocity."""
+        moved = change * np.eye(len(sizes))[number]
+        filling, (x, y), (v_x, v_y) = solution.filling + float(moved[0]), motion.d + moved[1:3], motion.v + moved[3:]
+        there = replace(motion, d=(float(x), float(y)), v=(float(v_x), float(v_y)))
+        found = solver.filled(filling, there, solution.w)
+        return np.array([*force(film, film.mean_pressure(found.state)), taken(film, there, found)])
+
+    by_filling, *by_motion = (
+        (at(number, size) - at(number, -size)) / (2.0 * size) for number, size in enumerate(sizes)
+    )
+    at_flow = [each[:2] - by_filling[:2] * each[2] / by_filling[2] for each in by_motion]
+    here, slopes = np.array(force(film, film.mean_pressure(solution.state))), np.column_stack(at_flow) / c
+    return FilmForce(here, slopes[:, :2], slopes[:, 2:], solution.w)

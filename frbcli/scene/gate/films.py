@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 from frbcli.case.film_geometry import FilmGeometry
@@ -11,17 +12,18 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, turning_rings
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
-from frbcli.scene.gate.analysis import FILMS, RUN, SHEETS
+from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, RUN, SHEETS
 from frbcli.scene.keys import cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
-from frbcli.scene.tilt import misaligned
+from frbcli.scene.tilt import misaligned, tilts
 from frbcli.units import display
 
 ROUGH = (*SHEETS, RUN, FILMS)  # analyses that asperities are modelled in
+AT_FLOW = (*SHEETS, FILMS, HEAT, ROTATION)  # analyses of films whose supply gives a flow at the most
 SMOOTH = 'Write contact.model = "spring"'
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
 
@@ -39,6 +41,43 @@ def supply_faults(case: Case) -> Iterator[Fault]:
         at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
         for found in section_faults(section):
             yield Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy)
+
+
+def limited_supply_faults(case: Case) -> Iterator[Fault]:
+    """Supplies that give a flow at the most, of films that are not solved so."""
+    for at, place in _limited_films(case):
+        form, oil = form_of(case), case.oil
+        supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
+        least = max(oil.ambient_pressure, oil.cavitation_pressure)
+        if not (form.by_cells and form.follows_supply) or tilts(case) or any(True for _ in misaligned(case)):
+            problem = "is given, which films on cells without a tilt follow alone."
+            remedy = 'Write film.cavitation = "elrod" and no tilt; or leave it out.'
+        elif not law.keeps_oil or law.carries_gas:
+            problem = f"is given, and {law.name} does not conserve the oil, or has its gas to follow."
+            remedy = 'Write "elrod", "peeken" or "two-phase" for the cavitation model; or leave it out.'
+        elif place.grid_body != HOUSING or place.feed_holes is not None:
+            problem = "is given to openings that turn, or to channels of a ring."
+            remedy = "Give it to openings that stand still: of the outer film, or of a shell; or leave it out."
+        elif supply.absolute(oil.ambient_pressure) <= least:
+            problem = f"is given at a pressure that is not above {display(least, 'Pa')}, to which it is to fall."
+            remedy = "Raise the pressure of the supply, which is the largest one; or leave it out."
+        else:
+            continue
+        yield Fault(at, display(supply.largest_flow, "m^3/s"), None, problem, remedy)
+
+
+def unmodelled_flow_faults(case: Case) -> Iterator[Fault]:
+    """Analyses that take the pressure of a supply as given."""
+    for at, place in _limited_films(case):
+        problem = "is given, which only rotation and bearing sheets follow."
+        yield Fault(at, display(place.geometry.supply.largest_flow, "m^3/s"), None, problem, "Leave it out.")
+
+
+def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:
+    """Keys of the flow of the supplies that give one at the most, and the films."""
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        if math.isfinite(place.geometry.supply.largest_flow):
+            yield f"{key}.supply.flow", place
 
 
 def gas_faults(case: Case) -> Iterator[Fault]:

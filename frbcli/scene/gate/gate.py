@@ -65,6 +65,8 @@ RULES = (
     Rule(channel_faults, ALL),
     Rule(pulls.pull_faults, ALL),
     Rule(films.supply_faults, ALL),
+    Rule(films.limited_supply_faults, ALL),
+    Rule(films.unmodelled_flow_faults, tuple(each for each in ALL if each not in films.AT_FLOW), moving=True),
     Rule(films.sealed_faults, ALL),
     Rule(films.rough_faults, ALL),
     Rule(films.unmodelled_rough_faults, tuple(each for each in ALL if each not in films.ROUGH)),

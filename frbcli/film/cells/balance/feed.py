@@ -1,0 +1,126 @@
+"""The openings of a film whose supply gives a flow at the most.
+
+All openings of a film are one vessel. While the film takes less than the flow, they are at the pressure of the supply.
+Else their pressure falls until the film takes the flow, down to that of the cavities; where the surfaces carry away
+more oil than comes even then, the openings are filled in part, as a cell of the film would be: pressure and oil
+fraction follow the law of the film. What the film takes grows with either, so that there is one filling for each flow.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from frbcli.errors import FilmUnsolved
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.gap import Section
+
+if TYPE_CHECKING:
+    from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+    from frbcli.film.cells.motion import Motion
+
+ALL = 1.0  # filling of openings at the pressure of the supply
+ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be told any closer
+MOST = 80  # fillings that are tried
+SAME = 1e-15  # fillings that differ by less
+Solve = Callable[[float, "VolumeSolution | None"], "VolumeSolution"]
+
+
+class Feed(NamedTuple):
+    """What openings hold: the share of the gauge pressures that they were made with, and the oil fraction."""
+
+    share: float
+    fraction: float
+
+
+def supply_pressure(section: Section) -> float:
+    """The largest gauge pressure in Pa in the openings of a section, as they were made."""
+    grooves, holes = (groove.pressure for groove in section.grooves), (hole.pressure for hole in section.holes)
+    return max(section.far_pressure, *grooves, *holes, 0.0)
+
+
+def feed_at(film: VolumeFilm, filling: float) -> Feed:
+    """What openings hold at a filling: from 1, the pressure of the supply, to 0, the pressure of the cavities, and
+    below 0 as a cell of the film with this unknown."""
+    supply, cavity = supply_pressure(film.section) / film.section.pressure_scale, film.scales.cavitation
+    if filling > 0.0:
+        return Feed((cavity + filling * (supply - cavity)) / supply if filling < ALL else 1.0, 1.0)
+    state = film.law.cells(np.array([filling]), film.scales)
+    return Feed(float(state.pressure[0]) / supply, min(max(float(state.fraction[0]), 0.0), 1.0))
+
+
+def taken(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+    """What a film takes from its openings net, in its units, by one section."""
+    if film.section.far != "groove":
+        return solution.flows.supply
+    share, _ = feed_at(film, solution.filling)
+    section = replace(film.section, far_pressure=share * film.section.far_pressure)
+    fluxes, _, _ = CellBalances(section, film.grid, motion).fluxes(solution.state.pressure, solution.state.fraction)
+    return solution.flows.supply - float(fluxes.far.sum())
+
+
+def limited(film: VolumeFilm, motion: Motion, solve: Solve) -> VolumeSolution:
+    """The film with openings that are filled so that it takes no more than what its supply gives.
+
+    solve: the film with a filling, begun from another solution. Raises FilmUnsolved.
+    """
+    section = film.section
+    given = section.largest_flow / (section.radius * section.width * section.clearance)
+
+    def over(found: VolumeSolution) -> float:
+        return taken(film, motion, found) / given - 1.0
+
+    solution = solve(ALL, None)
+    if (excess := over(solution)) <= 0.0:
+        return solution
+    high, low, shortfall = ALL, 0.0, -1.0
+    if section.far != "groove" or not film.law.empties:  # else nothing flows in at the pressure of the cavities
+        solution = solve(0.0, solution)
+        if (off := over(solution)) > 0.0:
+            high, excess, low = 0.0, off, _lowest(film)
+        else:
+            shortfall = off
+    return _between(solve, over, solution, (low, shortfall), (high, excess))
+
+
+def _between(
+    solve: Solve, over: Callable[[VolumeSolution], float], solution: VolumeSolution,
+    low: tuple[float, float], high: tuple[float, float],
+) -> VolumeSolution:  # fmt: skip
+    """The solution that takes what is given, by Illinois' method (M. Dowell and P. Jarratt, BIT 11, 1971). low, high:
+    fillings, and by what share less or more is taken there. A film that runs dry takes nothing."""
+    (low_at, short), (high_at, excess), last, off = low, high, 0.0, math.inf
+    for _ in range(MOST):
+        filling = (low_at * excess - high_at * short) / (excess - short)
+        try:
+            solution = solve(filling, solution)
+            off = over(solution)
+        except FilmUnsolved:
+            off = -1.0
+        closed = high_at - low_at < SAME * max(1.0, abs(high_at))
+        if abs(off) < (SETTLED if closed else ROUND_OFF):
+            return solution
+        if closed:
+            break
+        repeated = off * last > 0.0  # the same end moves again: the other one counts half
+        if off > 0.0:
+            high_at, excess, short = filling, off, 0.5 * short if repeated else short
+        else:
+            low_at, short, excess = filling, off, 0.5 * excess if repeated else excess
+        last = off
+    raise FilmUnsolved(f"at no filling of its openings does the film take the flow that is given: off by {off:.0e}")
+
+
+def _lowest(film: VolumeFilm) -> float:
+    """Filling at which openings hold neither oil nor, where the law lets it fall, pressure."""
+    scales = film.scales
+    return -1.0 if film.law.empties else -1.0 - (scales.cavitation + scales.ambient) / scales.reference
+
+
+def is_limited(section: Section) -> bool:
+    """Whether the supply of a section gives a flow at the most."""
+    return math.isfinite(section.largest_flow)

@@ -1,0 +1,162 @@
+"""Films whose supply gives a flow at the most: its balance, Poiseuille's flow, and films at a pressure."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from frbcli import bearing_sheet, load_case
+from frbcli.case.schema import Case
+from frbcli.errors import InputError
+from frbcli.film.cells.balance.feed import ALL, feed_at, supply_pressure, taken
+from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.loads import FilmLoads, loads
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import steady_force
+from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.gate.analysis import ROTATION, RUN, STABILITY, STILL
+from frbcli.scene.gate.gate import require
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+CELLS, MOTION = (48, 8), Motion((0.3, -0.5), (0.0, 0.0), 300.0)
+GROOVE = 'kind = "circumferential-groove", pressure = "3 bar"'
+SUPPLIES = {
+    "groove": GROOVE,
+    "axial": 'kind = "axial-grooves", opening_angle = "20 deg", pressure = "3 bar"',
+    "bores": 'kind = "bores", count = 2, diameter = "4 mm", pressure = "3 bar"',
+}
+each_supply = pytest.mark.parametrize("supply", SUPPLIES.values(), ids=SUPPLIES)
+LAWS = ("elrod", "peeken", "two-phase")
+
+
+def case_of(supply: str, flow: float | None = None, law: str = "elrod", *settings: str) -> Case:
+    limit = "" if flow is None else f", flow = {flow!r}"
+    return load_case("rigid", [f"film.cavitation={law}", f"bearing.supply={{ {supply}{limit} }}", *settings])
+
+
+def film_of(case: Case) -> VolumeFilm:
+    return volume_film(case, film_places(case)[0], CELLS)
+
+
+def steady(film: VolumeFilm, motion: Motion = MOTION) -> tuple[VolumeSolution, FilmLoads]:
+    solution = FilmSolver(film).steady(motion)
+    return solution, loads(film, motion, solution)
+
+
+def supplied(film: VolumeFilm, solution: VolumeSolution, motion: Motion = MOTION) -> float:
+    """What the openings of the whole bearing give, m^3/s."""
+    section = film.section
+    return section.copies * section.radius * section.width * section.clearance * taken(film, motion, solution)
+
+
+def at_pressure(supply: str, law: str = "elrod") -> float:
+    """The flow that a film takes at the pressure of its supply."""
+    film = film_of(case_of(supply, law=law))
+    return supplied(film, steady(film)[0])
+
+
+def test_a_concentric_film_has_the_pressure_of_poiseuilles_flow_in_its_groove() -> None:
+    """Two lands of the length b let out Q = 2 (2 pi R) C^3 p / (12 eta b)."""
+    flow, still = 5e-7, Motion((0.0, 0.0), (0.0, 0.0), 300.0)
+    film = film_of(case_of(GROOVE, flow))
+    solution, _ = steady(film, still)
+    section = film.section
+    gauge = feed_at(film, solution.filling).share * supply_pressure(section)
+    expected = 3.0 * section.viscosity * section.width * flow / (math.pi * section.radius * section.clearance**3)
+    assert 0.0 < expected < 2e5
+    assert gauge == pytest.approx(expected, rel=1e-9)
+
+
+@each_supply
+@pytest.mark.parametrize("law", LAWS)
+def test_what_is_given_comes_in_and_leaves(supply: str, law: str) -> None:
+    """Half of what the film takes at the pressure of the supply, and a hundredth."""
+    whole = at_pressure(supply, law)
+    for share in (0.5, 0.01):
+        film = film_of(case_of(supply, share * whole, law))
+        solution, found = steady(film)
+        assert supplied(film, solution) == pytest.approx(share * whole, rel=1e-10)
+        assert abs(found.oil.defect_relative) < 1e-12
+        assert solution.filling < ALL
+        assert feed_at(film, solution.filling).share < 1.0
+    if law == "elrod":  # no oil comes in at the ends: all that leaves there was given
+        assert outflow(film, MOTION.d, film.pressure(solution.state)) == pytest.approx(share * whole, rel=1e-10)
+
+
+@each_supply
+def test_more_than_a_film_takes_is_a_film_at_the_pressure_of_the_supply(supply: str) -> None:
+    plain, ample = (film_of(case_of(supply, flow)) for flow in (None, 1.001 * at_pressure(supply)))
+    (a, at_its_pressure), (b, limited) = steady(plain), steady(ample)
+    assert np.array_equal(a.w, b.w)
+    assert at_its_pressure == limited
+
+
+@each_supply
+def test_a_film_that_is_given_less_and_less_oil_empties_and_carries_nothing(supply: str) -> None:
+    whole = at_pressure(supply)
+    found = [steady(film_of(case_of(supply, share * whole)))[1] for share in (0.1, 1e-2, 1e-3)]
+    forces, fractions = [math.hypot(*each.force) for each in found], [each.oil_fraction for each in found]
+    assert forces == sorted(forces, reverse=True)
+    assert fractions == sorted(fractions, reverse=True)
+    assert forces[-1] < 0.05 * forces[0]
+
+
+def test_a_groove_along_the_axis_is_filled_in_part_where_the_surfaces_carry_away_more() -> None:
+    """Behind it the film holds the oil fraction of the groove: the upwind oil of Couette's flow."""
+    film = film_of(case_of(SUPPLIES["axial"], 0.1 * at_pressure(SUPPLIES["axial"])))
+    solution, _ = steady(film)
+    feed = feed_at(film, solution.filling)
+    assert feed.share == 0.0  # at the pressure of the cavities, which is that of the air
+    assert 0.0 < feed.fraction < 1.0
+    assert set(np.round(solution.state.fraction[film.grid.fixed], 12)) == {round(feed.fraction, 12)}
+
+
+@pytest.mark.parametrize("law", ["elrod", "peeken"])
+def test_stiffness_and_damping_are_of_films_at_the_same_flow(law: str) -> None:
+    """Against differences of forces of films that were each solved at the flow."""
+    supply = SUPPLIES["axial"]
+    film = film_of(case_of(supply, 0.3 * at_pressure(supply, law), law))
+    c, size = film.section.clearance, 3e-5
+    at = np.array([0.3, -0.5])
+    found = steady_force(film, c * at, np.zeros(2), 300.0)
+    for row, step, pace in ((found.by_displacement, size, 0.0), (found.by_velocity, 0.0, 1e3 * size)):
+        for axis, change in enumerate(np.eye(2)):
+            ahead, back = (
+                steady_force(film, c * (at + sign * step * change), c * sign * pace * change, 300.0).force
+                for sign in (1.0, -1.0)
+            )
+            assert row[:, axis] == pytest.approx((ahead - back) / (2.0 * c * (step + pace)), rel=1e-5)
+
+
+def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None:
+    flow = 0.4 * at_pressure(GROOVE)
+    case = case_of(GROOVE, flow, "elrod", "accuracy.mesh=[48, 8]")
+    films = make_system(case, make_plan(case, STILL)).films
+    place = np.array([0.3, -0.5]) * films.clearances[0]
+    assert films.power_and_flow(0, place, 300.0, 300.0, 1.0)[1] == pytest.approx(flow, rel=1e-9)
+    (state,) = bearing_sheet(case, [20.0], 30.0).points
+    assert state.side_flow == pytest.approx(flow, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("settings", "analysis", "told"),
+    [
+        (("film.cavitation=reynolds",), ROTATION, "reynolds does not conserve the oil"),
+        (("film.cavitation=two-phase", "film.two-phase.form=published"), ROTATION, "films on cells"),
+        (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without a tilt"),
+        (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
+        (("film.cavitation=elrod",), STABILITY, "only rotation and bearing sheets follow"),
+        (("film.cavitation=elrod",), RUN, "only rotation and bearing sheets follow"),
+    ],
+)
+def test_what_does_not_follow_a_flow_refuses_it(settings: tuple[str, ...], analysis: str, told: str) -> None:
+    motion = 'motion={eccentricity=0.5, angle="-60 deg", speed="20 Hz"}'
+    case = load_case("rigid", [f"bearing.supply={{ {GROOVE}, flow = '0.1 l/min' }}", motion, *settings])
+    with pytest.raises(InputError, match=told) as refused:
+        require(case, analysis)
+    assert all(fault.key == "bearing.supply.flow" for fault in refused.value.faults)
