@@ -59,17 +59,55 @@ def test_coefficients_of_lund_and_thomsen(row: Row) -> None:
         CASE.format(viscosity=20, width=1e3 * width, diameter=100, clearance=100, supply=grooves(2, 90, 20), load=load)
     )
     state = bearing_sheet(case).points[0]
+    assert state.eccentricity == pytest.approx(row["eccentricity"], abs=2e-3)
+    assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.2)
+    assert_coefficients(state, row, load, clearance, 0.016)
+
+
+@pytest.mark.parametrize("row", printed("lund-thomsen-lemon.csv"), ids=lambda row: f"{row['s']}")
+def test_coefficients_of_a_lemon_bore_of_lund_and_thomsen(row: Row) -> None:
+    """Within 0.7 % of the largest entry. Their numbers refer to the clearance of a lobe, twice that of the bearing."""
+    clearance = 2e-4
+    load = 0.02 * 50.0 * 0.1 * 0.1 * (0.05 / clearance) ** 2 / row["s"]
+    text = CASE.format(viscosity=20, width=100, diameter=100, clearance=100, supply=grooves(2, 90, 20), load=load)
+    lobes = "lobes = { count = 2, preload = 0.5 }"
+    state = bearing_sheet(load_case_text(text.replace("[film]", f"{lobes}\n[film]"))).points[0]
+    assert 0.5 * state.eccentricity == pytest.approx(row["eccentricity"], abs=2e-3)
+    if row["s"] != 0.161:  # a misprint, see the table
+        assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.1)
+    assert_coefficients(state, row, load, clearance, 0.007)
+
+
+def assert_coefficients(state: FilmState, row: Row, load: float, clearance: float, share: float) -> None:
+    """Stiffness and damping are the printed ones within a share of their largest entries."""
     assert state.stiffness is not None
     assert state.damping is not None
     turn = np.array([[0.0, -1.0], [1.0, 0.0]])  # to the frame of the table
     k = turn @ state.stiffness @ turn.T * clearance / load
     b = turn @ state.damping @ turn.T * clearance * OMEGA / load
-    assert state.eccentricity == pytest.approx(row["eccentricity"], abs=2e-3)
-    assert state.attitude_deg == pytest.approx(row["attitude_deg"], abs=0.2)
     given = np.array([[row["kxx"], row["kxy"]], [row["kyx"], row["kyy"]]])
-    assert np.abs(k - given).max() < 0.016 * np.abs(given).max()
+    assert np.abs(k - given).max() < share * np.abs(given).max()
     given = np.array([[row["bxx"], row["bxy"]], [row["bxy"], row["byy"]]])
-    assert np.abs(b - given).max() < 0.016 * np.abs(given).max()
+    assert np.abs(b - given).max() < share * np.abs(given).max()
+
+
+@pytest.mark.parametrize(("clearance_mil", "eccentricity"), [(1.8, 0.03), (2.0, 0.04)])
+def test_the_threshold_of_nicholas_barrett_and_leader(clearance_mil: float, eccentricity: float) -> None:
+    """J. Mech. Design 102, 1980, bearings A: two axial grooves of 20 degrees, 1 x 1 inch, 66.278 N, 8000 1/min. A rigid
+    rotor on a film of these coefficients whirls above 2.1 sqrt(g / C). The viscosity, which is not printed, follows
+    from the Sommerfeld numbers of all bearings there, 7.60 microreyn; figures as in petrobras/ross."""
+    clearance, load, speed = 25.4e-6 * clearance_mil, 66.278, 8000.0 / 60.0
+    text = CASE.format(
+        viscosity=52.4, width=25.4, diameter=25.4, clearance=1e6 * clearance, supply=grooves(2, 90, 20), load=load
+    )
+    state = bearing_sheet(load_case_text(text.replace("50 Hz", f"{speed!r} Hz"))).points[0]
+    k, b = state.stiffness, state.damping
+    assert k is not None
+    assert b is not None
+    still = (k[0, 0] * b[1, 1] + k[1, 1] * b[0, 0] - k[0, 1] * b[1, 0] - k[1, 0] * b[0, 1]) / np.trace(b)
+    whirl = np.linalg.det(k - still * np.eye(2)) / np.linalg.det(b) / (2.0 * math.pi * speed) ** 2
+    assert state.eccentricity == pytest.approx(eccentricity, abs=5e-3)
+    assert math.sqrt(still * clearance / load / whirl) == pytest.approx(2.1, abs=0.05)
 
 
 @pytest.fixture(scope="module")
