@@ -22,6 +22,7 @@ RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
 FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
+DIGITS = 6  # of a value that is varied, in the terminal
 
 
 def by_film(films: Sequence[str], array: Any) -> dict[str, Any]:
@@ -139,14 +140,15 @@ def _largest_shown(point: SpecialPoint) -> str:
 
 def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -> tuple[Column, ...]:
     """The columns of a SpecialPoint of a diagram over the speed or another number."""
-    speed = _in_last_digits("Hz", 2, "value", attrgetter("uncertainty_Hz"))
+    own, along_speed = attrgetter("value_uncertainty"), over == SPEED
+    value = Column("value", "", "", _value_shown, shown=(Shown(unit or over),), key="", flat=False)
     return (
         Column("kind", "", "`hopf`, `fold`, `flip` or `torus`", shown=(Shown("point"),)),
         Column("branch", "", "number of the branch, from 0; none where none was followed"),
         Column("branch", "", "", lambda point: None if point.branch is None else point.branch + 1,
                shown=(Shown("branch"),), key="", flat=False),
-        VALUE if over == SPEED else replace(VALUE, shown=(Shown(unit or over, ".6g"),)),
-        *([speed] if over == SPEED else []),
+        VALUE,
+        _in_last_digits("Hz", 2, "value", own) if along_speed else value,
         SPEED_COLUMN,
         FREQUENCY,
         _in_last_digits("whirl Hz", 2, "frequency_Hz", attrgetter("frequency_uncertainty_Hz")),
@@ -158,12 +160,19 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
         Column("criticality", "", "", _remark, shown=(Shown(""),), key="", flat=False),
         LYAPUNOV,
         Column("lyapunov_uncertainty", "1/s", "its uncertainty"),
-        Column("speed_uncertainty", "Hz", "uncertainty of the speed of a Hopf point or a fold",
-               attrgetter("uncertainty_Hz")),
+        Column("value_uncertainty", "", "uncertainty of the value of a Hopf point or a fold", flat=False),
+        Column("speed_uncertainty", "Hz", "the same over the speed", own if along_speed else lambda _: math.nan),
         FREQUENCY_UNCERTAINTY,
         _largest_uncertainty(films),
         Column("certain", "", "of a fold whether films of another mesh have it, too; none where that is not known"),
     )  # fmt: skip
+
+
+def _value_shown(point: SpecialPoint) -> str:
+    if math.isnan(point.value_uncertainty):
+        return f"{point.value:.{DIGITS}g}"
+    before = 1 + math.floor(math.log10(abs(point.value)))
+    return with_uncertainty(point.value, point.value_uncertainty, max(DIGITS - before, 0))
 
 
 def _remark(point: SpecialPoint) -> str:
@@ -243,8 +252,9 @@ def diagram_columns(
             *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _ring_speed(ring)) for ring in range(rings)),
             Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
                    lambda point: getattr(point, "torque_N_m", math.nan)),
-            Column("speed_uncertainty", "Hz", "uncertainty of the speed of a fold",
-                   lambda point: getattr(point, "speed_uncertainty_Hz", math.nan)),
+            Column(*(("speed_uncertainty", "Hz") if over == SPEED else ("value_uncertainty", "")),
+                   "uncertainty of the number that is varied, of a fold",
+                   lambda point: getattr(point, "value_uncertainty", math.nan)),
             Column("frequency_uncertainty", "Hz", "uncertainty of the frequency of a cycle, at its speed",
                    lambda point: getattr(point, "frequency_uncertainty_Hz", math.nan)),
             *([whirl] if unbalance else []),

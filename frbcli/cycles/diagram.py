@@ -17,7 +17,7 @@ from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
 from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle
 from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting, SpeedCourse
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error
+from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error, hopf_error
 from frbcli.cycles.method.seed import seed_cycle
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
@@ -56,7 +56,8 @@ class CycleCount:
 @dataclass(frozen=True)
 class Walk:
     """What a diagram goes over. over: name of the number; course, resting: the resting positions, whose values times
-    `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles."""
+    `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles; unknown:
+    why there are none."""
 
     over: str
     course: EquilibriumCourse
@@ -64,6 +65,7 @@ class Walk:
     scale: float
     follower: Follower
     meshes: tuple[OtherMesh, ...] = ()
+    unknown: str = ""
 
     @property
     def unit(self) -> str:
@@ -85,10 +87,10 @@ class Walk:
 
 
 def over_speed(
-    course: SpeedCourse, resting: Resting, follower: Follower, meshes: tuple[OtherMesh, ...] = ()
+    course: SpeedCourse, resting: Resting, follower: Follower, meshes: tuple[OtherMesh, ...] = (), unknown: str = ""
 ) -> Walk:
     """A walk over the speed of the rotor in Hz."""
-    return Walk(SPEED, course, resting, 0.5 / math.pi, follower, meshes)
+    return Walk(SPEED, course, resting, 0.5 / math.pi, follower, meshes, unknown)
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
@@ -110,10 +112,10 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
         followed += [] if seeded is None else [(None, seeded)]
     special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
     found = tuple(
-        CycleBranch(hopf, tuple(_with_error(walk, cycle) for cycle in branch.cycles), branch.note)
+        CycleBranch(hopf, tuple(point_of(walk, cycle) for cycle in branch.cycles), branch.note)
         for hopf, branch in followed
     )
-    notes += [_uncertain(point) for point in special_cycles(found) if point.certain is False]
+    notes += [_uncertain(walk, point) for point in special_cycles(found) if point.certain is False]
     return LimitCycles(
         case=case,
         over=walk.over,
@@ -139,7 +141,7 @@ def special_cycles(branches: Sequence[CycleBranch]) -> Iterator[SpecialPoint]:
                     speed_Hz=point.speed_Hz,
                     frequency_Hz=point.frequency_Hz,
                     eccentricity_max=point.eccentricity_max,
-                    uncertainty_Hz=point.speed_uncertainty_Hz,
+                    value_uncertainty=point.value_uncertainty,
                     frequency_uncertainty_Hz=point.frequency_uncertainty_Hz,
                     eccentricity_max_uncertainty=point.eccentricity_max_uncertainty,
                     certain=_certain(point),
@@ -149,12 +151,30 @@ def special_cycles(branches: Sequence[CycleBranch]) -> Iterator[SpecialPoint]:
 def _certain(point: CyclePoint) -> bool | None:
     """Whether a fold was found on films of another mesh, too; None of other cycles and where it was not sought."""
     sought = point.kind == FOLD and point.eccentricity_max_uncertainty is not None
-    return math.isfinite(point.speed_uncertainty_Hz) if sought else None
+    return math.isfinite(point.value_uncertainty) if sought else None
 
 
-def _uncertain(point: SpecialPoint) -> str:
+def _uncertain(walk: Walk, point: SpecialPoint) -> str:
     """What is to be said of a fold that was not found on films of another mesh."""
-    return f"The fold at {point.speed_Hz:.4g} Hz is uncertain: it was not found with the same films on another mesh."
+    at = f"{point.value:.4g} {walk.unit}".rstrip()
+    return f"The fold at {at} is uncertain: it was not found with the same films on another mesh."
+
+
+def with_hopf_errors(found: LimitCycles, walk: Walk) -> LimitCycles:
+    """The diagram with the errors of its Hopf points by the other meshes of the walk."""
+    hopf = [
+        _with_hopf_error(walk, point, begin) for point, begin in zip(found.of(HOPF), walk.resting.hopf, strict=True)
+    ]
+    return replace(found, special=(*hopf, *found.special[len(hopf) :]))
+
+
+def _with_hopf_error(walk: Walk, point: SpecialPoint, hopf: HopfPoint) -> SpecialPoint:
+    value, frequency = hopf_error(walk.course, walk.meshes, hopf) if walk.meshes else (math.nan, math.nan)
+    return replace(
+        point,
+        value_uncertainty=value * walk.scale,
+        frequency_uncertainty_Hz=hertz(frequency),
+    )
 
 
 def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
@@ -170,7 +190,7 @@ def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s
 
 def _notes(case: Case, walk: Walk) -> list[str]:
     """What is to be said of feed holes, and where no whirl begins."""
-    points, notes = walk.resting.points, []
+    points, notes = walk.resting.points, [walk.unknown]
     if any(place.geometry.supply.turns for place in film_places(case)):
         notes.append("Feed holes that turn with a ring enter by their mean over the angle.")
     between = f"{points[0].value * walk.scale:.4g} and {points[-1].value * walk.scale:.4g} {walk.unit}".rstrip()
@@ -223,15 +243,15 @@ def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
     )
 
 
-def _with_error(walk: Walk, cycle: Cycle) -> CyclePoint:
-    """A cycle with its errors by the mesh of the films, if other meshes are known."""
+def point_of(walk: Walk, cycle: Cycle) -> CyclePoint:
+    """A cycle of a branch with its errors by the mesh of the films, if other meshes are known."""
     point = _cycle(walk, cycle)
     if not walk.meshes:
         return point
-    error, pace = cycle_error(walk.meshes, cycle), cycle.machine.pace
+    error, pace = cycle_error(walk.follower, walk.meshes, cycle), cycle.machine.pace
     return replace(
         point,
-        speed_uncertainty_Hz=hertz(error.speed * pace),
+        value_uncertainty=error.last * walk.follower.scale,
         frequency_uncertainty_Hz=hertz(error.frequency * pace),
         eccentricity_max_uncertainty=error.eccentricity,
     )

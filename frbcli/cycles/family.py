@@ -12,6 +12,7 @@ from frbcli.cycles.method.changing import kept
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Equilibrium, between, settled
 from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.cycles.parts.other_meshes import cycle_plans
 from frbcli.errors import Fault, InputError
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -23,13 +24,14 @@ NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*
 
 class Family:
     """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`;
-    settings: of other keys, KEY=VALUE."""
+    settings: of other keys, KEY=VALUE; mesh: number of another mesh of their films, see cycle_plans."""
 
     def __init__(
-        self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = ()
-    ) -> None:
+        self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = (),
+        mesh: int | None = None,
+    ) -> None:  # fmt: skip
         self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
-        self.settings = settings
+        self.settings, self.mesh = settings, mesh
         self.machine = kept(self._machine)
 
     def setting(self, share: float) -> str:
@@ -40,11 +42,21 @@ class Family:
         """The machines with another setting of another key."""
         return Family(self.case, self.key, self.high, self.unit, self.omega, (setting,))
 
-    def system(self, share: float) -> System:
-        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
+    def on_mesh(self, mesh: int) -> Family:
+        """The same machines with films on another mesh."""
+        return Family(self.case, self.key, self.high, self.unit, self.omega, self.settings, mesh)
+
+    def case_at(self, share: float) -> Case:
+        """The case at a share of the largest value. Raises InputError if it cannot have it."""
         case = self.case.with_settings(*self.settings, self.setting(share))
         check(case)
-        return make_system(case, make_plan(case))
+        return case
+
+    def system(self, share: float) -> System:
+        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
+        case = self.case_at(share)
+        plan = make_plan(case)
+        return make_system(case, plan if self.mesh is None else cycle_plans(plan)[self.mesh][0])
 
     def _machine(self, value: float) -> Machine:
         """The machine at a share. Raises Unreachable where the number is not above zero."""

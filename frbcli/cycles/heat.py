@@ -28,15 +28,17 @@ from frbcli.cycles.method.equilibria import (
 )
 from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
 from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
+from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
-from frbcli.scene.machine.system import System
+from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.model import HeatModel, rates, viscosities_at
 
@@ -260,4 +262,10 @@ def warm_walk(
     )
     course = WarmSpeed(motions)
     resting = resting_along(course, at_rest(machine, top.resting), slowest, fastest)
-    return over_speed(course, resting, WarmFollower(motions, slowest, fastest, asked))
+    follower = WarmFollower(motions, slowest, fastest, asked)
+    meshes = []
+    for other, share in cycle_plans(plan):
+        films = make_system(case, other)
+        its = replace(motions, base=make_machine(films, fastest), ends=films.films.end_flows)
+        meshes.append(OtherMesh(WarmSpeed(its), WarmFollower(its, slowest, fastest), share))
+    return over_speed(course, resting, follower, tuple(meshes), why_no_error(plan))

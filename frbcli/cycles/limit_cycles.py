@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from frbcli.case.schema import Case
-from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_response
+from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
 from frbcli.cycles.method.continuation import Unreachable
@@ -18,11 +18,11 @@ from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
 from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
-from frbcli.equilibrium.static_films import other_plans
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
@@ -90,7 +90,9 @@ def limit_cycles(
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
-    if case.heat is None and found.of(HOPF):
+    if case.heat is not None:
+        found = with_hopf_errors(found, walk)
+    elif found.of(HOPF):
         found = replace(found, special=_with_errors(case, fastest, found.special))
     if with_unbalance:
         found = whirls_with_unbalance(found, walk.course, observe)
@@ -110,19 +112,12 @@ def _walk(
     if case.heat is not None:
         return warm_walk(case, plan, system, slowest, fastest, asked)
     if system.rotor.over_speed is not None:
-        return changing_walk(system, slowest, fastest, asked)
+        return changing_walk(case, plan, system, slowest, fastest, asked)
     resting = resting_curve(system, machine, slowest, fastest)
-    meshes = _other_meshes(case, plan, slowest, fastest)
-    return over_speed(OverSpeed(machine), resting, Follower(machine, slowest, fastest, asked), meshes)
-
-
-def _other_meshes(case: Case, plan: Plan, slowest: float, fastest: float) -> tuple[OtherMesh, ...]:
-    """The machine on films of other meshes, for the errors of cycles; none of films that are made of cells, whose
-    tables would cost more than the diagram. Speeds in rad/s."""
-    if plan.form.fine_when_static:
-        return ()
-    others = ((make_machine(make_system(case, other), fastest), share) for other, share in other_plans(plan))
-    return tuple(OtherMesh(Follower(machine, slowest, fastest), share) for machine, share in others)
+    others = [(make_machine(make_system(case, other), fastest), share) for other, share in cycle_plans(plan)]
+    meshes = tuple(OtherMesh(OverSpeed(its), Follower(its, slowest, fastest), share) for its, share in others)
+    follower = Follower(machine, slowest, fastest, asked)
+    return over_speed(OverSpeed(machine), resting, follower, meshes, why_no_error(plan))
 
 
 def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:
@@ -137,7 +132,9 @@ def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:
     except NotConverged:
         return point
     return replace(
-        point, uncertainty_Hz=found.speed_uncertainty_Hz, frequency_uncertainty_Hz=found.frequency_uncertainty_Hz
+        point,
+        value_uncertainty=found.speed_uncertainty_Hz,
+        frequency_uncertainty_Hz=found.frequency_uncertainty_Hz,
     )
 
 

@@ -8,20 +8,24 @@ from __future__ import annotations
 
 import math
 import time
+from dataclasses import replace
 
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.cycles.diagram import Observer, Walk, diagram
+from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
 from frbcli.cycles.method.changing import ChangingFollower
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
 from frbcli.cycles.method.follower import MOST_UNKNOWNS
+from frbcli.cycles.method.mesh_error import OtherMesh
+from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
 from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
+from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
 POINTS = 41  # resting positions of the diagram
@@ -81,8 +85,12 @@ def limit_cycles_over(
         resting = resting_over(family, first / last)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed over {key}.") from None
-    walk = Walk(key, family, resting, last, KeyFollower(family, first / last))
-    return diagram(case, walk, observe, lambda: time.process_time() - begun)
+    plan, lowest = make_plan(family.case_at(1.0)), first / last
+    others = [(family.on_mesh(number), share) for number, (_, share) in enumerate(cycle_plans(plan))]
+    meshes = tuple(OtherMesh(other, KeyFollower(other, lowest), share) for other, share in others)
+    walk = Walk(key, family, resting, last, KeyFollower(family, lowest), meshes, why_no_error(plan))
+    found = with_hopf_errors(diagram(case, walk, observe, lambda: time.process_time() - begun), walk)
+    return replace(found, cost=replace(found.cost, cpu_s=time.process_time() - begun))
 
 
 def resting_over(family: Family, lowest: float) -> Resting:

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.case.schema import Case
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.method.changing import ChangingFollower, by_difference, kept
 from frbcli.cycles.method.continuation import Place
@@ -19,10 +20,13 @@ from frbcli.cycles.method.equilibria import (
     place_between,
     resting_along,
 )
+from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
 from frbcli.equilibrium.resting import resting_position
-from frbcli.scene.machine.system import System
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.planned import Plan
 
 Array = NDArray[np.float64]
 
@@ -60,10 +64,15 @@ class ChangingSpeed:
         return replace(self.equilibrium(place_between(self, low, high, value)), omega=value, value=value)
 
 
-def changing_walk(system: System, slowest: float, fastest: float, asked: Sequence[float] = ()) -> Walk:
+def changing_walk(
+    case: Case, plan: Plan, system: System, slowest: float, fastest: float, asked: Sequence[float] = ()
+) -> Walk:
     """What the diagram of a rotor with such coefficients goes over, between two speeds in rad/s. Raises NotConverged
     without a resting position at the fastest one, and Unreachable."""
     course = ChangingSpeed(system, fastest)
     near = at_rest(course.machine_at(1.0), resting_position(course.system_at(fastest), fastest))
     resting = resting_along(course, near, slowest, fastest)
-    return over_speed(course, resting, ChangingFollower(course.machine_at, slowest, fastest, asked))
+    others = [(ChangingSpeed(make_system(case, other), fastest), share) for other, share in cycle_plans(plan)]
+    meshes = tuple(OtherMesh(its, ChangingFollower(its.machine_at, slowest, fastest), share) for its, share in others)
+    follower = ChangingFollower(course.machine_at, slowest, fastest, asked)
+    return over_speed(course, resting, follower, meshes, why_no_error(plan))

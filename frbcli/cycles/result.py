@@ -51,8 +51,8 @@ class CyclePoint:
     cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; torque_N_m: mean, that turns the rotor against its films;
     stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics:
     (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
-    speed that was asked for; temperatures_K: (F,) of the films, empty without heat; speed_uncertainty_Hz: of a fold;
-    frequency_uncertainty_Hz, eccentricity_max_uncertainty (F,): by the mesh of the films, at the same speed, NaN where
+    speed that was asked for; temperatures_K: (F,) of the films, empty without heat; value_uncertainty: of a fold;
+    frequency_uncertainty_Hz, eccentricity_max_uncertainty (F,): by the mesh of the films, at the same value, NaN where
     no such cycle was found on films of another mesh; the latter is None if none was sought.
     """
 
@@ -67,7 +67,7 @@ class CyclePoint:
     harmonics: Complex
     kind: str = ""
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
-    speed_uncertainty_Hz: float = math.nan
+    value_uncertainty: float = math.nan
     frequency_uncertainty_Hz: float = math.nan
     eccentricity_max_uncertainty: Array | None = None
 
@@ -120,8 +120,8 @@ class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
     point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
     cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
-    criticality.py; eccentricity_max: (F,); uncertainty_Hz, frequency_uncertainty_Hz: of the speed of Hopf points and
-    folds and of the frequency, by the mesh of the films, of films that keep their oil of the speed alone;
+    criticality.py; eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and
+    folds and of the frequency, by the mesh of the films, of films that keep their oil of the value alone;
     eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a fold was found on films of another mesh,
     None of others and where it was not sought.
     """
@@ -135,7 +135,7 @@ class SpecialPoint:
     criticality: str | None = None
     lyapunov: float = math.nan
     lyapunov_uncertainty: float = math.nan
-    uncertainty_Hz: float = math.nan
+    value_uncertainty: float = math.nan
     frequency_uncertainty_Hz: float = math.nan
     eccentricity_max_uncertainty: Array | None = None
     certain: bool | None = None

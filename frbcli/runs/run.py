@@ -137,10 +137,10 @@ def rundown(
     return _run("rundown", case, Path(output), Wanted(resume, force, uncertainty), observe)
 
 
-def run_cost(command: str, case: Case) -> ExpectedCost:
-    """The expected cost of a "runup" or "rundown" of a case. Raises InputError for a case that cannot be modelled
-    or afforded."""
-    return _planned(command, case)[2]
+def run_cost(command: str, case: Case, uncertainty: bool = False) -> ExpectedCost:
+    """The expected cost of a "runup" or "rundown" of a case. uncertainty: see runup. Raises InputError for a case that
+    cannot be modelled or afforded."""
+    return _planned(command, case, uncertainty)[2]
 
 
 @dataclass(frozen=True)
@@ -152,15 +152,15 @@ class Wanted:
     uncertainty: bool
 
 
-def _planned(command: str, case: Case) -> tuple[Plan, SpeedProfile, ExpectedCost]:
+def _planned(command: str, case: Case, uncertainty: bool) -> tuple[Plan, SpeedProfile, ExpectedCost]:
     plan, profile = make_plan(case), PROFILES[command](case)
-    cost = cost_of_run(case, plan, profile)
+    cost = cost_of_run(case, plan, profile, uncertainty)
     require_affordable(case, plan, cost)
     return plan, profile, cost
 
 
 def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer | None) -> Run:
-    plan, profile, cost = _planned(command, case)
+    plan, profile, cost = _planned(command, case, wanted.uncertainty)
     check_output(path)
     with locked(path):
         earlier = standing_run(command, case, path, wanted.resume, wanted.force)

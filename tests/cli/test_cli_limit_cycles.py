@@ -68,6 +68,10 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
     document = json.loads(capsys.readouterr().out)
     assert (document["over"], document["unit"]) == ("bearing.clearance", "um")
     assert 47.9 < document["equilibria"][0]["value"] < 60.1
+    assert document["special"]
+    for point in document["special"]:  # of short films, beside those of finite length
+        assert 1e-3 * point["value"] < point["value_uncertainty"] < 0.1 * point["value"]
+        assert point["speed_uncertainty_Hz"] is None
     assert (tmp_path / "over.csv").read_text().startswith("bearing.clearance,branch")
     assert run(words) == 2
     assert run([*words, "--from", "-1 um", "--to", "60 um"]) == 2

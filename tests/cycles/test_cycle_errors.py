@@ -12,16 +12,19 @@ from functools import cache
 import numpy as np
 import pytest
 from cycle_machines import machine_of
-from rigid_cycles import UNIT_Hz, rigid
+from rigid_cycles import WIDTH, UNIT_Hz, rigid
 
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.columns import table_of
+from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import special_columns
-from frbcli.cycles.diagram import diagram, over_speed
+from frbcli.cycles.diagram import Walk, diagram, over_speed, point_of
+from frbcli.cycles.family import Family
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
-from frbcli.cycles.method.mesh_error import OtherMesh
+from frbcli.cycles.method.mesh_error import OtherMesh, hopf_error
+from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.result import CyclePoint, LimitCycles
 from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 from frbcli.scene.machine.system import make_system
@@ -30,6 +33,7 @@ from frbcli.scene.planning.plan import make_plan
 GAMMA, LOW, HIGH, SHARE = 4.538, 2.55, 2.76, 1.5
 ASKED = 2.7 * UNIT_Hz
 LOWER, SOFT = 3.8, 1.0  # of a fold at a higher speed; of a soft threshold without a fold
+WIDER = 1.02
 
 
 class Plain(FoldFollower):
@@ -47,7 +51,8 @@ def followed(case: Case, *others: Case) -> LimitCycles:
     low, high, asked = (2.0 * math.pi * speed for speed in (LOW * UNIT_Hz, HIGH * UNIT_Hz, ASKED))
     machine = machine_of(case)
     resting = resting_curve(make_system(case, make_plan(case)), machine, low, high)
-    meshes = tuple(OtherMesh(Follower(machine_of(other), low, high), SHARE) for other in others)
+    machines = map(machine_of, others)
+    meshes = tuple(OtherMesh(OverSpeed(other), Follower(other, low, high), SHARE) for other in machines)
     follower = Plain(machine, low, high, (asked,))
     return diagram(case, over_speed(OverSpeed(machine), resting, follower, meshes), None, lambda: 0.0)
 
@@ -65,7 +70,7 @@ def at_asked(found: LimitCycles) -> list[CyclePoint]:
 def test_a_fold_is_as_uncertain_as_it_is_off() -> None:
     (own,), (other,) = (found.of("fold") for found in beside(LOWER))
     assert own.certain
-    assert own.uncertainty_Hz == pytest.approx(SHARE * abs(own.speed_Hz - other.speed_Hz), rel=0.01)
+    assert own.value_uncertainty == pytest.approx(SHARE * abs(own.speed_Hz - other.speed_Hz), rel=0.01)
     assert own.frequency_uncertainty_Hz == pytest.approx(SHARE * abs(own.frequency_Hz - other.frequency_Hz), rel=0.01)
     assert own.eccentricity_max_uncertainty is not None
     off = abs(own.eccentricity_max[0] - other.eccentricity_max[0])
@@ -97,13 +102,40 @@ def test_cycles_at_speeds_at_which_the_other_films_have_none_are_uncertain() -> 
     assert not any("uncertain" in note for note in own.notes)
 
 
+class PlainOverKey(Plain, KeyFollower):
+    """The same over a key."""
+
+
+def test_errors_over_the_viscosity_are_those_of_films_that_make_it_larger() -> None:
+    """Short films that are as much wider as gives them WIDER times the force whirl as the narrow ones do in WIDER times
+    the viscosity: their Hopf point and fold lie at 1 / WIDER of the value, with the same frequency and amplitude."""
+    case, omega = short(GAMMA), 2.0 * math.pi * 2.72 * UNIT_Hz
+    key, high, lowest = "oil.viscosity", 1.1 * float(case.oil.viscosity), 0.6
+    wide = case.with_settings(f"bearing.width={WIDTH * WIDER ** (1.0 / 3.0)!r} m")
+    own, other = (Family(each, key, high, "Pa*s", omega) for each in (case, wide))
+    resting, meshes = resting_over(own, lowest), (OtherMesh(other, KeyFollower(other, lowest), SHARE),)
+    walk = Walk(key, own, resting, high, PlainOverKey(own, lowest), meshes)
+    start = first_place(own.machine(1.0), resting.hopf[0], resting.hopf[0].equilibrium.value)
+    branch = follow_branch(walk.follower, start, until=lambda cycle: cycle.kind == "fold")
+    (fold,) = (cycle for cycle in branch.cycles if cycle.kind == "fold")
+    off = SHARE * (1.0 - 1.0 / WIDER)
+    found = point_of(walk, fold)
+    assert found.value_uncertainty == pytest.approx(off * found.value, rel=1e-3)
+    assert found.frequency_uncertainty_Hz < 2e-4 * found.frequency_Hz
+    assert found.eccentricity_max_uncertainty is not None
+    assert found.eccentricity_max_uncertainty[0] < 1e-3
+    value, frequency = hopf_error(own, meshes, resting.hopf[0])
+    assert value == pytest.approx(off * resting.hopf[0].equilibrium.value, rel=0.02)  # to first order
+    assert frequency < 2e-4 * resting.hopf[0].nu
+
+
 def test_a_fold_that_the_other_films_do_not_have_is_uncertain() -> None:
     """Films whose threshold is soft have no fold, and no cycles below the threshold."""
     found, other = beside(SOFT)
     (fold,), (hopf,) = found.of("fold"), other.of("hopf")
     assert other.of("fold") == ()
     assert fold.certain is False
-    assert math.isnan(fold.uncertainty_Hz)
+    assert math.isnan(fold.value_uncertainty)
     assert any(note.startswith("The fold at") and "is uncertain" in note for note in found.notes)
     assert table_of(special_columns(found.films), [fold]).cells()[0][-1] == "uncertain"
     below = [point for point in found.branches[0].points if point.speed_Hz < hopf.speed_Hz - 1e-3]
@@ -118,7 +150,7 @@ def test_stated_errors_of_a_coarse_table_hold_a_fine_one() -> None:
     fine = followed(finite.with_settings("accuracy.mesh=[12, 192]"))
     (fold,), (true_fold,) = coarse.of("fold"), fine.of("fold")
     assert fold.certain
-    assert abs(fold.speed_Hz - true_fold.speed_Hz) <= fold.uncertainty_Hz < 1e-3 * fold.speed_Hz
+    assert abs(fold.speed_Hz - true_fold.speed_Hz) <= fold.value_uncertainty < 1e-3 * fold.speed_Hz
     for own, true in [(fold, true_fold), *zip(at_asked(coarse), at_asked(fine), strict=True)]:
         assert abs(own.frequency_Hz - true.frequency_Hz) <= own.frequency_uncertainty_Hz < 1e-3 * own.frequency_Hz
         stated = own.eccentricity_max_uncertainty

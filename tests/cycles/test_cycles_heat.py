@@ -71,6 +71,12 @@ def test_oil_of_endless_capacity_keeps_its_temperature() -> None:
     at_114 = [next(p for p in found.branches[0].points if p.kind == "asked") for found in (warm, cold)]
     assert at_114[0].frequency_Hz == pytest.approx(at_114[1].frequency_Hz, rel=1e-5)
     assert at_114[0].eccentricity_max == pytest.approx(at_114[1].eccentricity_max, rel=1e-3)
+    assert one.value_uncertainty == pytest.approx(other.value_uncertainty, rel=1e-2)
+    assert one.frequency_uncertainty_Hz == pytest.approx(other.frequency_uncertainty_Hz, rel=1e-2)
+    for name in ("frequency_uncertainty_Hz", "eccentricity_max_uncertainty"):
+        stated = [getattr(point, name) for point in at_114]
+        assert stated[0] == pytest.approx(stated[1], rel=1e-2)
+        assert np.all(stated[1] > 0.0)
     assert at_114[0].temperatures_K == pytest.approx([343.15], abs=1e-3)
     assert not len(at_114[1].temperatures_K)
 

@@ -85,8 +85,8 @@ def test_the_hopf_point_is_the_threshold_of_the_coefficients() -> None:
     """Disturbances of 2 % of the clearance cross cells: the growth differs by what the kinks leave."""
     (hopf,) = diagram().of("hopf")
     threshold = brentq(lambda speed: by_coefficients(speed).real, *RANGE_Hz)
-    assert hopf.speed_Hz == pytest.approx(threshold, abs=5.0 * hopf.uncertainty_Hz)
-    assert hopf.uncertainty_Hz < 0.1
+    assert hopf.speed_Hz == pytest.approx(threshold, abs=5.0 * hopf.value_uncertainty)
+    assert hopf.value_uncertainty < 0.1
     assert hopf.frequency_Hz == pytest.approx(by_coefficients(threshold).imag / (2.0 * math.pi), rel=2e-3)
 
 

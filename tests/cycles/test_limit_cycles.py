@@ -90,7 +90,7 @@ def test_the_threshold_is_that_of_stability() -> None:
     assert threshold is not None
     assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=1e-8)
     assert hopf.frequency_Hz == pytest.approx(threshold.frequency_Hz, rel=1e-8)
-    assert hopf.uncertainty_Hz == pytest.approx(threshold.speed_uncertainty_Hz, rel=1e-4)
+    assert hopf.value_uncertainty == pytest.approx(threshold.speed_uncertainty_Hz, rel=1e-4)
     assert hopf.frequency_uncertainty_Hz == pytest.approx(threshold.frequency_uncertainty_Hz, rel=1e-4)
 
 

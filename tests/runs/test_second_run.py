@@ -3,10 +3,14 @@
 from __future__ import annotations
 
 import re
+import tracemalloc
+from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from frbcli.analysis.signals import Values
 from frbcli.analysis.uncertainty import partners
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
@@ -18,9 +22,12 @@ from frbcli.runs.errors.account import about_certainty
 from frbcli.runs.march import March
 from frbcli.runs.run import run_cost, runup
 from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.costs.preparation import memory_B, signal_count
+from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
+from frbcli.solve.state import RUNNING
 
 CASE = ("film.theory=short", "output.step=0.2 ms")
 
@@ -131,6 +138,46 @@ def test_its_cost_is_announced_where_it_is_made_unasked(law: str, unasked: bool)
     assert is_cheap(second, alone) == unasked
     assert cost_of_run(case, plan, profile).total_s == alone.run_s + (second if unasked else 0.0)
     assert run_cost("runup", case) == cost_of_run(case, plan, profile)
+
+
+@dataclass
+class Long:
+    """A march of eight signals in chunks of a fifth of a second."""
+
+    time: float = 0.0
+    names: tuple[str, ...] = ("time_s", *(f"signal_{number}" for number in range(7)))
+
+    def chunk(self) -> tuple[int, dict[str, Values]]:
+        self.time += 0.2
+        return RUNNING, {name: np.full(20_000, self.time) for name in self.names}
+
+
+def test_the_second_run_holds_its_signals_once(monkeypatch: pytest.MonkeyPatch, case: Case, run: Run) -> None:
+    """And one of them twice, while its pieces are joined."""
+    monkeypatch.setattr(March, "again", lambda *_: Long())
+    plan = make_plan(case)
+    march = March(case, plan, make_segments(case, plan), run_up_profile(case))
+    tracemalloc.start()
+    try:
+        found = second_run.second_run(march, run)
+        peak = tracemalloc.get_traced_memory()[1]
+    finally:
+        tracemalloc.stop()
+    assert found is not None
+    held = 8.0 * len(found) * len(Long().names)
+    assert held > 50e6
+    assert peak < 1.2 * held
+    assert found["time_s"][0] == pytest.approx(0.2)
+
+
+def test_the_memory_of_both_runs_is_announced() -> None:
+    case = load_case("jeffcott", [*CASE, "output.step=1e-5 s"])
+    plan, profile = make_plan(case), run_up_profile(case)
+    alone, both = expected_cost(case, plan, profile), run_cost("runup", case, uncertainty=True)
+    assert both.second_s == second_run_s(case, plan, profile)
+    signals = 8.0 * signal_count(case) * 1e6  # of a million of samples
+    assert alone.memory_B - memory_B(case, plan, 0.0) == pytest.approx(2.1 * signals)
+    assert both.memory_B - memory_B(case, plan, 0.0, coarser_plan(case, plan)) == pytest.approx(2.2 * signals)
 
 
 def test_a_second_run_that_does_not_begin_leaves_the_events(

@@ -273,7 +273,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
     from frbcli.cycles.columns import equilibrium_columns, special_columns
 
     films = found.films
-    special = documents(special_columns(films), found.special)
+    special = documents(special_columns(films, found.over), found.special)
     return {
         "command": "limit-cycles",
         "case": found.case.name,

@@ -114,7 +114,7 @@ def transient(
     told = not options.uncertainty or (standing is not None and SECOND_RUN in standing.cost)
     if standing is not None and standing.status != INTERRUPTED and told:
         terminal.remark(f"{path} holds this run already; --force computes it again.")
-    cost = run_cost(command, case)
+    cost = run_cost(command, case, options.uncertainty)
     if cost.total_s > TOLD_s:
         terminal.remark(cost_line(cost))
     with computing(terminal, case) as shown:

@@ -1,19 +1,20 @@
 """Errors of limit cycles by the mesh of their films: the same cycles and folds are found again on films of another
 mesh, from those on the own one, by Newton's method. A share of the difference is the error, as for all static results.
 
-A cycle is compared with the one at the same speed. Next to a fold the other films may have none there: their branch
-turns back before. The error is then not known. Folds are compared with each other, in speed, too.
+A cycle is compared with the one at the same speed, or value of the number that the branch goes over. Next to a fold the
+other films may have none there: their branch turns back before. The error is then not known. Folds are compared with
+each other, in this number, too. The error of a Hopf point follows from the eigenvalues of the resting position of the
+other films at its value, and from how the eigenvalue changes with the number.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import (
     Equations,
     Place,
@@ -24,6 +25,7 @@ from frbcli.cycles.method.continuation import (
     unit_vector,
 )
 from frbcli.cycles.method.cycle import FOLD, Cycle, eccentricities, passed_rest
+from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint
 from frbcli.cycles.method.follower import Follower
 from frbcli.equilibrium.coefficients import LEAST
 
@@ -33,46 +35,74 @@ TAIL_SHARE = 10.0  # of the tail of cycles, which have more harmonics for their 
 REACHES = (0.02, 0.1)  # along the branch, within which the fold on the other films is sought
 LOCATED = 1e-6  # of it: how closely
 STAGES = 4  # from one film to another, where Newton's method does not lead there at once
+AHEAD = 1e-3  # of the value of a Hopf point, for the derivative of its eigenvalue
 
 
 @dataclass(frozen=True)
 class OtherMesh:
-    """follower: of branches of the machine on films of another mesh; share: of the difference that is the error."""
+    """The machine on films of another mesh. course, follower: of its resting positions and branches; share: of the
+    difference that is the error."""
 
+    course: EquilibriumCourse
     follower: Follower
     share: float
 
 
 @dataclass(frozen=True)
 class CycleError:
-    """Expected errors of a cycle by the mesh of the films. speed, frequency: over the pace, that of the speed of folds
-    alone; eccentricity: (F,) of the largest ones; all of them NaN if such a cycle was not found on another mesh."""
+    """Expected errors of a cycle by the mesh of the films. last: of the last unknown of its branch, of folds alone;
+    frequency: over the pace; eccentricity: (F,) of the largest ones; all of them NaN if such a cycle was not found on
+    another mesh."""
 
-    speed: float
+    last: float
     frequency: float
     eccentricity: Array
 
 
-def cycle_error(meshes: Sequence[OtherMesh], cycle: Cycle) -> CycleError:
+def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> CycleError:
     """The errors of a cycle: the largest difference to the other meshes times their shares, at least LEAST of each
-    number."""
-    films = cycle.machine.film_count
-    own = np.array([*cycle.y[[-1, -2]], *cycle.eccentricity_max])
-    errors = [LEAST * own]
+    number. own: the follower of its branch."""
+    here = np.array([*cycle.place.y[[-1, -2]], *cycle.eccentricity_max])
+    errors = [LEAST * here]
     for mesh in meshes:
-        there = _found_again(mesh.follower, cycle)
-        if there is None:
-            return CycleError(np.nan, np.nan, np.full(films, np.nan))
-        machine, y = mesh.follower.machine_at(there.y), mesh.follower.as_cycle(there.y)
-        other = np.array([*y[[-1, -2]], *eccentricities(machine, y)])
-        errors.append(mesh.share * np.abs(other - own))
-    speed, frequency, *eccentricity = np.max(errors, axis=0)
-    return CycleError(speed if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
+        found = _found_again(own, mesh.follower, cycle)
+        if found is None:
+            return CycleError(np.nan, np.nan, np.full(cycle.machine.film_count, np.nan))
+        machine, y = mesh.follower.machine_at(found.y), mesh.follower.as_cycle(found.y)
+        there = np.array([*found.y[[-1, -2]], *eccentricities(machine, y)])
+        errors.append(mesh.share * np.abs(there - here))
+    last, frequency, *eccentricity = np.max(errors, axis=0)
+    return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
 
-def _found_again(follower: Follower, cycle: Cycle) -> Place | None:
+def hopf_error(own: EquilibriumCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
+    """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN
+    if another mesh has no resting position there. To first order in the eigenvalues on the other meshes."""
+    value = hopf.equilibrium.value
+    errors = [(LEAST * value, LEAST * hopf.nu)]
+    try:
+        slope = (_whirl(own, hopf, (1.0 + AHEAD) * value) - 1j * hopf.nu) / (AHEAD * value)
+        for mesh in meshes:
+            apart = _whirl(mesh.course, hopf, value) - 1j * hopf.nu
+            further = -apart.real / slope.real
+            errors.append((mesh.share * abs(further), mesh.share * abs(apart.imag + slope.imag * further)))
+    except Unreachable:
+        return np.nan, np.nan
+    values, frequencies = zip(*errors, strict=True)
+    return max(values), max(frequencies)
+
+
+def _whirl(course: EquilibriumCourse, hopf: HopfPoint, value: float) -> complex:
+    """The eigenvalue in 1/s of the whirl of a Hopf point where a course rests at a value. Raises Unreachable."""
+    near: Equilibrium = hopf.equilibrium
+    values = course.solved(near, replace(near, value=2.0 * near.value), value).eigenvalues
+    return complex(values[np.argmin(np.abs(values - 1j * hopf.nu))])
+
+
+def _found_again(own: Follower, follower: Follower, cycle: Cycle) -> Place | None:
     """The fold on the films of a follower that a fold is there, or the cycle of the same speed; None without one. Films
-    that differ much, such as those of two theories, are changed into each other in stages."""
+    that differ much, such as those of two theories, are changed into each other in stages. own: the follower of its
+    branch."""
     seek = _fold if cycle.kind == FOLD else _same_speed
     try:
         near = follower.refitted(cycle.place, TAIL_SHARE)
@@ -80,12 +110,12 @@ def _found_again(follower: Follower, cycle: Cycle) -> Place | None:
         return None
     if near is None:
         return None
-    own, other = Balance(cycle.machine, follower.reference(near)), follower.equations(near)
+    here, there = own.equations(near), follower.equations(near)
     for stages in (1, STAGES):
         found: Place | None = near
         for stage in range(1, stages + 1):
             if found is not None:
-                before, found = found, seek(_between(own, other, stage / stages), found)
+                before, found = found, seek(_between(here, there, stage / stages), found)
                 found = None if found is None or passed_rest(follower.machine, before, found) else found
         if found is not None:
             return found

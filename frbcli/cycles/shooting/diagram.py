@@ -143,7 +143,7 @@ def _hopf(begin: RestThreshold, branch: int | None, first: Shot | None) -> Speci
         frequency_Hz=hertz(float(rest.eigenvalues[begin.number].imag)),
         eccentricity_max=np.hypot(*rest.displacement.T),
         criticality=criticality,
-        uncertainty_Hz=hertz(begin.uncertainty),
+        value_uncertainty=hertz(begin.uncertainty),
     )
 
 

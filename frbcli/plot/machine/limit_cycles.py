@@ -84,7 +84,7 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
         at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
         if points:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
-            errors = [point.uncertainty_Hz for point in points], [_eccentricity_error(point, film) for point in points]
+            errors = [each.value_uncertainty for each in points], [_eccentricity_error(each, film) for each in points]
             _bars(axes, *at, *errors)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
@@ -124,8 +124,8 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         points = found.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
-        errors = ([getattr(point, f"{of}uncertainty_Hz") for point in points] for of in ("", "frequency_"))
-        _bars(axes, *at, *errors)
+        frequencies = [point.frequency_uncertainty_Hz for point in points]
+        _bars(axes, *at, [point.value_uncertainty for point in points], frequencies)
     axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
     axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.unit))

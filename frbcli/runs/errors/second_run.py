@@ -56,7 +56,8 @@ def second_run(march: March, run: Run, observe: Observer | None = None) -> Secon
         chunks.append(signals)
         if observe is not None:
             observe(other.progress(run.t_end_s))
-    joined = {name: np.concatenate([chunk[name] for chunk in chunks]) for name in chunks[0]}
+    # One signal at a time: all of them are held once, beside those of the run.
+    joined = {name: np.concatenate([chunk.pop(name) for chunk in chunks]) for name in tuple(chunks[0])}
     ended = {RUNNING: "interrupted", FINISHED: "finished", CONTACT: "contact"}
     return SecondRun(joined, run.references, ended.get(status, "not-converged"))
 

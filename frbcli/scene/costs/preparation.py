@@ -25,7 +25,9 @@ PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernel
 MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
 SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
-KEPT = 2.1  # how often all samples are in memory: in the run, and in the file that it is about to write
+# How often all samples are in memory: in the run, and in the file that it is about to write; or in the run and in a
+# second one, of which one signal at a time is joined.
+KEPT, KEPT_OF_BOTH = 2.1, 2.2
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 
@@ -66,12 +68,13 @@ def film_error_s(case: Case, plan: Plan) -> float:
     return plan.form.error_s(plan, len(film_places(case)), 1 + len(step_times(case)))
 
 
-def memory_B(case: Case, plan: Plan, samples: float) -> float:
-    """Largest memory of the process in bytes. samples: number that the run writes."""
-    n = rotor_size(case)
+def memory_B(case: Case, plan: Plan, samples: float, second: Plan | None = None) -> float:
+    """Largest memory of the process in bytes. samples: number that the run writes; second: plan of a second run."""
+    n, films = rotor_size(case), len(film_places(case))
+    kept = KEPT if second is None else KEPT_OF_BOTH
     found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_of(case).beam_freedoms
-    found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + KEPT * samples)
-    return found + plan.form.memory_B(plan, len(film_places(case)))
+    found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + kept * samples)
+    return found + sum(each.form.memory_B(each, films) for each in (plan, second) if each is not None)
 
 
 def signal_count(case: Case) -> int:

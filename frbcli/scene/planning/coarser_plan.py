@@ -8,6 +8,7 @@ from frbcli.case.schema import Case
 from frbcli.film.grid import Mesh
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.costs.cost import ExpectedCost, expected_cost
+from frbcli.scene.costs.preparation import memory_B
 from frbcli.scene.planning.planned import Plan
 
 LOOSER = 3.0  # tolerance of a step over that of the run
@@ -23,10 +24,13 @@ def coarser_plan(case: Case, plan: Plan) -> Plan:
     return replace(plan, films=films, mesh=_coarser(plan.mesh), cells=cells, tolerance=LOOSER * plan.tolerance)
 
 
-def cost_of_run(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost:
-    """Expected cost of a run with what is made unasked."""
-    cost, second = expected_cost(case, plan, profile), second_run_s(case, plan, profile)
-    return replace(cost, second_s=second) if is_cheap(second, cost) else cost
+def cost_of_run(case: Case, plan: Plan, profile: SpeedProfile, asked: bool = False) -> ExpectedCost:
+    """Expected cost of a run with a second one, if that is asked for or made unasked."""
+    cost, second_s = expected_cost(case, plan, profile), second_run_s(case, plan, profile)
+    if not (asked or is_cheap(second_s, cost)):
+        return cost
+    both_B = memory_B(case, plan, profile.end / case.output.step, coarser_plan(case, plan))
+    return replace(cost, second_s=second_s, memory_B=both_B)
 
 
 def second_run_s(case: Case, plan: Plan, profile: SpeedProfile) -> float:
