@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from frbcli.bearing_tests.history import Course, History
-from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import Array, FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.rectangles.film import FilmForce, evaluate
 from frbcli.scene.machine.bearing_model_films import bearing_film
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
@@ -37,6 +36,7 @@ def model_course(case: Case, plan: KinematicPlan, path: Path, times: Array) -> C
         force=force,
         probe_pressure=np.full(len(motions), UNKNOWN),
         gap_ratio=1.0 + displacement[:, 1],  # at phi = pi, where the normal points up
+        moment=np.full((len(motions), 2), UNKNOWN),
     )
     return Course(history, None, _loads(float(x), float(y)), UNKNOWN, 0, 0, "")
 

@@ -95,7 +95,7 @@ RESULT = (
     Column("newton_iterations", "", "number of Newton's steps", key="cost.newton_iterations"),
 )  # fmt: skip
 
-# Of a KinematicResult of a rotation whose journal tilts, or whose velocity is given
+# Of a KinematicResult whose journal tilts, or of a rotation whose velocity is given
 MOMENT = (
     Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
            shape=(2,), shown=(Shown(("Mx", "My"), ".4g", table=FORCES),)),
@@ -133,6 +133,14 @@ HISTORY = (
     Column("gap_ratio", "", "gap there over the clearance"),
 )
 
+# Of a History of a test whose journal tilts
+MOMENT_HISTORY = (Column("moment", "N m", "moment of the force about x, y", shape=(2,), key="moment_history_N_m"),)
+
+
+def history_columns(moment: bool) -> Columns:
+    """Columns of a History; moment: see result_columns."""
+    return (*HISTORY, *(MOMENT_HISTORY if moment else ()))
+
 
 def _at_moment(column: Column) -> Column:
     def value(item: Any) -> Any:
@@ -142,8 +150,9 @@ def _at_moment(column: Column) -> Column:
     return replace(column, value=value)
 
 
-# Of a KinematicResult and the number of a moment
-MOMENTS = (*named(HEAD, "", itemgetter(0)), *map(_at_moment, HISTORY))
+def moment_columns(moment: bool) -> Columns:
+    """Columns of a KinematicResult and the number of a moment; moment: see result_columns."""
+    return (*named(HEAD, "", itemgetter(0)), *map(_at_moment, history_columns(moment)))
 
 
 def error_column(largest: float) -> Column:

@@ -10,16 +10,25 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.bearing_tests.march import FilmAt, Moment, Path, march
-from frbcli.bearing_tests.steady_film import COARSE_MODAL_MESH, FilmField, film_field, modal_force, pressure_at
+from frbcli.bearing_tests.march import FilmAt, Moment, inclined_path, march
+from frbcli.bearing_tests.steady_film import (
+    COARSE_MODAL_MESH,
+    FilmField,
+    film_field,
+    leaving,
+    modal_force,
+    pressure_at,
+    require_gap,
+)
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure, supplied, supply_share
+from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure, supplied, supply_share
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
-from frbcli.film.cells.motion import Motion, path_seen_from, turned
+from frbcli.film.cells.motion import Motion, Path, gap_on, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.tilted.lands import land_paths, lands, summed
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
+from frbcli.scene.tilt import slope_of, tilt_of
 
 Array = NDArray[np.float64]
 
@@ -30,13 +39,15 @@ PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
 @dataclass(frozen=True)
 class History:
     """A film over time, n moments. displacement: (n, 2) over the clearance; force: (n, 2) N on the journal;
-    probe_pressure: (n,) Pa absolute at the probe; gap_ratio: (n,) H there."""
+    probe_pressure: (n,) Pa absolute at the probe; gap_ratio: (n,) H there; moment: (n, 2) N m of the force about the
+    middle of the bearing, NaN where it is not known."""
 
     time_s: Array
     displacement: Array
     force: Array
     probe_pressure: Array
     gap_ratio: Array
+    moment: Array
 
 
 @dataclass(frozen=True)
@@ -75,11 +86,30 @@ Moved = TypeVar("Moved", bound=MovedFilm)
 
 
 @dataclass(frozen=True)
-class _Moment(MovedFilm):
-    """motion: seen from the surface that the supply is in, as the solution is."""
+class _Land:
+    """A land of a moved film: its plan, cells that serve every moment, and the motion that it sees."""
 
-    motion: Motion
-    solution: VolumeSolution
+    plan: KinematicPlan
+    film: VolumeFilm
+    path: Path
+
+
+@dataclass(frozen=True)
+class _MovingFilm:
+    """A film whose journal moves along a path, seen from the surface that the supply is in, as its lands. mirrored: see
+    land_paths."""
+
+    plan: KinematicPlan
+    path: Path
+    mirrored: bool
+    lands: tuple[_Land, ...]
+
+
+@dataclass(frozen=True)
+class _Moment(MovedFilm):
+    """on_lands: what each of the lands sees, and its solution."""
+
+    on_lands: tuple[Moment, ...]
 
 
 def film_course(
@@ -90,15 +120,15 @@ def film_course(
 
     A film that does not converge ends the course with a problem; NotConverged is raised if that is at once.
     """
-    path = path_seen_from(path, plan.turning)
-    film = _film(case, plan, path, times)
-    moments, problem = _moments(case, plan, film, path, times, observe)
+    film = _moving(case, plan, path, times)
+    moments, problem = _moments(case, film, times, observe)
     worst = max(moments, key=lambda moment: moment.size)
     if plan.remembers:
         error, spent = _error_of_course(case, plan, path, times[: len(moments) + 1], moments)
     else:
         error, spent = _error_of_moment(case, plan, path, times, worst)
-    return course_of(moments, worst, _field(plan, film, worst), error, film.grid.fixed, spent, problem)
+    fixed = np.concatenate([land.film.grid.fixed for land in film.lands])
+    return course_of(moments, worst, _field(film, worst), error, fixed, spent, problem)
 
 
 def course_of(
@@ -119,11 +149,15 @@ def course_of(
 
 
 def _moments(
-    case: Case, plan: KinematicPlan, film: VolumeFilm, path: Path, times: Array,
-    observe: Callable[[int], None] | None = None,
+    case: Case, film: _MovingFilm, times: Array, observe: Callable[[int], None] | None = None
 ) -> tuple[list[_Moment], str]:  # fmt: skip
-    found = march(film, path, times, film_at=_film_at(case, plan, film))
-    return collected((_moment(case, plan, film, moment) for moment in found), observe)
+    return collected((_moment(case, film, moments) for moments in _marches(case, film, times)), observe)
+
+
+def _marches(case: Case, film: _MovingFilm, times: Array) -> Iterator[tuple[Moment, ...]]:
+    """The lands beside each other, time by time."""
+    marches = [march(each.film, each.path, times, film_at=_film_at(case, each.plan, each.film)) for each in film.lands]
+    return zip(*marches, strict=True)
 
 
 def collected(found: Iterator[Moved], observe: Callable[[int], None] | None = None) -> tuple[list[Moved], str]:
@@ -150,16 +184,16 @@ def mean_heat(case: Case, plan: KinematicPlan, path: Path, times: Array) -> tupl
     assert case.motion.frequency is not None
     period = 1.0 / case.motion.frequency
     begin = times[-1] - period * (1.0 + 1e-9)
-    seen = path_seen_from(path, plan.turning)
-    film = _film(case, plan, seen, times)
+    film = _moving(case, plan, path, times)
     passed = times if plan.remembers else times[times >= begin]
     powers, flows = [], []
-    for moment in march(film, seen, passed, film_at=_film_at(case, plan, film)):
-        if moment.time > begin:
-            found, motion = _moment(case, plan, film, moment).loads, path(moment.time)
+    for moments in _marches(case, film, passed):
+        if moments[0].time > begin:
+            found, motion = _moment(case, film, moments).loads, path(moments[0].time)
             push = plan.section.clearance * float(np.dot(found.force, motion.v))
             powers.append(-found.torque.journal * motion.omega - push)
-            flows.append(outflow(film, moment.motion.d, film.pressure(moment.solution.state)))
+            pairs = zip(film.lands, moments, strict=True)
+            flows.append(sum(leaving(land.film, moment.motion, moment.solution) for land, moment in pairs))
     return float(np.mean(powers)), float(np.mean(flows))
 
 
@@ -169,9 +203,9 @@ def _error_of_course(
     """The largest error of the periods' largest forces over the largest of all, from the same course on half the cells
     each way in half the steps, NaN if that does not converge; and the iterations that it took."""
     coarser = _coarser(plan)
-    film = _film(case, coarser, path, times)
+    film = _moving(case, coarser, path, times)
     try:
-        coarse, problem = _moments(case, coarser, film, path, every_second(times))
+        coarse, problem = _moments(case, film, every_second(times))
     except NotConverged:
         return math.nan, 0
     spent = sum(moment.iterations for moment in coarse)
@@ -191,15 +225,19 @@ def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, 
     """Error of the largest force of a film without a state: from a mesh twice as coarse or, if modal, twice as fine."""
     force = worst.loads.force
     if plan.modal:
-        finer = modal_force(plan, worst.motion)
+        finer = modal_force(plan, worst.on_lands[0].motion)
         return (math.dist(finer, force) / math.hypot(*finer) if any(finer) else math.nan), 0
-    film = _film(case, _coarser(plan), path, times)
+    coarse, iterations = np.zeros(2), 0
     try:
-        solution = FilmSolver(_film_at(case, plan, film)(worst.time, worst.motion)).steady(worst.motion)
+        for land, moment in zip(_moving(case, _coarser(plan), path, times).lands, worst.on_lands, strict=True):
+            film = _film_at(case, land.plan, land.film)(worst.time, moment.motion)
+            solution = FilmSolver(film).steady(moment.motion)
+            coarse += loads(land.film, moment.motion, solution).force
+            iterations += solution.iterations
     except NotConverged:
         return math.nan, 0
-    coarse = turned(loads(film, worst.motion, solution).force, plan.turning * worst.time)
-    return estimate(force, coarse, film.law.order), solution.iterations
+    x, y = turned((float(coarse[0]), float(coarse[1])), plan.turning * worst.time)
+    return estimate(force, (x, y), plan.law.order), iterations
 
 
 def _coarser(plan: KinematicPlan) -> KinematicPlan:
@@ -223,12 +261,23 @@ def _peaks(case: Case, times: Array, moments: Sequence[MovedFilm]) -> dict[int, 
     return peaks
 
 
+def _moving(case: Case, plan: KinematicPlan, path: Path, times: Array) -> _MovingFilm:
+    """The film of a journal that moves along a path of the lab. Raises NotConverged where it touches an end."""
+    inclined = inclined_path(path, slope_of(tilt_of(case), plan.section))
+    for time in times if inclined(0.0).tilts else ():
+        require_gap(plan.section, inclined(time))
+    seen, mirrored = path_seen_from(inclined, plan.turning), case.bearings[0].films[0].supply.mirrored
+    parts = [(replace(plan, section=section), its) for section, its in land_paths(plan.section, seen, mirrored)]
+    own = tuple(_Land(its_plan, _film(case, its_plan, its_path, times), its_path) for its_plan, its_path in parts)
+    return _MovingFilm(plan, seen, mirrored, own)
+
+
 def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFilm:
     """Cells that serve every moment: equal ones around; half of them along where the section is half the film."""
     around, along = plan.cells
     along = along // 2 if plan.section.far == "symmetry" else along
     fastest = max((path(t) for t in times), key=lambda motion: motion.rate)
-    grid = fitted_grid(plan.section, (0.0, 0.0), around, along)
+    grid = fitted_grid(plan.section, (0.0, 0.0), around, along, fastest.tilts)
     return VolumeFilm(plan.section, grid, law_at(case, plan, 0.0), reference_pressure(plan.section, fastest))
 
 
@@ -243,24 +292,31 @@ def _film_at(case: Case, plan: KinematicPlan, film: VolumeFilm) -> FilmAt:
     return film_at
 
 
-def _moment(case: Case, plan: KinematicPlan, film: VolumeFilm, moment: Moment) -> _Moment:
-    motion, solution, angle = moment.motion, moment.solution, plan.turning * moment.time
-    found = loads(film, motion, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
-    found = replace(found, force=turned(found.force, angle))
+def _moment(case: Case, film: _MovingFilm, moments: tuple[Moment, ...]) -> _Moment:
+    plan, first, time = film.plan, film.lands[0], moments[0].time
+    motion, angle = film.path(time), plan.turning * time
+    slip, factor = motion.omega + 2.0 * plan.turning, case.film.cavitation_factor
+    parts = lands(plan.section, motion, film.mirrored)
+    each = [
+        loads(land.film, moment.motion, moment.solution, slip, factor)
+        for land, moment in zip(film.lands, moments, strict=True)
+    ]
+    found = summed(list(zip(parts, each, strict=True)))
+    found = replace(found, force=turned(found.force, angle), moment=turned(found.moment, angle))
     if plan.modal:
         found = replace(found, force=modal_force(plan, motion, COARSE_MODAL_MESH))
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
-    probe = pressure_at(film_field(film, motion, solution), PROBE - angle, place)
-    gap = float(film.gap(motion.d, np.array([PROBE - angle]))[0])
-    return _Moment(
-        moment.time, turned(motion.d, angle), found, probe, gap, solution.iterations, motion, solution
-    )
+    probe = pressure_at(film_field(first.film, moments[0].motion, moments[0].solution), PROBE - angle, place)
+    gap = float(gap_on(plan.section, moments[0].motion, np.array([PROBE - angle]), np.array([place]))[0, 0])
+    iterations = sum(moment.solution.iterations for moment in moments)
+    return _Moment(time, turned(motion.d, angle), found, probe, gap, iterations, moments)
 
 
-def _field(plan: KinematicPlan, film: VolumeFilm, moment: _Moment) -> FilmField:
+def _field(film: _MovingFilm, moment: _Moment) -> FilmField:
     """In the lab."""
-    field = film_field(film, moment.motion, moment.solution)
-    return replace(field, phi=field.phi + plan.turning * moment.time)
+    first = moment.on_lands[0]
+    field = film_field(film.lands[0].film, first.motion, first.solution)
+    return replace(field, phi=field.phi + film.plan.turning * moment.time)
 
 
 def history_of(moments: Sequence[MovedFilm]) -> History:
@@ -271,4 +327,5 @@ def history_of(moments: Sequence[MovedFilm]) -> History:
         force=np.array([moment.loads.force for moment in moments]),
         probe_pressure=np.array([moment.probe for moment in moments]),
         gap_ratio=np.array([moment.gap for moment in moments]),
+        moment=np.array([moment.loads.moment for moment in moments]),
     )

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.bearing_tests.columns import MOMENTS, result_columns
+from frbcli.bearing_tests.columns import moment_columns, result_columns
 from frbcli.bearing_tests.history import History
 from frbcli.bearing_tests.march import squeeze_path, whirl_path
 from frbcli.bearing_tests.steady_film import FilmField
@@ -95,7 +95,8 @@ class KinematicTest(Tabular):
         if self.test == "rotation":
             return table_of(result_columns(states_moment(self.case), self.carries_gas), self.results)
         moments = ((each, 1 if each.history is None else len(each.history.time_s)) for each in self.results)
-        return table_of(MOMENTS, ((result, moment) for result, count in moments for moment in range(count)))
+        rows = ((result, moment) for result, count in moments for moment in range(count))
+        return table_of(moment_columns(states_moment(self.case)), rows)
 
 
 def rotation(

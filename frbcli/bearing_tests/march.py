@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.gas import Carried, KeptGas
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
-
-Path = Callable[[float], Motion]  # of the time in s
 
 RISE_TIME = 0.01  # s, t_1 of (4.49)
 FAST = 1e6  # 1/s: oil that is replaced so fast has no time for an exchange of gas
@@ -45,6 +43,11 @@ def whirl_path(eccentricity: float, frequency: float, omega: float) -> Path:
         return Motion((e * c, e * s), (growth * c - e * rate * s, growth * s + e * rate * c), omega)
 
     return path
+
+
+def inclined_path(path: Path, slope: tuple[float, float]) -> Path:
+    """The path of a journal that keeps a tilt against its shell. slope: see Motion."""
+    return lambda time: replace(path(time), slope=slope)
 
 
 @dataclass(frozen=True)

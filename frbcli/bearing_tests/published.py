@@ -20,14 +20,13 @@ from frbcli.bearing_tests.history import (
     every_second,
     peak_error,
 )
-from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, pressure_at
 from frbcli.case.schema import Case
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.loads import estimate
-from frbcli.film.cells.motion import Motion, path_seen_from, turned
+from frbcli.film.cells.motion import Motion, Path, path_seen_from, turned
 from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads

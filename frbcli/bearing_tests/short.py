@@ -12,12 +12,11 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.bearing_tests.history import PROBE, PROBE_WIDTH, Course, MovedFilm, history_of
-from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import Array, FilmField, FilmMoment, modal_force
 from frbcli.case.schema import Case
 from frbcli.film.cells.film import supply_share
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow

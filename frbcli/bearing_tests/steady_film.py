@@ -73,20 +73,21 @@ def steady_film(
     first = FilmSolver(coarse).steady(motion)
     solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
     found, rough = loads(film, motion, solution, factor=factor), loads(coarse, motion, first)
-    leaves = tilted_outflow if motion.tilts else outflow_of
     return FilmMoment(
         film_field(film, motion, solution),
         found,
         estimate(found.force, rough.force, law.order),
         int(np.count_nonzero(~film.grid.fixed)),
         first.iterations + solution.iterations,
-        leaves(film, motion, solution) if flow else math.nan,
+        leaving(film, motion, solution) if flow else math.nan,
         estimate(found.moment, rough.moment, law.order),
     )
 
 
-def outflow_of(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
-    """Outflow of a solution through the open ends of the whole bearing in m^3/s."""
+def leaving(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+    """Outflow of a solution in m^3/s through the open ends of the whole bearing, of a land where the lands differ."""
+    if motion.tilts:
+        return tilted_outflow(film, motion, solution)
     return outflow(film, motion.d, film.pressure(solution.state))
 
 

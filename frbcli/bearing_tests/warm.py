@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.bearing_tests.history import mean_heat
-from frbcli.bearing_tests.march import Path
 from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.grid import Array
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.warm import warm_case

@@ -50,7 +50,8 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
     misalignment: tuple[Tilt, Tilt] | None = Field(
         default=None,
-        description="tilt of the shell about x, y through the middle of the bearing; in rotations, runs and at rest",
+        description="tilt of the shell about x, y through the middle of the bearing; in kinematic tests, runs and at "
+        "rest",
     )
 
     @property

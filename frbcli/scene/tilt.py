@@ -1,4 +1,4 @@
-"""The tilt of a journal against its shell in a rotation, and where it closes the gap.
+"""The tilt of a journal against its shell in a kinematic test, and where it closes the gap.
 
 A tilt (t_x, t_y) is a small rotation about the axes through the middle of the bearing: the centre of the journal at z
 lies at (x + z t_y, y - z t_x).
@@ -13,12 +13,13 @@ from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.gap import Section, smallest_gap
-from frbcli.scene.gate.analysis import ROTATION
+from frbcli.scene.gate.analysis import KINEMATIC, ROTATION, SQUEEZE
 from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key
 
 Pair = tuple[float, float]
 NONE = (0.0, 0.0)
+AROUND = 36  # places of a whirl, between which those of lobed shells alone have less gap
 
 
 def tilt_of(case: Case) -> Pair:
@@ -41,7 +42,7 @@ def tilts(case: Case) -> bool:
 
 
 def states_moment(case: Case) -> bool:
-    """Whether a rotation states the moment of the film force."""
+    """Whether a kinematic test states the moment of the film force."""
     return case.motion is not None and (case.motion.states_moment or tilts(case))
 
 
@@ -62,6 +63,26 @@ def displacement_of(case: Case) -> Pair:
     assert case.motion is not None
     e, angle = case.motion.eccentricity or 0.0, case.motion.angle
     return e * math.cos(angle), e * math.sin(angle)
+
+
+def places_of(case: Case, test: str) -> list[Pair]:
+    """Displacements over the clearance at which a test brings the ends of the journal nearest to the shell: the gap, a
+    concave function of them, is least at the ends of a line and on the rim of a disk."""
+    assert case.motion is not None
+    e, toward = case.motion.eccentricity or 0.0, tilt_of(case)
+    if test == ROTATION:
+        return [displacement_of(case)]
+    if test == SQUEEZE:
+        return [(0.0, -e), (0.0, e)]
+    begin = math.atan2(-toward[0], toward[1])  # the direction of the slope
+    angles = (begin + 2.0 * math.pi * i / AROUND for i in range(AROUND))
+    return [(e * math.cos(angle), e * math.sin(angle)) for angle in angles]
+
+
+def least_gaps(section: Section, places: list[Pair], slope: Pair) -> Pair:
+    """The least of gaps_at_ends of all places."""
+    low, high = zip(*(gaps_at_ends(section, place, slope) for place in places), strict=True)
+    return min(low), min(high)
 
 
 def tilt_key(case: Case) -> tuple[str, str]:
@@ -94,4 +115,4 @@ def tilt_refusal(problem: str, remedy: str) -> Rule:
             key, value = tilt_key(case)
             yield Fault(key, value, None, f"{problem}.", remedy)
 
-    return Rule(faults, (ROTATION,))
+    return Rule(faults, KINEMATIC)

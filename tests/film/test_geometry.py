@@ -224,6 +224,22 @@ def test_motion_in_a_frame_has_the_same_gap_and_the_same_change_of_it() -> None:
     assert turned(turned((1.0, 2.0), 0.4), -0.4) == pytest.approx((1.0, 2.0))
 
 
+def test_tilting_motion_in_a_frame_has_the_same_gap_and_the_same_change_of_it_at_both_ends() -> None:
+    motion, angle, speed = Motion((0.3, -0.2), (5.0, 7.0), 300.0, (0.2, 0.1), (-4.0, 9.0)), 0.8, 120.0
+    seen, ends = seen_from(motion, angle, speed), np.array([0.0, 1.0])
+    for z in ends:
+        place = np.array([z])
+        at, seen_at = (Motion(_number(each.displacement_at(place)), _number(each.velocity_at(place)), each.omega)
+                       for each in (motion, seen))  # fmt: skip
+        alone = seen_from(at, angle, speed)
+        assert seen_at.d == pytest.approx(alone.d, rel=1e-12)
+        assert seen_at.v == pytest.approx(alone.v, rel=1e-12)
+
+
+def _number(pair: tuple[np.ndarray, np.ndarray]) -> tuple[float, float]:
+    return float(pair[0][0]), float(pair[1][0])
+
+
 @pytest.mark.parametrize("speed", [0.0, 150.0, 300.0, -80.0])
 def test_plain_film_is_the_same_in_any_frame(speed: float) -> None:
     """Even ring, turned by a whole number of its cells: the same film to round-off, whatever the frame's speed."""

@@ -41,7 +41,7 @@ class KinematicMotion(Model):
         default=None, description="of a rotation: of the journal along x, y, in place of the two before"
     )
     tilt: tuple[Tilt, Tilt] | None = Field(
-        default=None, description="of a rotation: of the journal about x, y through the middle of the bearing"
+        default=None, description="of the journal about x, y through the middle of the bearing"
     )
     tilt_rate: tuple[TiltRate, TiltRate] | None = Field(
         default=None, description="of a rotation: how fast the journal tilts about x, y"
@@ -53,5 +53,5 @@ class KinematicMotion(Model):
 
     @property
     def states_moment(self) -> bool:
-        """Whether a rotation states the moment of the film force, too."""
+        """Whether a test states the moment of the film force, too."""
         return any(given is not None for given in (self.velocity, self.tilt, self.tilt_rate))

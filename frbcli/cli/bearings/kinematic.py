@@ -111,10 +111,11 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
 
 def _document(test: KinematicTest, result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
-    from frbcli.bearing_tests.columns import HISTORY, result_columns
+    from frbcli.bearing_tests.columns import history_columns, result_columns
     from frbcli.columns import document, named
     from frbcli.scene.tilt import states_moment
 
-    history = () if result.plan.test == "rotation" else named(HISTORY, "", attrgetter("history"))
-    found = document((*result_columns(states_moment(test.case), test.carries_gas), *history), result)
+    moment = states_moment(test.case)
+    history = () if result.plan.test == "rotation" else named(history_columns(moment), "", attrgetter("history"))
+    found = document((*result_columns(moment, test.carries_gas), *history), result)
     return found if result.heat is None else found | {"thermal": film_document(result.heat)}

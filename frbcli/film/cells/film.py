@@ -11,7 +11,7 @@ import numpy as np
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, volume_grid
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
@@ -101,6 +101,10 @@ class VolumeFilm:
         """H (4.4) at the angles phi (n,)."""
         return gap_height(self.section, d, phi)
 
+    def gaps(self, motion: Motion) -> Array:
+        """(m, k) H in the middles of the cells."""
+        return gap_on(self.section, motion, self.grid.centre, self.grid.height)
+
     def cells(self, w: Array, carried: Carried | None = None) -> CellState:
         """State of the cells with the unknown w (m, k), with the given pressures in grooves and holes; carried: the gas
         that comes into them, else it is in equilibrium."""
@@ -134,7 +138,7 @@ class VolumeFilm:
 
     def content(self, motion: Motion, w: Array) -> Array:
         """(m, k) oil in the cells, H theta."""
-        content: Array = gap_height(self.section, motion.d, self.grid.centre)[:, None] * self.cells(w).fraction
+        content: Array = self.gaps(motion) * self.cells(w).fraction
         return content
 
     def from_coarser(self, coarse: VolumeFilm, w: Array) -> Array:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.gas import Carried, FreeGas, brought, oil_paths
-from frbcli.film.cells.balance.plain import CellBalances, gap_on
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
@@ -95,7 +95,7 @@ class _Settled:
 
     def gap(self, motion: Motion) -> Array:
         """(m, k) H."""
-        return gap_on(self.film.section, motion, self.film.grid.centre, self.film.grid.height)
+        return self.film.gaps(motion)
 
     def change(self, high: At, low: At) -> tuple[Array, Array]:
         """Difference quotients (m, k) of both balances."""

@@ -9,10 +9,9 @@ from typing import Literal
 import numpy as np
 
 from frbcli.film.cavitation.law import FRONTS
-from frbcli.film.cells.balance.plain import gap_on
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.mesh.grid import force_weights
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.grid import Array
 from frbcli.film.parabola import summit
 

@@ -10,7 +10,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from frbcli.film.gap import Displacement
+import numpy as np
+
+from frbcli.film.gap import Displacement, Section, gap_height
 from frbcli.film.grid import Array
 
 PARALLEL = (0.0, 0.0)
@@ -55,6 +57,15 @@ def _along(middle: tuple[float, float], growth: tuple[float, float], z: Array) -
     return middle[0] + (z - 0.5) * growth[0], middle[1] + (z - 0.5) * growth[1]
 
 
+Path = Callable[[float], Motion]  # of the time in s
+
+
+def gap_on(section: Section, motion: Motion, phi: Array, z: Array) -> Array:
+    """(m, k) H at the angles phi (m,) and the positions z (k,) over the width of a section."""
+    gap = gap_height(section, motion.displacement_at(z), phi[:, None])
+    return np.broadcast_to(gap, (len(phi), len(z)))
+
+
 class Storage(NamedTuple):
     """Oil kept in the cells per area and time, factor theta - past: factor and past are (m, 1) or (m, k), in 1/s."""
 
@@ -75,11 +86,16 @@ def seen_from(motion: Motion, angle: float, speed: float) -> Motion:
     from them, as from the speeds of journal and shell. Nothing else changes, for a film has no inertia: forces on the
     journal come back by turned(force, angle), the slip omega_J - omega_S and the torques are the same.
     """
-    (x, y), (v_x, v_y) = motion.d, motion.v
-    relative = (v_x + speed * y, v_y - speed * x)
-    return Motion(turned(motion.d, -angle), turned(relative, -angle), motion.omega - 2.0 * speed)
+
+    def seen(place: tuple[float, float], rate: tuple[float, float]) -> tuple[tuple[float, float], tuple[float, float]]:
+        relative = (rate[0] + speed * place[1], rate[1] - speed * place[0])
+        return turned(place, -angle), turned(relative, -angle)
+
+    d, v = seen(motion.d, motion.v)
+    slope, slope_rate = seen(motion.slope, motion.slope_rate)
+    return Motion(d, v, motion.omega - 2.0 * speed, slope, slope_rate)
 
 
-def path_seen_from(path: Callable[[float], Motion], speed: float) -> Callable[[float], Motion]:
+def path_seen_from(path: Path, speed: float) -> Path:
     """A motion over time in s, seen from a frame that turns with a speed in rad/s and is at the angle 0 at time 0."""
     return lambda time: seen_from(path(time), speed * time, speed)

@@ -20,7 +20,7 @@ from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW,
 from frbcli.film.cells.balance.carried import UPWIND, before_upstream
 from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
 from frbcli.film.cells.balance.gas import Carried, KeptGas, free_gas
-from frbcli.film.cells.balance.plain import CellBalances, gap_on
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
@@ -126,7 +126,7 @@ class FilmSolver:
             again = self._solve(motion, solution.w, storage)
             solution = replace(again, iterations=solution.iterations + again.iterations)
         if law.carries_gas:
-            gap = gap_on(self.film.section, motion, grid.centre, grid.height)
+            gap = self.film.gaps(motion)
             held = 0 if upwind else REPEATED
             solution = self._carrying(motion, solution, storage, gap, np.zeros(grid.shape), held)
         return solution
@@ -140,7 +140,7 @@ class FilmSolver:
         from; gas: of a law that carries any. Returns (solution, content H theta). Raises
         FilmUnsolved.
         """
-        gap = self.film.gap(motion.d, self.film.grid.centre)[:, None]
+        gap = self.film.gaps(motion)
         storage = Storage(rate * gap, past)
         if gas is not None:
             self._carried = gas.guess

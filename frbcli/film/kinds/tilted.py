@@ -12,7 +12,6 @@ import numpy as np
 
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.balance.plain import gap_on
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.tilted.balances import tilted_outflow
@@ -88,7 +87,7 @@ class TiltedFilms(Films):
                 with contextlib.suppress(NotConverged):
                     w = land_solution(land.film, motion).w
             wet[W, number] = wet[W_BEFORE, number] = w
-            wet[OIL, number] = _content(land, motion, w)
+            wet[OIL, number] = land.film.content(motion, w)
         return wet, np.zeros((2, len(of), FLOWS))
 
     @property
@@ -109,7 +108,8 @@ class TiltedFilms(Films):
         worst = 0.0
         for number, (i, land) in enumerate(self._lands):
             if self.remembering[i]:
-                now = _content(land, land.motion_of(np.array(displacements[2 * i : 2 * i + 2])), wet[W, number])
+                motion = land.motion_of(np.array(displacements[2 * i : 2 * i + 2]))
+                now = land.film.content(motion, wet[W, number])
                 worst = max(worst, missing_oil(land.film, now, wet[OIL, number], flows[PASSED, number]))
         return worst
 
@@ -183,9 +183,3 @@ class TiltedField:
     def outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
         """See FieldFilm."""
         return tilted_outflow(film, motion, solution)
-
-
-def _content(land: TiltedLand, motion: Motion, w: Array) -> Array:
-    """(m, k) oil in the cells of a land, H theta."""
-    grid = land.film.grid
-    return np.asarray(gap_on(land.film.section, motion, grid.centre, grid.height) * land.film.cells(w).fraction)

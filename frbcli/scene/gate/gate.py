@@ -31,7 +31,6 @@ from frbcli.scene.gate.analysis import (
     LADDER,
     LOADED,
     RANGE,
-    ROTATION,
     RUN,
     SHEETS,
     SPEED_CYCLES,
@@ -83,7 +82,7 @@ RULES = (
     *(Rule(partial(kinematic.turning_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.theory_faults, KINEMATIC),
     *(Rule(partial(kinematic.tilt_faults, test=test), (test,)) for test in KINEMATIC),
-    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (ROTATION, *AT_REST, *RUNS))),
+    Rule(kinematic.misalignment_faults, tuple(each for each in ALL if each not in (*KINEMATIC, *AT_REST, *RUNS))),
     Rule(lambda case: () if form_of(case).inclines else kinematic.misalignment_faults(case), (*AT_REST, *RUNS)),
     Rule(static.tilted_sheet_faults, SHEETS),
     Rule(_of_films(runs.theory_faults), (RUN, *KINEMATIC)),
@@ -114,7 +113,7 @@ RULES = (
     Rule(runs.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(runs.speed_faults, (RUN,), last=True),
-    Rule(kinematic.end_faults, (ROTATION,), last=True),
+    *(Rule(partial(kinematic.end_faults, test=test), (test,), last=True) for test in KINEMATIC),
 )
 
 

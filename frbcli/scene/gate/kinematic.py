@@ -9,7 +9,7 @@ from frbcli.errors import Fault
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.analysis import ROTATION
 from frbcli.scene.section import film_section
-from frbcli.scene.tilt import as_text, displacement_of, gaps_at_ends, misaligned, slope_of, tilt_key, tilt_of, tilts
+from frbcli.scene.tilt import as_text, least_gaps, misaligned, places_of, slope_of, tilt_key, tilt_of, tilts
 
 SPARE = 0.1  # share of the least gap without tilt that a remedy leaves
 
@@ -82,9 +82,9 @@ def tilt_faults(case: Case, test: str) -> Iterator[Fault]:
     if motion is None:
         return
     if test != ROTATION:
-        for key in ("velocity", "tilt", "tilt_rate"):
+        for key in ("velocity", "tilt_rate"):
             if getattr(motion, key) is not None:
-                problem = f"is of a rotation; a {test} moves the journal parallel to its shell, at its own velocity."
+                problem = f"is of a rotation; a {test} moves the journal at its own velocity, and keeps its tilt."
                 yield Fault(f"motion.{key}", as_text(getattr(motion, key)), None, problem, "Leave it out.")
         return
     if len(case.bearings) != 1 or not tilts(case):
@@ -95,18 +95,20 @@ def tilt_faults(case: Case, test: str) -> Iterator[Fault]:
         yield Fault(key, value, None, problem, "Give an eccentricity in place of motion.load, or leave the tilt out.")
 
 
-def end_faults(case: Case) -> Iterator[Fault]:
+def end_faults(case: Case, test: str) -> Iterator[Fault]:
     """A tilt that closes the gap at an end of the bearing."""
-    section, d, tilt = film_section(case, case.bearings[0].films[0]), displacement_of(case), tilt_of(case)
+    if not tilts(case):
+        return
+    section, places, tilt = film_section(case, case.bearings[0].films[0]), places_of(case, test), tilt_of(case)
 
     def least(share: float) -> float:
-        return min(gaps_at_ends(section, d, slope_of((share * tilt[0], share * tilt[1]), section)))
+        return min(least_gaps(section, places, slope_of((share * tilt[0], share * tilt[1]), section)))
 
     gap = least(1.0)
     if gap > 0.0:
         return
     key, value = tilt_key(case)
-    low, high = gaps_at_ends(section, d, slope_of(tilt, section))
+    low, high = least_gaps(section, places, slope_of(tilt, section))
     end = "z < 0" if low <= high else "z > 0"
     problem = (
         f"closes the gap at the end {end} of the bearing: journal and shell would overlap by "
@@ -120,5 +122,5 @@ def end_faults(case: Case) -> Iterator[Fault]:
 def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells that are not in line, where journal and shell are taken to be parallel."""
     for key, value in misaligned(case):
-        problem = "tilts the shell, which rotations, runs and machines at rest follow; others do not."
+        problem = "tilts the shell, which kinematic tests, runs and machines at rest follow; others do not."
         yield Fault(key, value, None, problem, "Leave it out here.")

@@ -22,7 +22,10 @@ LEFT_OUT = {
 
 
 def tested_case(case: Case) -> Case:
-    """The case of the film that motion.film names, without a rotor; the case itself where it names none."""
+    """The case of the film that motion.film names, without a rotor; the case itself where it names none. The tilt of
+    the journal is that of the motion."""
+    if case.film.tilt != "none":
+        case = altered(case, {"film": altered(case.film, {"tilt": "none"})})
     index = _index(case)
     if index is None or case.motion is None:
         return case

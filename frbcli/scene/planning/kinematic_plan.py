@@ -29,7 +29,7 @@ from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
-from frbcli.scene.tilt import displacement_of, gaps_at_ends, slope_of, tilt_of, tilts
+from frbcli.scene.tilt import least_gaps, places_of, slope_of, tilt_of, tilts
 
 TESTS = KINEMATIC
 
@@ -122,7 +122,7 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     if chosen is not None:
         decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
     else:
-        decisions = (*_decisions(case, film, section, form, cells, why), *steps, *_transport(case, film, form))
+        decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
     return KinematicPlan(
         test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
         turning=turning, ramp=film.supply.rise_time, model=chosen,
@@ -169,12 +169,12 @@ def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
 
 
 def _decisions(
-    case: Case, bearing: FilmGeometry, section: Section, form: FilmForm, cells: tuple[int, int], why: str
+    case: Case, test: str, section: Section, form: FilmForm, cells: tuple[int, int], why: str
 ) -> Iterator[Decision]:
     """Gap, form and cells of a film of the program."""
-    law = law_named(case.film.cavitation)
+    law, bearing = law_named(case.film.cavitation), case.bearings[0].films[0]
     yield _gap_decision(section, bearing, tilts(case))
-    yield from _tilt_decision(case, section)
+    yield from _tilt_decision(case, test, section)
     yield from _lobe_decision(section)
     yield Decision("film", *form.told_in_tests(law))
     if bearing.sealing:
@@ -209,11 +209,11 @@ def _gap_decision(section: Section, bearing: FilmGeometry, tilted: bool) -> Deci
     return Decision("gap", "the whole width", f"supply {bearing.supply.kind}: the film is not symmetric")
 
 
-def _tilt_decision(case: Case, section: Section) -> list[Decision]:
+def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
     if not tilts(case):
         return []
     (x, y), size = tilt_of(case), 1e6 * section.clearance
-    low, high = gaps_at_ends(section, displacement_of(case), slope_of(tilt_of(case), section))
+    low, high = least_gaps(section, places_of(case, test), slope_of(tilt_of(case), section))
     reason = f"the least gap is {size * low:.3g} um at the end z < 0 and {size * high:.3g} um at the other"
     return [Decision("tilt", f"{1e3 * x:.4g}, {1e3 * y:.4g} mrad", reason)]
 

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.carried import UPWIND, limited
 from frbcli.film.cells.balance.ends import BEND, EndSlope, end_outflow, end_slopes
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
@@ -90,12 +90,6 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
     carried = 0.5 * motion.omega * face
     rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
     return Conductances(around, along, near, far, carried * dz[None, :], rise)
-
-
-def gap_on(section: Section, motion: Motion, phi: Array, z: Array) -> Array:
-    """(m, k) H at the angles phi (m,) and the positions z (k,) over the width of a section."""
-    gap = gap_height(section, motion.displacement_at(z), phi[:, None])
-    return np.broadcast_to(gap, (len(phi), len(z)))
 
 
 class CellBalances:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.gap import Section
 
 
@@ -46,6 +46,15 @@ def parts(section: Section, mirrored: bool) -> tuple[tuple[Section, float, float
         return ((section, -1.0 if mirrored else 1.0, 0.0),)
     one = replace(section, copies=1)
     return tuple((one, side, -side * 0.5 * section.width) for side in (1.0, -1.0))
+
+
+def land_paths(section: Section, path: Path, mirrored: bool) -> tuple[tuple[Section, Path], ...]:
+    """The section of each of the lands, and the motion that it sees over time while the bearing sees `path`."""
+
+    def path_of(number: int) -> Path:
+        return lambda time: lands(section, path(time), mirrored)[number].motion
+
+    return tuple((land.section, path_of(number)) for number, land in enumerate(lands(section, path(0.0), mirrored)))
 
 
 def _land(section: Section, motion: Motion, side: float, centre: float) -> Land:
