@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.gas import Carried, KeptGas
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
@@ -87,7 +87,8 @@ class _Steps:
         if film.law.carries_gas:
             free = film.law.free_gas(film.cells(w), film.scales)
             self._gas = KeptGas(self._content * free, Carried(free, np.full(w.shape, FAST)))
-        self._drift: Array | None = None  # how fast w changed in the step before
+        self._drift: Array | None = None  # how fast w changed in the step before, and the gas that cells were given
+        self._gas_drift: Array | float = 0.0
 
     def to(self, time: float, halvings: int) -> Moment:
         """One step to the time, or two of half its size."""
@@ -109,10 +110,14 @@ class _Steps:
         flowing = self._path(middle)
         begin = self._w if self._drift is None else self._w + dt * self._drift
         solver = self._at(middle, flowing)
-        kept = None if self._gas is None else KeptGas(self._gas.past / dt, self._gas.guess)
+        kept, gas = None, self._gas
+        if gas is not None:
+            carried, turnover = gas.guess
+            kept = KeptGas(gas.past / dt, Carried(carried + dt * self._gas_drift, turnover))
         solution, content = solver.keep(end, flowing, begin, 1.0 / dt, self._content / dt, kept)
-        if solution.gas is not None:
+        if gas is not None and solution.gas is not None:
             self._gas = KeptGas(content * solution.gas.free, solution.gas.carried)
+            self._gas_drift = (solution.gas.carried.gas - gas.guess.gas) / dt
         self._drift = (solution.w - self._w) / dt
         self._w, self._time, self._content = solution.w, time, content
         return Moment(middle, flowing, solution)

@@ -16,8 +16,8 @@ An implicit balance of the free gas of a cell has the one solution
     c = c_in + (c_e - c_in) / (1 + tau r),
 
 c_in being what the balance would give without exchange and r the rate in 1/s at which the oil of the cell is replaced
-or stored anew (gas.py). So c follows from the pressure of the cell, and a film has one unknown per cell, as with any
-other law. tau = 0 is Peeken's model: c = c_e. With tau = oo the film is barotropic, of a constant c.
+or stored anew (balance.py in cells/gas/). So c follows from the pressure of the cell, and a film has one unknown per
+cell, as with any other law. tau = 0 is Peeken's model: c = c_e. With tau = oo the film is barotropic, of a constant c.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.film.cavitation.law import Array, CellState, CellWithGas, FilmOil, Key, Law, Numbers, Scales
 
 TINY = 1e-300  # a coefficient or a root that is no divisor
 INSTANT = 1e-25  # s, as good as none
@@ -113,8 +113,9 @@ class Bubbly(Law):
         )
 
     @staticmethod
-    def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """State of one cell, see `cells_with_gas`; its c_in and r are the last two parameters."""
+    def cell(w: float, parameters: Numbers, scales: Scales) -> CellWithGas:  # type: ignore[override]
+        """State of one cell, see `cells_with_gas`; its c_in and r are the last two parameters, its c and by how much
+        this grows with c_in at the same pressure the last two results."""
         bunsen, supplied, saturation, release_time, absorption_time, carried, turnover = parameters
         ratio, total = saturation / scales.reference, bunsen + supplied
         level = w + 1.0 + (scales.cavitation + scales.ambient) / scales.reference
@@ -122,10 +123,11 @@ class Bubbly(Law):
         balanced = (total - carried) / slope
         if balanced > 0.0 and level < ratio * balanced + balanced / (balanced + carried):
             share = 1.0 / (1.0 + release_time * turnover)
-            a = carried + share * (total - carried)
+            a, passed = carried + share * (total - carried), 1.0 - share
         else:
             share = 1.0 / (1.0 + absorption_time * turnover)
-            kept, clear = (1.0 - share) * carried, total / slope
+            passed, clear = 1.0 - share, total / slope
+            kept = passed * carried
             if clear > 0.0 and level < ratio * clear + clear / (clear + kept):
                 a = carried + share * (total - carried)
             else:
@@ -137,7 +139,8 @@ class Bubbly(Law):
         by_w = (a + e * u) / root
         u += min(level, 0.0) * by_w
         return (
-            u * saturation - scales.ambient, level - ratio * u, 0.0, saturation * by_w, 1.0 - ratio * by_w, 0.0
+            u * saturation - scales.ambient, level - ratio * u, 0.0, saturation * by_w, 1.0 - ratio * by_w, 0.0,
+            a - share * bunsen * max(u, 0.0), passed,
         )  # fmt: skip
 
     @property

@@ -33,7 +33,8 @@ EMPTY = LARGEST_PARAMETERS
 LAW_NUMBERS = LARGEST_PARAMETERS + 1
 ECCENTRICITY, SPEED, WHIRL, MOTION = range(4)  # what a law may follow
 STATES = 6  # of a cell, see Law.cell
-CARRIED_GAS, TURNOVER, LAYERS = 6, 7, 8  # behind them stand the two parameters of a cell whose oil carries gas
+# Behind them stand the two parameters of a cell whose oil carries gas, and two more results, see Law.cell.
+CARRIED_GAS, TURNOVER, FREE_GAS, PASSED_ON, LAYERS = 6, 7, 8, 9, 10
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _FOLLOW = types.void(_POINTER, _POINTER, _POINTER, _POINTER)
@@ -41,13 +42,14 @@ _CELLS = types.void(types.intp, _POINTER, _POINTER, _POINTER, _POINTER)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
 # Stand in the templates below for those of one law.
-cell, follow, empty, COUNT, GAS = Law.cell, Law.follow, Law.empty, 1, False
+cell: Any = Law.cell
+follow, empty, COUNT, GAS = Law.follow, Law.empty, 1, False
 
 
 class CompiledLaw(NamedTuple):
     """C functions of a law. follow(given, motion, scales, law) fills law (LAW_NUMBERS,) from the parameters of the
     centred journal; cells(n, law, scales, w, states) fills the first six of
-    states (LAYERS, n) of the unknowns w (n,)."""
+    states (LAYERS, n) of the unknowns w (n,), and FREE_GAS and PASSED_ON of a law that carries gas."""
 
     follow: Any
     cells: Any
@@ -119,8 +121,12 @@ def _cells(n, law, scales, w, states):  # type: ignore[no-untyped-def]
     at = Scales(pressures[0], pressures[1], pressures[2])
     unknowns, out = carray(w, (n,)), carray(states, (LAYERS, n))
     for i in range(n):
-        own = (*parameters, out[CARRIED_GAS, i], out[TURNOVER, i]) if GAS else parameters
-        out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i] = cell(unknowns[i], own, at)
+        if GAS:
+            own = (*parameters, out[CARRIED_GAS, i], out[TURNOVER, i])
+            out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i], free, passed = cell(unknowns[i], own, at)
+            out[FREE_GAS, i], out[PASSED_ON, i] = free, passed
+        else:
+            out[0, i], out[1, i], out[2, i], out[3, i], out[4, i], out[5, i] = cell(unknowns[i], parameters, at)
 
 
 def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, Any]) -> Any:

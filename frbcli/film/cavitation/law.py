@@ -64,6 +64,7 @@ class Key:
 
 
 Cell = tuple[float, float, float, float, float, float]
+CellWithGas = tuple[float, float, float, float, float, float, float, float]
 Numbers = tuple[float, ...]
 FRONTS = 1.5  # fronts between cells make the order 1 to 2: the middle of it
 
@@ -82,7 +83,7 @@ class Law:
     empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
     whether a source keeps the pressure from falling below p_cav; published_form: whether it has a published form, on
     quadratic elements; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
-    exchanged of the law, and of which `cell` takes two more parameters, see bubbly.py.
+    exchanged of the law, and of which `cell` takes two more parameters and has two more results, see bubbly.py.
     order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
     fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.
     heavy: static load over width and diameter, Pa, above which errors of steps grow in its films.

@@ -36,9 +36,10 @@ SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  #
 # An end of a section: CLOSED, GIVEN or FREE; the slope of the pressure there, see EndSlope; the pressure in a groove.
 END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
 # One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it keeps
-# its oil; bored: whether flows around take the gaps of both cells, as beside bores; centrifugal: by which given
-# pressures fall with the square of the grid's speed, in s; settled: share of its pace that its balances may be off by
-# in the mean; parameters: of its law, of a centred journal at 1 rad/s.
+# its oil; carries_gas: whether that carries free gas; bored: whether flows around take the gaps of both cells, as
+# beside bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s; supplied_gas,
+# gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
+# of its pace that its balances may be off by in the mean; parameters: of its law, of a centred journal at 1 rad/s.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),
@@ -47,11 +48,14 @@ FILM = record(
     ("far", END),
     ("centrifugal", "f8"),
     ("settled", "f8"),
+    ("supplied_gas", "f8"),
+    ("gas_content", "f8"),
     ("follow_at", "i8"),
     ("cells_at", "i8"),
     ("solver_at", "i8"),
     ("clips", "i8"),
     ("remembers", "?"),
+    ("carries_gas", "?"),
     ("bored", "?"),
     ("parameters", "f8", (LARGEST_PARAMETERS,)),
 )
@@ -146,6 +150,9 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     own.solver_at = ring_solver(film.grid.shape[1])
     own.clips = (BETWEEN_MIDDLES if film.clips_between else BY_CELLS) if law.clips else NO_CLIP
     own.remembers, own.bored = law.keeps_oil, film.grid.has_bores
+    own.carries_gas = law.carries_gas
+    if law.carries_gas:
+        own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
     own.parameters[:] = given_parameters(law)
 
 

@@ -16,7 +16,7 @@ from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
-    from frbcli.film.cells.balance.gas import Carried, FreeGas
+    from frbcli.film.cells.gas.balance import Carried, FreeGas
 
 ABOVE_KINK = 1e-300  # of an unknown: a negligible pressure, but a full cell
 HALVINGS = 60  # of the interval in which the unknown of a cell with a given oil fraction lies

@@ -6,7 +6,7 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
 
 in the frame at rest, where the settled film does not change. Oil is carried upwind, whose derivatives are exact on
 neighbouring cells, and laws with kinks count with the derivative on the side on which each cell is. Free gas that the
-oil carries is one more state per cell, see linear_gas.py.
+oil carries is one more state per cell, see gas/linear.py.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION_SLOPE, PR
 from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UNKNOWN, volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linear_gas import linear_states
+from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver

@@ -19,7 +19,6 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.carried import UPWIND, before_upstream
 from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
-from frbcli.film.cells.balance.gas import Carried, KeptGas, free_gas
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -36,6 +35,8 @@ from frbcli.film.cells.balance.states import (
 from frbcli.film.cells.data import GIVEN_PRESSURE, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
+from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
+from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.gap import gap_rate
@@ -47,8 +48,10 @@ LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 DRY = -1e-6  # an oil fraction below this is none
 REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
-MOST_GAS = 100  # solutions with the free gas of the one before
-GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what it is off by; the latter where it does not fall any more
+GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what free gas is off by; the latter where it does not fall any more
+GAS_LIMIT = 3  # times the iterations of a film without gas: its error falls by a fixed ratio
+# How close cells come to their balances where gas is solved with the oil: before oil fractions are held anew, and last.
+HELD_CLOSE, CLOSE = 1e-3, 1e-14
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -78,10 +81,11 @@ class FilmSolver:
         self.film = film
         data, (m, k) = volume_films([film]), film.grid.shape
         self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+        self._carries, self._off = False, 0.0  # whether free gas goes with the oil; what it has changed by last
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
-        self._before, self._carried = np.full((m, k), UPWIND), Carried(np.zeros((m, k)), np.zeros((m, k)))
+        self._before, self._paths = np.full((m, k), UPWIND), np.zeros((PATHS, m, k))
         self._fraction = 1.0  # in the openings
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
@@ -120,15 +124,15 @@ class FilmSolver:
         self._before = np.full(grid.shape, UPWIND)
         rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
         storage = Storage(rate, np.zeros(grid.shape))
+        self._settle_gas()
         solution = self._solve(motion, self.film.full() if start is None else start, storage)
-        for _ in range(REPEATED if law.keeps_oil and not (law.starves or upwind or law.carries_gas) else 0):
-            self._before = before_upstream(solution.state.fraction, motion.omega)
-            again = self._solve(motion, solution.w, storage)
-            solution = replace(again, iterations=solution.iterations + again.iterations)
+        repeated = REPEATED if law.keeps_oil and not (law.starves or upwind) else 0
         if law.carries_gas:
-            gap = self.film.gaps(motion)
-            held = 0 if upwind else REPEATED
-            solution = self._carrying(motion, solution, storage, gap, np.zeros(grid.shape), held)
+            self._hold_gas(self.film.gaps(motion), storage, 0.0)
+            solution = self._again(motion, solution, storage, HELD_CLOSE if repeated else CLOSE)
+        for left in reversed(range(repeated)):
+            self._before = before_upstream(solution.state.fraction, motion.omega)
+            solution = self._again(motion, solution, storage, HELD_CLOSE if left else CLOSE)
         return solution
 
     def keep(
@@ -142,40 +146,53 @@ class FilmSolver:
         """
         gap = self.film.gaps(motion)
         storage = Storage(rate * gap, past)
+        self._settle_gas()
         if gas is not None:
-            self._carried = gas.guess
+            self._states[CARRIED_GAS], self._states[TURNOVER] = gas.guess
+            self._hold_gas(gap, storage, gas.past)
         self._before = before_upstream(self.film.cells(w, gas and gas.guess).fraction, motion.omega)
         solution = self._solve(flowing, w, storage)
-        if gas is not None:
-            solution = self._carrying(flowing, solution, storage, gap, gas.past)
         return solution, gap * solution.state.fraction
 
-    def _carrying(
-        self, motion: Motion, solution: VolumeSolution, storage: Storage, gap: Array, past: Array, held: int = 0
-    ) -> VolumeSolution:
-        """The solution with the free gas that its own oil carries, solved again until neither changes the other.
+    def _again(self, motion: Motion, solution: VolumeSolution, storage: Storage, close: float) -> VolumeSolution:
+        """The solution that follows one of the same motion, with the iterations of both."""
+        found = self._solve(motion, solution.w, storage, close)
+        return replace(found, iterations=solution.iterations + found.iterations)
 
-        storage, gap, past: see free_gas; held: how often oil fractions are held anew at least, see steady.
-        """
-        film, before = self.film, math.inf
-        for number in range(MOST_GAS):
-            balances = CellBalances(film.section, film.grid, motion, self._before)
-            gas = free_gas(film.law, film.scales, balances, solution.state, storage, gap, past, self._carried)
-            if number >= held and (gas.off < GAS_ROUND_OFF or before <= gas.off < GAS_SETTLED):
-                return replace(solution, gas=gas)
-            before, self._carried = gas.off, gas.carried
-            if held:
-                self._before = before_upstream(solution.state.fraction, motion.omega)
-            again = self._solve(motion, solution.w, storage)
-            solution = replace(again, iterations=solution.iterations + again.iterations)
-        raise FilmUnsolved(f"the free gas did not settle in {MOST_GAS} solutions: it is off by {before:.1e} of the oil")
+    def _settle_gas(self) -> None:
+        """Gas in equilibrium, as it is at once in oil that is not replaced."""
+        self._carries, self._off = False, 0.0
+        self._states[CARRIED_GAS : TURNOVER + 1] = 0.0
 
-    def _solve(self, motion: Motion, start: Array, storage: Storage) -> VolumeSolution:
-        """Solve by the first of ATTEMPTS that converges."""
+    def _hold_gas(self, gap: Array, storage: Storage, past: Array | float) -> None:
+        """What is stored of the gas in cells of the gap H."""
+        self._carries = True
+        self._paths[HEIGHT], self._paths[FACTOR], self._paths[GAS_PAST] = gap, storage.factor, past
+
+    def _carry(self, motion: Motion) -> float:
+        """Free gas follows the oil of the states as they are. Returns the most that it has changed by."""
+        off = self._follow(motion)
+        return max(off, carry_gas(self._parts[0], self._parts[-1], motion.omega >= 0.0, self._paths, self._states))
+
+    def _follow(self, motion: Motion) -> float:
+        """The paths of the oil of the states as they are, see replace_oil."""
+        film, ring, width, cells = self._parts
+        if motion.tilts:
+            balances = CellBalances(self.film.section, self.film.grid, motion, self._before)
+            path_layers(oil_paths(balances, *self._states[:SOURCE]), self._paths)
+        else:
+            at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
+            follow_oil(film, ring, width, cells, self._states, at, self._paths)
+        return replace_oil(film, cells, self._states, self._paths)
+
+    def _solve(self, motion: Motion, start: Array, storage: Storage, close: float = CLOSE) -> VolumeSolution:
+        """Solve by the first of ATTEMPTS that converges. close: what free gas and its oil may be off by."""
         spent, failure = 0, ""
         start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
+        gas = self._states[CARRIED_GAS:BEFORE_UPSTREAM].copy()
         for attempt in ATTEMPTS:
-            w, iterations, failure = self._iterate(motion, start, storage, attempt)
+            self._states[CARRIED_GAS:BEFORE_UPSTREAM] = gas
+            w, iterations, failure = self._iterate(motion, start, storage, attempt, close)
             spent += iterations
             if not failure and np.min(self._states[FRACTION]) < DRY:
                 failure = RUNS_DRY  # also where a matrix was so near to a singular one that w leapt far away
@@ -186,19 +203,26 @@ class FilmSolver:
         tried = "plain, damped, and damped more"
         raise FilmUnsolved(f"the film did not converge in {spent} Newton iterations ({tried}): {failure}")
 
-    def _iterate(self, motion: Motion, w: Array, storage: Storage, attempt: Attempt) -> tuple[Array, int, str]:
+    def _iterate(
+        self, motion: Motion, w: Array, storage: Storage, attempt: Attempt, close: float
+    ) -> tuple[Array, int, str]:
         """(w, iterations, what is wrong or nothing)."""
         passed = self._passed(motion)
         pseudo_rate, left_before, largest_before = motion.rate / attempt.first, math.inf, math.inf
-        worst = np.zeros_like(w)
-        for iteration in range(1, attempt.limit + 1):
+        worst, off_before = np.zeros_like(w), math.inf
+        limit = attempt.limit * (GAS_LIMIT if self._carries else 1)
+        for iteration in range(1, limit + 1):
             residual = self._assemble(motion, w, storage)
             with np.errstate(over="ignore"):  # on the way to a failure
                 worst = np.abs(residual) / self._terms(passed, w, storage)
             largest, left = float(np.max(worst)), float(np.abs(residual).sum())
-            if largest < ROUND_OFF or 0.5 * largest_before <= largest < SETTLED:
+            off = self._off
+            settled = largest < ROUND_OFF or 0.5 * largest_before <= largest < SETTLED
+            if settled and (off < GAS_ROUND_OFF or 0.5 * off_before <= off < GAS_SETTLED):
                 return w, iteration, ""
-            largest_before = largest
+            if 0.0 < off < close and largest < close:
+                return w, iteration, ""
+            largest_before, off_before = largest, off
             if left_before < math.inf:
                 pseudo_rate /= min(max(left_before / left, SHRINK), attempt.growth)
             left_before = left
@@ -207,21 +231,27 @@ class FilmSolver:
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
-        return w, attempt.limit, self._where(worst)
+        return w, limit, self._where(worst)
 
     def _assemble(self, motion: Motion, w: Array, storage: Storage) -> Array:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
-        self._states[CARRIED_GAS], self._states[TURNOVER] = self._carried
-        cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
-        if self._fraction < 1.0:
-            self._states[FRACTION][self.film.grid.fixed] = self._fraction
         self._states[BEFORE_UPSTREAM] = self._before
+        self._set_states(w)
+        if self._carries:
+            self._off = self._carry(motion)
+            self._set_states(w)
         self._flow(motion, storage.past)
         states, kept = self._states, self._area * storage.factor
         self._stencil[CENTRE] += kept * states[FRACTION_SLOPE]
         right = self._fields[:, :, w.shape[1]]
         right -= kept * states[FRACTION]
         return -right
+
+    def _set_states(self, w: Array) -> None:
+        """The states of the cells and openings with the unknown w."""
+        cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
+        if self._fraction < 1.0:
+            self._states[FRACTION][self.film.grid.fixed] = self._fraction
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
@@ -238,7 +268,7 @@ class FilmSolver:
         """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""
         found = []
         for slope in (PRESSURE_SLOPE, FRACTION_SLOPE):
-            self._states[:] = 0.0
+            self._states[:CARRIED_GAS] = self._states[BEFORE_UPSTREAM] = 0.0
             self._states[slope] = 1.0
             self._flow(motion, np.zeros(self.film.grid.shape))
             found.append(self._stencil[CENTRE].copy())
@@ -270,7 +300,15 @@ class FilmSolver:
             ends=float(self._flows[ENDS_NET]),
             still=float((area * still).sum()),
         )
-        return VolumeSolution(w, state, iterations, flows, self._before)
+        return VolumeSolution(w, state, iterations, flows, self._before, self._gas(motion))
+
+    def _gas(self, motion: Motion) -> FreeGas | None:
+        """The free gas of the states as they are, None of oil without any."""
+        film = self.film
+        if not self._carries:
+            return None
+        self._follow(motion)
+        return free_gas(film.law, film.scales, film.grid, self._states, self._paths, self._off)
 
     def _where(self, worst: Array) -> str:
         """Which cells do not balance."""

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at
 from frbcli.film.cells.film import VolumeFilm, fitted_grid
-from frbcli.film.cells.linear_gas import linear_states
+from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.linearised import LinearFilm, linear_film
 from frbcli.film.cells.loads import force, pushed
 from frbcli.film.cells.motion import Motion

@@ -4,8 +4,9 @@ The unknowns are w and the free gas c of the cells. The balance of the gas less 
 
     A H theta c' + sum_in q (c - c_up) = A H theta (c_e - c) / tau,
 
-which is multiplied by tau / (1 + tau r), so that no rate is too fast or too slow for it (r: see gas.py). Both balances
-are sums over next neighbours: cells that are not neighbours of one are moved at the same time for their derivatives.
+which is multiplied by tau / (1 + tau r), so that no rate is too fast or too slow for it (r: see balance.py). Both
+balances are sums over next neighbours: cells that are not neighbours of one are moved at the same time for their
+derivatives.
 """
 
 from __future__ import annotations
@@ -18,9 +19,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.gas import Carried, FreeGas, brought, oil_paths
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.gas.balance import Carried, FreeGas, brought, oil_paths
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
@@ -107,7 +108,7 @@ class _Settled:
         """(m, k) each: what leaves the cells net, of their oil, and of their gas as above."""
         film, law = self.film, self.film.law
         at, state = CellBalances(film.section, film.grid, motion), self.state(w, free)
-        paths = oil_paths(at, state)
+        paths = oil_paths(at, state.pressure, state.fraction)
         comes = brought(paths, np.ones_like(free)) + paths.given
         taken = comes * free - brought(paths, free) - paths.given * law.supplied_gas
         target, _ = law.exchanged(state.pressure, free, film.scales)

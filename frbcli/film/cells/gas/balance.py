@@ -1,0 +1,198 @@
+"""The balance of the free gas that oil carries through the cells of a film, in array notation.
+
+With c the free gas per oil and q the flows of oil between cells, each of which carries the gas of the cell that it
+leaves, the gas of a cell obeys
+
+    A (rate H theta c - past) + sum_out q c - sum_in q c_up = A H theta (c_e - c) / tau,
+
+c_e and tau being those of the law, see bubbly.py. Openings and baths give oil with the free gas of the supplied oil.
+Divided by M = A rate H theta + sum_out q, what is known of the cell and its neighbours is c_in = (A past + sum_in q
+c_up) / M, and r = M / (A H theta).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.film.cavitation.law import Law, Scales
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PRESSURE, TURNOVER
+from frbcli.film.cells.gas.carry import (
+    BACKWARD,
+    DOWNWARD,
+    GAS_PAST,
+    GIVEN,
+    HEIGHT,
+    KEPT,
+    KNOWN,
+    NONE,
+    ONWARD,
+    OUT,
+    UPWARD,
+)
+from frbcli.film.cells.mesh.grid import VolumeGrid
+from frbcli.film.grid import Array
+
+STILL = 1e-6
+
+
+class Carried(NamedTuple):
+    """c_in and r of cells (m, k), which the law makes their free gas of."""
+
+    gas: Array
+    turnover: Array
+
+
+class KeptGas(NamedTuple):
+    """Gas of a step. past: (m, k) of H theta c, as that of the oil; guess: what is carried at its end, about."""
+
+    past: Array
+    guess: Carried
+
+
+@dataclass(frozen=True)
+class FreeGas:
+    """The free gas of a solution. free: (m, k) c; carried: what the law has made it of; off: the most that c differs
+    from its balance; oil: (m, k) A H theta; paths: of the oil; kept, known: M and the gas that is known to come; past:
+    (m, k) A past; fixed: cells of given gas. Gas per time is in scaled units (R b C, 1/s) at the saturation
+    pressure, by one section."""
+
+    law: Law
+    scales: Scales
+    pressure: Array
+    free: Array
+    carried: Carried
+    off: float
+    oil: Array
+    paths: OilPaths
+    kept: Array
+    known: Array
+    past: Array
+    fixed: NDArray[np.bool_]
+
+    @property
+    def mean(self) -> float:
+        """Mean of c over the oil."""
+        return float((self.oil * self.free).sum() / self.oil.sum())
+
+    @property
+    def inflow(self) -> float:
+        """Gas that comes in with the oil."""
+        return self._through(self.law.supplied_gas, self.free)[0]
+
+    @property
+    def outflow(self) -> float:
+        """Gas that leaves with the oil."""
+        return self._through(self.law.supplied_gas, self.free)[1]
+
+    @property
+    def released(self) -> float:
+        """Gas that leaves the solution net."""
+        return float((self.kept * (self.free - self._comes)).sum())
+
+    @property
+    def stored(self) -> float:
+        """Gas by which the content of the cells grows."""
+        return float((np.where(self.fixed, 0.0, self.kept - self.paths.out) * self.free - self.past).sum())
+
+    @property
+    def defect(self) -> float:
+        """What the balances of all cells are off by, in the sum over the gas that the oil carries through the film,
+        dissolved or not; of enclosed oil over STILL of the gas that its cells take up or pass on."""
+        comes = self._comes
+        settled, time = self.law.exchanged(self.pressure, comes, self.scales)
+        exchanged = self.oil / np.maximum(self.oil + time * self.kept, NONE)
+        left = float(np.abs(self.kept * (self.free - comes - exchanged * (settled - comes))).sum())
+        passed = max(*self._through(1.0, np.ones_like(self.free)), STILL * float(self.kept.sum()))
+        return left / max(self.law.gas_content * passed, NONE)
+
+    @property
+    def _comes(self) -> Array:
+        """(m, k) c_in by the flows as they are."""
+        return np.asarray((self.known + brought(self.paths, self.free)) / np.maximum(self.kept, NONE))
+
+    def _through(self, supplied: float, free: Array) -> tuple[float, float]:
+        """What comes into the cells of unknown gas from outside and from given cells, and what leaves to there."""
+        among, paths = np.where(self.fixed, 0.0, 1.0), self.paths
+        inflow = (among * (paths.given * supplied + brought(paths, free * (1.0 - among)))).sum()
+        outflow = (among * (paths.out * free - brought(paths, free * among))).sum()
+        return float(inflow), float(outflow)
+
+
+class OilPaths(NamedTuple):
+    """Flows of oil (m, k) to where each cell of unknown gas has its oil from: onward and backward through the face
+    after it around, upward and downward along (m, k - 1); out: all that leaves; given: that comes from outside."""
+
+    onward: Array
+    backward: Array
+    upward: Array
+    downward: Array
+    out: Array
+    given: Array
+
+
+def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPaths:
+    """The flows of oil by where they begin, of cells with pressures and oil fractions (m, k).
+
+    Where surfaces carry more out of a cell than into the next one, which is an opening in part, the opening takes the
+    difference, or gives it.
+    """
+    fluxes, _, _ = balances.fluxes(pressure, fraction)
+    share = balances.grid.share
+    leaves = fluxes.around + share * fluxes.carried
+    enters = fluxes.around + np.roll(share, -1, axis=0) * fluxes.carried
+    shared = np.sign(leaves) * np.where(leaves * enters > 0.0, np.minimum(np.abs(leaves), np.abs(enters)), 0.0)
+    onward, backward = np.maximum(shared, 0.0), np.maximum(-shared, 0.0)
+    upward, downward = np.maximum(fluxes.along, 0.0), np.maximum(-fluxes.along, 0.0)
+    out = onward + np.roll(backward, 1, axis=0)
+    out[:, :-1] += upward
+    out[:, 1:] += downward
+    given = np.zeros_like(out)
+    outside = [leaves - shared, -np.roll(enters - shared, 1, axis=0), fluxes.excess]
+    for at, flow in ((0, fluxes.near), (-1, fluxes.far)):
+        outside.append(np.zeros_like(out))
+        outside[-1][:, at] = flow
+    for flow in outside:
+        out += np.maximum(flow, 0.0)
+        given += np.maximum(-flow, 0.0)
+    return OilPaths(onward, backward, upward, downward, out, given)
+
+
+def free_gas(law: Law, scales: Scales, grid: VolumeGrid, states: Array, paths: Array, off: float) -> FreeGas:
+    """The gas of a solution with the states (STATES, m, k), whose `paths` (PATHS, m, k) are those of carry.py."""
+    layers, states = paths.copy(), states.copy()
+    onward, backward, upward, downward, out, given = layers[:KEPT]
+    area = np.where(grid.fixed, 0.0, grid.area)
+    return FreeGas(
+        law,
+        scales,
+        states[PRESSURE],
+        states[FREE_GAS],
+        Carried(states[CARRIED_GAS], states[TURNOVER]),
+        off,
+        area * layers[HEIGHT] * states[FRACTION],
+        OilPaths(onward, backward, upward[:, :-1], downward[:, :-1], out, given),
+        layers[KEPT],
+        layers[KNOWN],
+        area * layers[GAS_PAST],
+        grid.fixed,
+    )
+
+
+def path_layers(paths: OilPaths, layers: Array) -> None:
+    """The layers of the paths of carry.py (PATHS, m, k) <- paths in array notation."""
+    layers[UPWARD:OUT, :, -1] = 0.0
+    layers[UPWARD, :, :-1], layers[DOWNWARD, :, :-1] = paths.upward, paths.downward
+    layers[ONWARD], layers[BACKWARD], layers[OUT], layers[GIVEN] = paths.onward, paths.backward, paths.out, paths.given
+
+
+def brought(paths: OilPaths, free: Array) -> Array:
+    """(m, k) gas that other cells bring to each one, sum_in q c_up."""
+    found = np.roll(paths.onward * free, 1, axis=0) + paths.backward * np.roll(free, -1, axis=0)
+    found[:, 1:] += paths.upward * free[:, :-1]
+    found[:, :-1] += paths.downward * free[:, 1:]
+    return np.asarray(found)

@@ -1,0 +1,219 @@
+"""The free gas that comes into each cell of a film with its oil, compiled; see balance.py for the balance.
+
+Newton's method for the pressures asks for it in every iteration, so that film and gas are solved together. The flows
+are those of the pressures as they are; the gas goes with them from cell to cell, in the direction in which the surfaces
+carry the oil, until it changes no more. What a cell keeps of the gas that comes in follows from the law's derivative.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.cells.balance.balances import GridMotion, end_flow, falls_to_air, section_end
+from frbcli.film.cells.balance.carried import limited_at
+from frbcli.film.cells.balance.ends import STEEPNESS
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    CARRIED_GAS,
+    FRACTION,
+    FREE_GAS,
+    PASSED_ON,
+    PRESSURE,
+    TURNOVER,
+)
+from frbcli.film.cells.data import (
+    ALONG,
+    AREA,
+    AROUND,
+    CLOSED,
+    COS,
+    EDGE,
+    EDGE_COS,
+    EDGE_GAP,
+    EDGE_SIN,
+    EXCESS,
+    FACE_COS,
+    FACE_GAP,
+    FACE_SIN,
+    FREE,
+    GAP,
+    LENGTH,
+    SHARE,
+    SIN,
+    UNKNOWN,
+)
+
+# Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
+# leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
+# come; gap, rate at which it is stored, and the past of the gas, which are given.
+(
+    ONWARD,
+    BACKWARD,
+    UPWARD,
+    DOWNWARD,
+    OUT,
+    GIVEN,
+    KEPT,
+    KNOWN,
+    HEIGHT,
+    FACTOR,
+    GAS_PAST,
+    PATHS,
+) = range(12)
+NONE = 1e-300
+SHARP, SWEEPS = 0.01, 50  # until gas changes by this share of its change in the first sweep, at most so many sweeps
+
+
+@compiled(inline=True)
+def _outside(flow: float, i: int, j: int, paths: Array) -> None:
+    """Oil leaves cell (i, j) for an opening or an end, or comes from there where the flow is less than 0."""
+    if flow > 0.0:
+        paths[OUT, i, j] += flow
+    else:
+        paths[GIVEN, i, j] -= flow
+
+
+@compiled()
+def _around(
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    d_x, d_y, omega = motion.d_x, motion.d_y, motion.omega
+    forward = omega >= 0.0
+    for i in range(m):
+        n, b = i + 1 if i + 1 < m else 0, i - 1 if i > 0 else m - 1
+        h = ring[FACE_GAP, i] + d_x * ring[FACE_SIN, i] - d_y * ring[FACE_COS, i]
+        h_b = ring[FACE_GAP, b] + d_x * ring[FACE_SIN, b] - d_y * ring[FACE_COS, b]
+        cube = h * h * h
+        if film.bored:
+            h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+            h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
+            cube = h_i * h * h_n
+        for j in range(k):
+            through = cube * cells[AROUND, i, j]
+            if cells[EDGE, i, j] != 0.0:
+                at = cells[EDGE_GAP, i, j] + d_x * cells[EDGE_SIN, i, j] - d_y * cells[EDGE_COS, i, j]
+                through = at * at * at * cells[EDGE, i, j]
+            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
+            upstream, downstream = (t - over, t_n - over_n) if forward else (t_n - over_n, t - over)
+            more, _, _ = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], downstream - upstream)
+            drawn = 0.5 * omega * width[0, j] * h * (upstream + more + 0.5 * (over + over_n))
+            pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
+            leaves, enters = pressed + cells[SHARE, i, j] * drawn, pressed + cells[SHARE, n, j] * drawn
+            shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
+            paths[ONWARD, i, j], paths[BACKWARD, i, j] = max(shared, 0.0), max(-shared, 0.0)
+            paths[OUT, i, j] += paths[ONWARD, i, j]
+            paths[OUT, n, j] += paths[BACKWARD, i, j]
+            _outside(leaves - shared, i, j, paths)
+            _outside(shared - enters, n, j, paths)
+            if cells[EXCESS, i, j] != 0.0:
+                _outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
+
+
+@compiled()
+def _along(ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array) -> None:
+    m, k = states.shape[1], states.shape[2]
+    for i in range(m):
+        h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
+        for j in range(k - 1):
+            flow = h * h * h * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
+            paths[UPWARD, i, j], paths[DOWNWARD, i, j] = max(flow, 0.0), max(-flow, 0.0)
+            paths[OUT, i, j] += paths[UPWARD, i, j]
+            paths[OUT, i, j + 1] += paths[DOWNWARD, i, j]
+
+
+@compiled(makes_arrays=True)
+def _through_ends(
+    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+) -> None:  # fmt: skip
+    m, k = states.shape[1], states.shape[2]
+    steepness, falls = STEEPNESS / film.scales.ambient, np.empty(m)
+    for far in (False, True):
+        kind, j, b, rise, bend = section_end(film, k, far)
+        if kind == CLOSED:
+            continue
+        if kind == FREE:
+            falls_to_air(film, ring, states[PRESSURE], motion.d_x, motion.d_y, far, falls)
+        for i in range(m):
+            if cells[UNKNOWN, i, j] != 0.0:
+                h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
+                conductance = h * h * h * film.aspect * ring[LENGTH, i] * rise
+                groove = film.far.pressure if far else 0.0
+                flow, _, _, _ = end_flow(
+                    kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness, falls[i]
+                )
+                _outside(flow, i, j, paths)
+
+
+@compiled()
+def follow_oil(
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+) -> None:  # fmt: skip
+    """The layers ONWARD to GIVEN of paths (PATHS, m, k) <- of the oil of states, see oil_paths of balance.py."""
+    m, k = states.shape[1], states.shape[2]
+    for layer in range(KEPT):
+        for i in range(m):
+            for j in range(k):
+                paths[layer, i, j] = 0.0
+    _around(film, ring, width, cells, states, motion, paths)
+    _along(ring, cells, states, motion, paths)
+    _through_ends(film, ring, cells, states, motion, paths)
+
+
+@compiled()
+def replace_oil(film: np.record, cells: Array, states: Array, paths: Array) -> float:
+    """KEPT and KNOWN of paths, and the layer TURNOVER of states <- by the flows. Returns the most that free gas changes
+    by, to first order, since the oil of its cell is replaced at another rate than before."""
+    m, k = states.shape[1], states.shape[2]
+    most = 0.0
+    for i in range(m):
+        for j in range(k):
+            if cells[UNKNOWN, i, j] == 0.0:
+                states[FREE_GAS, i, j] = states[CARRIED_GAS, i, j] = film.supplied_gas
+                states[TURNOVER, i, j] = paths[KEPT, i, j] = paths[KNOWN, i, j] = 0.0
+                continue
+            area, theta = cells[AREA, i, j], states[FRACTION, i, j]
+            kept = max(area * paths[FACTOR, i, j] * theta + paths[OUT, i, j], NONE)
+            rate, before = kept / max(area * paths[HEIGHT, i, j] * theta, NONE), states[TURNOVER, i, j]
+            taken = abs(states[FREE_GAS, i, j] - states[CARRIED_GAS, i, j]) * states[PASSED_ON, i, j]
+            most = max(most, taken * abs(rate - before) / max(rate, before, NONE))
+            states[TURNOVER, i, j], paths[KEPT, i, j] = rate, kept
+            paths[KNOWN, i, j] = area * paths[GAS_PAST, i, j] + film.supplied_gas * paths[GIVEN, i, j]
+    return most
+
+
+@compiled()
+def carry_gas(film: np.record, cells: Array, forward: bool, paths: Array, states: Array) -> float:
+    """The layers CARRIED_GAS and FREE_GAS of states <- with the flows of paths from cell to cell; forward: whether the
+    surfaces go round in the order of the cells. Returns the most that free gas has changed by in a sweep.
+
+    No oil has less than no gas, or more than all of its gas: pressures that are far from a solution may ask for it."""
+    m, k = states.shape[1], states.shape[2]
+    first, most_gas = 0.0, film.gas_content
+    for _ in range(SWEEPS):
+        most = 0.0
+        for step in range(m):
+            i = step if forward else m - 1 - step
+            b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+            for turn in range(2 * k - 1):  # along the axis to the last cell, and back
+                j = turn if turn < k else 2 * k - 2 - turn
+                if cells[UNKNOWN, i, j] == 0.0:
+                    continue
+                comes = paths[KNOWN, i, j] + paths[ONWARD, b, j] * states[FREE_GAS, b, j]
+                comes += paths[BACKWARD, i, j] * states[FREE_GAS, n, j]
+                if j > 0:
+                    comes += paths[UPWARD, i, j - 1] * states[FREE_GAS, i, j - 1]
+                if j + 1 < k:
+                    comes += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1]
+                carried, before = min(max(comes / paths[KEPT, i, j], 0.0), most_gas), states[FREE_GAS, i, j]
+                free = before + states[PASSED_ON, i, j] * (carried - states[CARRIED_GAS, i, j])
+                states[CARRIED_GAS, i, j], states[FREE_GAS, i, j] = carried, min(max(free, 0.0), most_gas)
+                most = max(most, abs(states[FREE_GAS, i, j] - before))
+        first = max(first, most)
+        if most <= SHARP * first:
+            break
+    return first

@@ -1,0 +1,74 @@
+"""The compiled flows and gas of cells against those in array notation, and the cost of film and gas together."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from volume_films import ROTATION, section_of
+
+from frbcli.bearing_tests.march import march, whirl_path
+from frbcli.film.cavitation.bubbly import Bubbly
+from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
+from frbcli.film.cells.gas.balance import OilPaths, brought, oil_paths
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+
+SUPPLIES = ("circumferential-groove", "axial-groove")
+AIR = 1e5 / section_of("axial-groove").pressure_scale
+
+
+def film_of(law: Law, supply: str) -> VolumeFilm:
+    section = section_of(supply, 2e5, "free-to-air")
+    grid = fitted_grid(section, ROTATION.d, 32, 4)
+    return VolumeFilm(section, grid, law, reference_pressure(section, ROTATION))
+
+
+def steady(film: VolumeFilm, omega: float) -> tuple[Motion, VolumeSolution]:
+    motion = Motion(ROTATION.d, (0.0, 0.0), omega)
+    return motion, FilmSolver(film).steady(motion)
+
+
+@pytest.mark.parametrize("omega", [ROTATION.omega, -ROTATION.omega])
+@pytest.mark.parametrize("supply", SUPPLIES)
+def test_compiled_paths_of_the_oil_are_those_in_array_notation(supply: str, omega: float) -> None:
+    film = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), supply)
+    motion, found = steady(film, omega)
+    assert found.gas is not None
+    balances = CellBalances(film.section, film.grid, motion, found.before)
+    expected = oil_paths(balances, found.state.pressure, found.state.fraction)
+    size = float(expected.out.max())
+    for name in OilPaths._fields:
+        np.testing.assert_allclose(getattr(found.gas.paths, name), getattr(expected, name), rtol=0.0, atol=1e-13 * size)
+
+
+@pytest.mark.parametrize("omega", [ROTATION.omega, -ROTATION.omega])
+@pytest.mark.parametrize("supply", SUPPLIES)
+def test_gas_is_the_solution_of_the_balances_of_all_cells_together(supply: str, omega: float) -> None:
+    """One linear system of all cells, c = c_in + (c_e - c_in) / (1 + tau r), with the flows of the solution."""
+    film = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), supply)
+    gas = steady(film, omega)[1].gas
+    assert gas is not None
+    n, fixed = gas.free.size, gas.fixed
+    unit = np.eye(n).reshape(n, *gas.free.shape)
+    brings = np.stack([brought(gas.paths, each).ravel() for each in unit], axis=1)
+    settled, time = film.law.exchanged(gas.pressure, gas.carried.gas, film.scales)
+    kept = np.where(fixed, 1.0, gas.kept)
+    share = np.where(fixed, 1.0, gas.oil / np.maximum(gas.oil + time * kept, 1e-300))
+    settled = np.where(fixed, 0.02, settled)
+    matrix = np.eye(n) - ((1.0 - share) / kept).ravel()[:, None] * brings
+    right = (1.0 - share) / kept * gas.known + share * settled
+    expected = np.linalg.solve(matrix, right.ravel()).reshape(gas.free.shape)
+    np.testing.assert_allclose(gas.free, expected, rtol=0.0, atol=1e-12)
+
+
+def test_a_film_with_gas_takes_few_more_iterations_than_a_two_phase_film() -> None:
+    """Film and gas in turn took four times as many, and the gas ten times the time of one."""
+    path, times = whirl_path(0.5, 30.0, ROTATION.omega), np.linspace(0.0, 0.01, 31)
+    means = []
+    for law in (TwoPhase(0.99), Bubbly(0.1, 0.0, AIR, 1e-3, 1.0)):
+        film = film_of(law, "circumferential-groove")
+        means.append(np.mean([each.solution.iterations for each in march(film, path, times)]))
+    assert means[1] < 1.8 * means[0]
