@@ -78,7 +78,9 @@ class Section:
 
     width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
     far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
-    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most.
+    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most;
+    flow_roughness: of both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share
+    of its square exceeds that of the shell, -1 to 1.
     """
 
     radius: float
@@ -97,6 +99,8 @@ class Section:
     lobes: LobedShell | None = None
     sealed: float = 1.0
     largest_flow: float = math.inf
+    flow_roughness: float = 0.0
+    shear: float = 0.0
 
     @property
     def seals(self) -> tuple[float, float]:

@@ -41,6 +41,8 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         lobes=_lobes(bearing),
         sealed=bearing.sealed,
         largest_flow=bearing.supply.largest_flow / copies,
+        flow_roughness=case.contact.flow_roughness,
+        shear=case.contact.shear,
     )
 
 

@@ -348,6 +348,14 @@ mesh = [1, 2.5]
         ("[bearing]", "[contact]\nmodel = 'asperities'\npolicy = 'stop'\n[bearing]", "contact.policy", "of a spring"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '-1 um'\n[bearing]", "contact.roughness", "greater than"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nwear = 1e-7\n[bearing]", "contact.hardness", "is missing"),
+        (
+            "[bearing]", f"{ASPERITIES}\nroughness = '1 um'\njournal_roughness = '1 um'\n[bearing]",
+            "contact.journal_roughness", "of flow factors",
+        ),
+        (
+            "[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nflow_factors = true\njournal_roughness = 2e-6\n[bearing]",
+            "contact.journal_roughness", "more than roughness",
+        ),
         ("[bearing]", f"{ASPERITIES}\nroughness = '9 um'\n[bearing]", "contact.roughness", "summits are flat"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nfriction = 1.1\n[bearing]", "contact.friction", "at most 1"),
         ("[bearing]", "[start]\ndisplacement = [0.8, 0.8]\n[bearing]", "start.displacement", "outside"),

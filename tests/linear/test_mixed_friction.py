@@ -78,6 +78,24 @@ def test_stribeck_curve_has_its_minimum_between_boundary_friction_and_the_film_a
         np.testing.assert_array_equal(own.stiffness, film.stiffness)
 
 
+def test_flow_factors_carry_more_and_resist_more_until_the_gap_is_wide() -> None:
+    """Rough surfaces hold their oil back: the journal rides higher, with less of its load on the summits. Against the
+    same films on cells between surfaces that are smooth for the flow."""
+    plain = "film.solution=cells", 'accuracy.mesh=[64, 12]'
+    rough, smooth = (
+        bearing_sheet(rigid(*plain, *settings), [0.1, 0.4, 60.0]).points
+        for settings in (("contact.flow_factors=true",), ())
+    )
+    for own, other in zip(rough[:2], smooth[:2], strict=True):
+        assert mixed(own).film_parameter > mixed(other).film_parameter
+        assert mixed(own).share < mixed(other).share
+    assert rough[1].friction_coefficient < rough[0].friction_coefficient  # boundary friction, then mixed
+    wide = 0.4e-6 / rough[2].film_thickness_min
+    assert wide < 0.05
+    assert rough[2].eccentricity == pytest.approx(smooth[2].eccentricity, rel=2.0 * wide)
+    assert rough[2].torque == pytest.approx(smooth[2].torque, rel=2.5 * wide**2)
+
+
 def test_torque_and_power_are_those_of_film_and_summits() -> None:
     (state,) = bearing_sheet(rigid(), [0.1]).points
     omega = 2.0 * math.pi * state.speed_Hz
@@ -111,7 +129,16 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
     [
         (("contact.roughness=5 um",), "contact.roughness", "meet all around"),
         (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
-        (("contact.flow_factors=true",), "contact.flow_factors", "0.83 of that at 3 roughnesses"),
+        (
+            ("contact.flow_factors=true", "film.cavitation=two-phase", "film.two-phase.form=published"),
+            "contact.flow_factors", "films on cells",
+        ),
+        (("contact.flow_factors=true", "film.solution=table"), "film.solution", "flow factors change with the gap"),
+        (
+            ("contact.flow_factors=true", "contact.journal_roughness=0.4 um",
+             'bearing.supply={kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="journal"}'),
+            "contact.journal_roughness", "openings at rest",
+        ),
         (("film.coupling=co-simulation",), "film.coupling", "too stiff"),
     ],
 )

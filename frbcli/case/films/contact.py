@@ -54,7 +54,12 @@ class Contact(Model):
         description="Archard's coefficient of asperities, volume times hardness over force and path: runs then "
         "estimate the depth",
     )
-    flow_factors: bool = Field(default=False, description="of asperities, on the flow of the film: not modelled yet")
+    flow_factors: bool = Field(
+        default=False, description="of asperities: films, then on cells, flow as between rough surfaces"
+    )
+    journal_roughness: Roughness | None = Field(
+        default=None, description="of flow factors: of the journal alone; both surfaces are equal if not given"
+    )
     friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
 
     @property
@@ -69,7 +74,21 @@ class Contact(Model):
             return None
         close = display(FEW_TOUCH * self.roughness, "m")
         reason = f"asperities carry beside the film in gaps below some {close}, with friction {self.friction:g}"
+        if self.flow_factors:
+            reason += "; the film flows between them with flow factors"
         return f"rough, {display(self.roughness, 'm')}", reason
+
+    @property
+    def flow_roughness(self) -> float:
+        """Roughness in m that the flow of the films follows, 0 where it is that between smooth surfaces."""
+        return self.roughness if self.flow_factors and self.roughness is not None else 0.0
+
+    @property
+    def shear(self) -> float:
+        """By which the journal's share of the square of the roughness exceeds that of the shell."""
+        if self.journal_roughness is None or self.flow_roughness == 0.0:
+            return 0.0
+        return 2.0 * (self.journal_roughness / self.flow_roughness) ** 2 - 1.0
 
     @property
     def wear_rate(self) -> float | None:

@@ -9,7 +9,7 @@ from frbcli.case.reading.tables import Breach, number, table
 
 OF_SPRING = ("policy", "stiffness")
 OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
-WITH_DEFAULT = ("modulus", "hardness", "friction", "wear", "flow_factors")  # of asperities, too
+WITH_DEFAULT = ("modulus", "hardness", "friction", "wear", "flow_factors", "journal_roughness")  # of asperities, too
 STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
 
 
@@ -33,6 +33,12 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     if "wear" in contact and "hardness" not in contact:
         yield Breach(("contact", "hardness"), "is missing; wear goes with 1 / hardness.", 'Add hardness = "2 GPa".')
     roughness, radius = number(contact, "roughness", "m"), number(contact, "summit_radius", "m")
+    journal = number(contact, "journal_roughness", "m")
+    if journal is not None and contact.get("flow_factors") is not True:
+        yield Breach(("contact", "journal_roughness"), "is of flow factors.", "Add flow_factors = true, or remove it.")
+    elif journal and roughness and journal > roughness:
+        problem = "is more than roughness, which is that of both surfaces."
+        yield Breach(("contact", "journal_roughness"), problem, "Correct one of the two.")
     if roughness and radius and roughness > STEEPEST * radius > 0.0:
         problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."
         yield Breach(("contact", "roughness"), problem, "Correct one of the two.")

@@ -39,7 +39,8 @@ END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
 # its oil; carries_gas: whether that carries free gas; bored: whether flows around take the gaps of both cells, as
 # beside bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s; supplied_gas,
 # gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
-# of its pace that its balances may be off by in the mean; parameters: of its law, of a centred journal at 1 rad/s.
+# of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces that it flows
+# between, and shear: see Section; parameters: of its law, of a centred journal at 1 rad/s.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),
@@ -57,6 +58,8 @@ FILM = record(
     ("remembers", "?"),
     ("carries_gas", "?"),
     ("bored", "?"),
+    ("roughness", "f8"),
+    ("shear", "f8"),
     ("parameters", "f8", (LARGEST_PARAMETERS,)),
 )
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
@@ -153,6 +156,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     own.carries_gas = law.carries_gas
     if law.carries_gas:
         own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
+    own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
     own.parameters[:] = given_parameters(law)
 
 

@@ -14,6 +14,7 @@ from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.grid import Array
 from frbcli.film.parabola import summit
+from frbcli.film.roughness.flow_factors import shear_stress
 
 CavitationFactor = Literal["none", "global", "local"]
 
@@ -136,7 +137,10 @@ def torque(
     theta = solution.state.fraction if factor == "local" else np.ones(grid.shape)
     pressure = film.mean_pressure(solution.state)
     area = section.copies * section.radius * section.width
-    shear = (1.0 - grid.cover) * grid.size * theta / gap_on(section, motion, grid.centre, grid.height)
+    gap = gap_on(section, motion, grid.centre, grid.height)
+    shear = (1.0 - grid.cover) * grid.size * theta / gap
+    if section.flow_roughness > 0.0:
+        shear *= shear_stress(gap * section.clearance / section.flow_roughness)
     pushing = force_weights(section, grid) * pressure
     rise = np.roll(pushing, -1, axis=0) - pushing
     at_faces = gap_on(section, motion, grid.phi[1:], grid.height)

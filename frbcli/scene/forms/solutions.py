@@ -70,6 +70,8 @@ SOLUTIONS = SolutionForm("table over eccentricity, direction and speed", SolveCo
 def table_obstacle(case: Case) -> str:
     """Why films that are not all clipped cannot be tabulated; empty if they can."""
     film, oil = case.film, case.oil
+    if case.contact.flow_factors:
+        return "flow factors change with the gap"
     for cavitation in case.cavitations:
         if law_named(cavitation).keeps_oil:
             return f"{cavitation} is mass-conserving: the force does not depend on the motion alone"
@@ -101,7 +103,7 @@ def solution_fault(case: Case, clipped: bool, tabulated: bool) -> Fault | None:
     if case.film.solution != "table":
         return None
     obstacle = table_obstacle(case)
-    if clipped:
+    if clipped and not case.contact.flow_factors:
         obstacle = "" if tabulated else TURNING
     if not obstacle:
         return None

@@ -13,8 +13,11 @@ from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, turning_rings
+from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
+from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, RUN, SHEETS
 from frbcli.scene.keys import cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
@@ -142,9 +145,13 @@ def rough_faults(case: Case) -> Iterator[Fault]:
             problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
             remedy = f"Give less than {display(film.clearance / LAST, 'm')}."
             yield Fault("contact.roughness", display(contact.roughness, "m"), None, problem, remedy)
-    if contact.flow_factors:
-        problem = "is not modelled: films flow as between smooth surfaces, with factors 0.83 of that at 3 roughnesses."
+    if contact.flow_factors and (form := form_of(case)) not in (CELLS, TILTED, INCLINED):
+        problem = f"changes the flow of films on cells, and this one is: {form}."
         yield Fault("contact.flow_factors", "true", None, problem, "Write false.")
+    if contact.shear != 0.0 and any((each.outside, each.grid_body) != (HOUSING,) * 2 for each in film_places(case)):
+        problem = "lets a surface carry more oil than the other, which is modelled beside shells and openings at rest."
+        value = display(contact.journal_roughness or 0.0, "m")
+        yield Fault("contact.journal_roughness", value, None, problem, "Leave it out: both surfaces are equal then.")
     for key, value in misaligned(case):
         problem = "is not modelled with asperities, whose gap is the same along the axis."
         yield Fault(key, value, None, problem, f"{SMOOTH}, or leave it out.")

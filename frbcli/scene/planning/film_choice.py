@@ -114,7 +114,7 @@ def _volumes(case: Case, target: float) -> FilmChoice:
         mesh_why += "; over the whole width, since its gap is not even along the axis"
     elif case.film.solution == "cells":
         mesh_why += "; film.solution is set in the case"
-    elif all(law_named(model).tabulated for model in case.cavitations):
+    elif case.contact.flow_factors or all(law_named(model).tabulated for model in case.cavitations):
         mesh_why += f"; no table: {table_obstacle(case)}"
     return FilmChoice("finite", form, DEFAULT_MESH, cells, error, theory_why, mesh_why, (), eccentricity)
 
@@ -163,7 +163,7 @@ def all_clipped(case: Case) -> bool:
 
 def _on_volumes(case: Case) -> bool:
     """Whether the films of a case are solved on volumes in a run."""
-    if case.film.solution == "cells":
+    if case.film.solution == "cells" or case.contact.flow_factors:
         return True
     if not all_clipped(case):
         return table_obstacle(case) != ""

@@ -154,7 +154,8 @@ def _form(case: Case, rectangle: Section | None) -> FilmForm:
         return form
     if case.film.theory == "short":
         return SHORT
-    return MODAL if rectangle is not None and not tilts(case) and law_named(case.film.cavitation).closed else CELLS
+    on_cells = rectangle is None or tilts(case) or case.contact.flow_factors
+    return MODAL if not on_cells and law_named(case.film.cavitation).closed else CELLS
 
 
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:

@@ -39,6 +39,7 @@ from frbcli.film.cells.data import (
 )
 from frbcli.film.cells.elimination.ring_solver import solve_ring_at
 from frbcli.film.cells.film import ABOVE_KINK
+from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.stage.equations import FilmMotion
 
@@ -219,14 +220,15 @@ def left_of_cells(grids: Records, smooth: float, moved: float) -> float:
 
 
 @compiled()
-def sheared(ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
+def sheared(film: np.record, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, factor: int) -> float:
     """drag_integral of forces.py for a film with cells."""
     if factor == SIMPLE_FACTOR:  # (4.6): of a plain film
         return 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6))
     m, k = states.shape[1], states.shape[2]
     whole, weighed = 0.0, 0.0
     for i in range(m):
-        per_gap = 1.0 / max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        h = max(ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i], 1e-3)
+        per_gap = stress_factor(h, film.roughness) / h
         area, oil = 0.0, 0.0
         for j in range(k):
             area += cells[SHEARED, i, j]

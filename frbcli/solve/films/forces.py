@@ -211,7 +211,7 @@ def _move(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
 def _sheared(films, work, f, d_x, d_y, factor):  # type: ignore[no-untyped-def]
     """drag_integral of films with cells."""
     return sheared(
-        films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y, factor
+        films.films[f], films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y, factor
     )
 
 

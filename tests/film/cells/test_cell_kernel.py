@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -58,8 +59,8 @@ def section(near: str, far: str) -> Section:
     return Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, near, far, 0.7e5, holes=HOLES)
 
 
-def film_of(law: Law, near: str, far: str) -> VolumeFilm:
-    cut = section(near, far)
+def film_of(law: Law, near: str, far: str, roughness: float = 0.0) -> VolumeFilm:
+    cut = replace(section(near, far), flow_roughness=roughness, shear=0.6)
     grid = volume_grid(cut, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
     return VolumeFilm(cut, grid, law, 500.0)
 
@@ -148,10 +149,10 @@ def arrays() -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray, np.ndarray
 
 
 @pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "symmetry"), ("free-to-air", "oil-bath")])
-@pytest.mark.parametrize("omega", [300.0, -200.0])
+@pytest.mark.parametrize(("omega", "roughness"), [(300.0, 0.0), (-200.0, 0.0), (-200.0, 4e-6)])
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_balances_are_the_plain_ones(law: Law, omega: float, ends: tuple[str, str]) -> None:
-    film = film_of(law, *ends)
+def test_balances_are_the_plain_ones(law: Law, omega: float, roughness: float, ends: tuple[str, str]) -> None:
+    film = film_of(law, *ends, roughness)
     random = np.random.default_rng(2)
     w, past, rate = random.uniform(-0.6, 0.6, (M, K)), random.uniform(0.0, 3e3, (M, K)), 2e3
     motion = Motion((0.3, -0.5), (10.0, 40.0), omega)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from volume_films import ROTATION, section_of
@@ -20,8 +22,8 @@ SUPPLIES = ("circumferential-groove", "axial-groove")
 AIR = 1e5 / section_of("axial-groove").pressure_scale
 
 
-def film_of(law: Law, supply: str) -> VolumeFilm:
-    section = section_of(supply, 2e5, "free-to-air")
+def film_of(law: Law, supply: str, roughness: float = 0.0) -> VolumeFilm:
+    section = replace(section_of(supply, 2e5, "free-to-air"), flow_roughness=roughness, shear=0.5)
     grid = fitted_grid(section, ROTATION.d, 32, 4)
     return VolumeFilm(section, grid, law, reference_pressure(section, ROTATION))
 
@@ -31,10 +33,11 @@ def steady(film: VolumeFilm, omega: float) -> tuple[Motion, VolumeSolution]:
     return motion, FilmSolver(film).steady(motion)
 
 
+@pytest.mark.parametrize("roughness", [0.0, 2e-6])
 @pytest.mark.parametrize("omega", [ROTATION.omega, -ROTATION.omega])
 @pytest.mark.parametrize("supply", SUPPLIES)
-def test_compiled_paths_of_the_oil_are_those_in_array_notation(supply: str, omega: float) -> None:
-    film = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), supply)
+def test_compiled_paths_of_the_oil_are_those_in_array_notation(supply: str, omega: float, roughness: float) -> None:
+    film = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), supply, roughness)
     motion, found = steady(film, omega)
     assert found.gas is not None
     balances = CellBalances(film.section, film.grid, motion, found.before)

@@ -46,6 +46,7 @@ from frbcli.film.cells.data import (
     UNKNOWN,
 )
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
+from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells; what channels of a ring bring net.
@@ -103,8 +104,9 @@ def falls_to_air(
     _, j, b, rise, bend = section_end(film, k, far)
     for i in range(m):
         h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
+        cube, _ = flowing_cube(h, film.roughness)
         felt, _, _ = felt_at_end(pressures[i, j], pressures[i, b], bend, 0.0)
-        falls[i] = math.log(PREFACTOR * steepness / (h * h * h * film.aspect * rise)) + steepness * felt
+        falls[i] = math.log(PREFACTOR * steepness / (cube * film.aspect * rise)) + steepness * felt
     for i in range(m):  # side by side
         falls[i], _ = wright_omega(falls[i])
 
@@ -126,13 +128,24 @@ def end_flow(
 
 
 @compiled()
+def _between_rough(
+    h: float, s: float, c: float, roughness: float, through: float, by_x: float, by_y: float
+) -> tuple[float, float, float]:
+    """A conductance and its derivatives by the displacement, as rough surfaces leave it in the gap h at the angle with
+    the sine s and cosine c."""
+    factor, rises = rough_flow(h, roughness)
+    return factor * through, factor * by_x + rises * s * through, factor * by_y - rises * c * through
+
+
+@compiled()
 def _flow_around(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
     right: Array, flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    bored, half = film.bored, 0.5 * omega
+    bored, half, roughness = film.bored, 0.5 * omega, film.roughness
+    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
     forward = omega >= 0.0
     taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
@@ -146,14 +159,21 @@ def _flow_around(
             cube = h_i * h * h_n
             cube_x = ring[SIN, i] * h * h_n + h_i * s * h_n + h_i * h * ring[SIN, n]
             cube_y = -ring[COS, i] * h * h_n - h_i * c * h_n - h_i * h * ring[COS, n]
+        extra, grows = 0.0, 0.0  # of the gap that is swept, by the sliding of rough surfaces
+        if roughness > 0.0:
+            cube, cube_x, cube_y = _between_rough(h, s, c, roughness, cube, cube_x, cube_y)
+            extra, grows = sheared_gap(h, roughness, sliding)
         for j in range(k):  # through the face after the cell
             open_, carried = cells[AROUND, i, j], half * width[0, j]
+            swept, pull = carried * h + extra * width[0, j], carried + grows * width[0, j]
             through, by_x, by_y = cube * open_, cube_x * open_, cube_y * open_
             if cells[EDGE, i, j] != 0.0:
                 at_s, at_c = cells[EDGE_SIN, i, j], cells[EDGE_COS, i, j]
                 at = cells[EDGE_GAP, i, j] + d_x * at_s - d_y * at_c
                 square = at * at * cells[EDGE, i, j]
                 through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
+                if roughness > 0.0:
+                    through, by_x, by_y = _between_rough(at, at_s, at_c, roughness, through, by_x, by_y)
             p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
             t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
@@ -165,15 +185,15 @@ def _flow_around(
             by_upstream = 1.0 + by_before - by_across
             here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
             fall = p - p_n
-            pressed, drawn = through * fall, carried * h * theta
-            own = carried * h * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
-            other = carried * h * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
+            pressed, drawn = through * fall, swept * theta
+            own = swept * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
+            other = swept * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
             by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
             taken += (share - share_n) * drawn
             right[i, j, k + BY_ITSELF] -= pressed + share * drawn
             right[n, j, k + BY_ITSELF] += pressed + share_n * drawn
             by_x, by_y = g * by_x * fall, g * by_y * fall
-            drawn_x, drawn_y = g * carried * theta * s, -g * carried * theta * c
+            drawn_x, drawn_y = g * pull * theta * s, -g * pull * theta * c
             right[i, j, k + BY_X] -= by_x + share * drawn_x
             right[n, j, k + BY_X] += by_x + share_n * drawn_x
             right[i, j, k + BY_Y] -= by_y + share * drawn_y
@@ -221,14 +241,14 @@ def _carry_out_of_excess(
 
 @compiled()
 def _flow_along(
-    ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
+    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, g = motion.d_x, motion.d_y, motion.g
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
         h = ring[GAP, i] + d_x * s - d_y * c
-        cube, square = h * h * h, 3.0 * h * h
+        cube, square = flowing_cube(h, film.roughness)
         for j in range(k - 1):  # to the cell above
             fall = cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
             flow, by_gap = cube * fall, g * square * fall
@@ -294,7 +314,7 @@ def _flow_through_ends(
                 continue
             s, c = ring[SIN, i], ring[COS, i]
             h = ring[GAP, i] + d_x * s - d_y * c
-            cube, square = h * h * h, 3.0 * h * h
+            cube, square = flowing_cube(h, film.roughness)
             unit = film.aspect * ring[LENGTH, i] * rise
             flow, by_last, by_beyond, by_conductance = end_flow(
                 kind,
@@ -373,7 +393,7 @@ def balances(
     _flow_around(film, ring, width, cells, states, motion, stencil, right, flows)
     if film.bored:
         _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
-    _flow_along(ring, cells, states, motion, stencil, right)
+    _flow_along(film, ring, cells, states, motion, stencil, right)
     _store(ring, cells, states, motion, past, stencil, right)
     _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
     hold_given(cells, stencil, right, flows, SIDES)

@@ -17,6 +17,7 @@ from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
+from frbcli.film.roughness.flow_factors import pressure_flow, shear_flow
 
 NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
 
@@ -79,17 +80,27 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
     """The conductances of a section. Into a groove or hole the distance counts to its edge."""
     dphi, dz = np.diff(grid.phi), np.diff(grid.z)
     face, centre = (gap_on(section, motion, phi, grid.height) for phi in (grid.phi[1:], grid.centre))
-    cube = gap_on(section, motion, grid.centre, grid.z) ** 3 * dphi[:, None] * section.aspect
+    along_gap = gap_on(section, motion, grid.centre, grid.z)
+    cube = rough_share(section, along_gap) * along_gap**3 * dphi[:, None] * section.aspect
     through = face * centre * np.roll(centre, -1, axis=0) if grid.has_bores else face**3
-    beside = gap_height(section, motion.displacement_at(grid.height), grid.at) ** 3
-    through = np.where(grid.at == grid.phi[1:, None], through, beside)
+    edge = gap_height(section, motion.displacement_at(grid.height), grid.at)
+    at_face = grid.at == grid.phi[1:, None]
+    through = rough_share(section, np.where(at_face, face, edge)) * np.where(at_face, through, edge**3)
     around = np.where(grid.around > 0.0, through * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
     along = np.where(grid.along > 0.0, cube[:, 1:-1] / np.maximum(grid.along, NO_DISTANCE), 0.0)
     first, last = end_slopes(grid.z, section.seals)
     near, far = cube[:, 0] * first.rise, cube[:, -1] * last.rise
     carried = 0.5 * motion.omega * face
     rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
+    if section.flow_roughness > 0.0:  # beside a shell at rest
+        rough = section.flow_roughness / section.clearance
+        carried = carried + 0.5 * motion.omega * section.shear * rough * shear_flow(face / rough)
     return Conductances(around, along, near, far, carried * dz[None, :], rise)
+
+
+def rough_share(section: Section, gap: Array) -> Array | float:
+    """phi_x at the gaps H, 1 between smooth surfaces."""
+    return pressure_flow(gap * section.clearance / section.flow_roughness) if section.flow_roughness > 0.0 else 1.0
 
 
 class CellBalances:

@@ -19,6 +19,7 @@ from frbcli.film.cells.data import (
     volume_films,
 )
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.roughness.rough_gap import flowing_cube
 
 
 @compiled(makes_arrays=True)
@@ -38,7 +39,8 @@ def side_flow(
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
-            conductance = h * h * h * film.aspect * ring[LENGTH, i] * rise
+            cube, _ = flowing_cube(h, film.roughness)
+            conductance = cube * film.aspect * ring[LENGTH, i] * rise
             flow, _, _, _ = end_flow(
                 kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, falls[i]
             )

@@ -45,6 +45,7 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
+from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
 # leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
@@ -92,16 +93,21 @@ def _around(
             h_i = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
             h_n = ring[GAP, n] + d_x * ring[SIN, n] - d_y * ring[COS, n]
             cube = h_i * h * h_n
+        extra = 0.0
+        if film.roughness > 0.0:
+            cube *= rough_flow(h, film.roughness)[0]
+            extra, _ = sheared_gap(h, film.roughness, 0.5 * film.shear * (omega + 2.0 * motion.spin))
         for j in range(k):
             through = cube * cells[AROUND, i, j]
             if cells[EDGE, i, j] != 0.0:
                 at = cells[EDGE_GAP, i, j] + d_x * cells[EDGE_SIN, i, j] - d_y * cells[EDGE_COS, i, j]
-                through = at * at * at * cells[EDGE, i, j]
+                through = flowing_cube(at, film.roughness)[0] * cells[EDGE, i, j]
             t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
             over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
             upstream, downstream = (t - over, t_n - over_n) if forward else (t_n - over_n, t - over)
             more, _, _ = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], downstream - upstream)
-            drawn = 0.5 * omega * width[0, j] * h * (upstream + more + 0.5 * (over + over_n))
+            swept = 0.5 * omega * width[0, j] * h + extra * width[0, j]
+            drawn = swept * (upstream + more + 0.5 * (over + over_n))
             pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
             leaves, enters = pressed + cells[SHARE, i, j] * drawn, pressed + cells[SHARE, n, j] * drawn
             shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
@@ -115,12 +121,15 @@ def _around(
 
 
 @compiled()
-def _along(ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array) -> None:
+def _along(
+    film: np.record, ring: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
+) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
+        cube, _ = flowing_cube(h, film.roughness)
         for j in range(k - 1):
-            flow = h * h * h * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
+            flow = cube * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
             paths[UPWARD, i, j], paths[DOWNWARD, i, j] = max(flow, 0.0), max(-flow, 0.0)
             paths[OUT, i, j] += paths[UPWARD, i, j]
             paths[OUT, i, j + 1] += paths[DOWNWARD, i, j]
@@ -141,7 +150,8 @@ def _through_ends(
         for i in range(m):
             if cells[UNKNOWN, i, j] != 0.0:
                 h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
-                conductance = h * h * h * film.aspect * ring[LENGTH, i] * rise
+                cube, _ = flowing_cube(h, film.roughness)
+                conductance = cube * film.aspect * ring[LENGTH, i] * rise
                 groove = film.far.pressure if far else 0.0
                 flow, _, _, _ = end_flow(
                     kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness, falls[i]
@@ -160,7 +170,7 @@ def follow_oil(
             for j in range(k):
                 paths[layer, i, j] = 0.0
     _around(film, ring, width, cells, states, motion, paths)
-    _along(ring, cells, states, motion, paths)
+    _along(film, ring, cells, states, motion, paths)
     _through_ends(film, ring, cells, states, motion, paths)
 
 
