@@ -1,11 +1,11 @@
-"""The bearings of a case: one film, a floating ring between two films, or given coefficients."""
+"""The bearings of a case: one film, a floating ring between two films, a cartridge, or given coefficients."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field
 
@@ -59,15 +59,25 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
         """Its films, without that of a damper."""
         return (self,)
 
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table, in their order."""
+        return ("",)
+
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:
         """The bearing with other films."""
         (film,) = films
         assert isinstance(film, type(self))
         return film
 
+    @property
+    def parts(self) -> tuple[Self, ...]:
+        """The bearing at each of its places along the shaft: itself."""
+        return (self,)
+
 
 class Ring(Model):
-    """The floating ring itself."""
+    """The floating ring itself, or the body of a cartridge."""
 
     given_mass: Mass | None = Field(
         default=None, alias="mass",
@@ -76,6 +86,9 @@ class Ring(Model):
     given_inertia: RingInertia | None = Field(
         default=None, alias="inertia",
         description="about the axis of rotation; m (D_i^2 + D_o^2) / 8 of its mass and diameters if not given",
+    )
+    tilt_inertia: RingInertia | None = Field(
+        default=None, description="of a cartridge: about a diameter through its centre of mass; must be given there"
     )
     width: Length | None = Field(
         default=None, description="axial, for a mass that is not given; that of the wider film if not given"
@@ -122,10 +135,20 @@ class FloatingRingBearing(BearingWalls):
         """Its films from the journal outwards, without that of a damper."""
         return (self.inner, self.outer)
 
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table, in their order."""
+        return ("inner", "outer")
+
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:
         """The bearing with other films."""
         inner, outer = films
         return altered(self, {"inner": inner, "outer": outer})
+
+    @property
+    def parts(self) -> tuple[FloatingRingBearing, ...]:
+        """The bearing at each of its places along the shaft: itself."""
+        return (self,)
 
     @property
     def ring_mass(self) -> float:
@@ -148,8 +171,79 @@ class FloatingRingBearing(BearingWalls):
         return max(self.inner.width, self.outer.width) if self.ring.width is None else self.ring.width
 
 
+def _both_sides(given: object) -> object:
+    """One film as that of both ends of a cartridge."""
+    return [given, given] if isinstance(given, dict | Model) else given
+
+
+_Films = Annotated[
+    tuple[RingFilm, RingFilm], BeforeValidator(_both_sides), AlsoAs(lambda both: [both["prefixItems"][0], both])
+]
+SIDES = ("left", "right")  # of a cartridge; left is towards smaller positions
+
+
+class CartridgeBearing(BearingWalls):
+    """One rigid ring over two journals, which moves and tilts, between two inner and two outer films. Its centre of
+    mass lies in the middle between both positions."""
+
+    kind: Literal["cartridge"] = Field(description="one ring over two inner and two outer films")
+    name: Identifier = Field(default="", description="of the bearing in results, followed by left or right")
+    positions: tuple[Position, Position] = Field(description="of both journals along the shaft, ascending")
+    ring: Ring = Field(description="its body: mass, inertia and tilt_inertia must be given")
+    inner: _Films = Field(description="films between journals and ring: one table for both ends, or a list of two")
+    outer: _Films = Field(description="films between ring and shells, as inner; diameter: the outer one of the ring")
+    centrifugal_pressure: bool = Field(
+        default=True, description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)"
+    )
+    channels: Literal["pressure", "coupled"] = Field(
+        default="pressure", description="feed holes of the inner films in the ring, as of a floating ring"
+    )
+    damper: ClassVar[None] = None
+    support: ClassVar[None] = None
+
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """Its films: inner and outer one of the left end, then of the right one."""
+        return tuple(film for pair in zip(self.inner, self.outer, strict=True) for film in pair)
+
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table, in their order."""
+        places = (("inner", self.inner), ("outer", self.outer))
+        return tuple(key if one == other else f"{key}.{end}" for end in range(2) for key, (one, other) in places)
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing with other films."""
+        return altered(self, {"inner": tuple(films[0::2]), "outer": tuple(films[1::2])})
+
+    @property
+    def body(self) -> tuple[float, float, float]:
+        """Mass in kg, and inertias about the axis and about a diameter in kg m^2; the rules of a case ask for them."""
+        ring = self.ring
+        mass, inertia, tilt_inertia = ring.given_mass or 0.0, ring.given_inertia or 0.0, ring.tilt_inertia or 0.0
+        return mass, inertia, tilt_inertia
+
+    @property
+    def parts(self) -> tuple[FloatingRingBearing, ...]:
+        """Its two ends, each a floating ring with half of the mass and of the inertia: what joins them is theirs as one
+        body."""
+        mass, inertia, _ = self.body
+        half = {"given_mass": 0.5 * mass, "given_inertia": 0.5 * inertia}
+        ring = altered(self.ring, {**half, "tilt_inertia": None})
+        walls = {name: getattr(self, name) for name in BearingWalls.model_fields}
+        return tuple(
+            FloatingRingBearing(
+                kind="floating-ring", name="_".join(word for word in (self.name, side) if word), position=position,
+                ring=ring, inner=inner, outer=outer, centrifugal_pressure=self.centrifugal_pressure,
+                channels=self.channels, **walls,
+            )
+            for side, position, inner, outer in zip(SIDES, self.positions, self.inner, self.outer, strict=True)
+        )  # fmt: skip
+
+
 FilmBearing = SingleFilmBearing | FloatingRingBearing
-Bearing = Annotated[SingleFilmBearing | FloatingRingBearing | CoefficientsBearing, Field(discriminator="kind")]
+GivenBearing = SingleFilmBearing | FloatingRingBearing | CartridgeBearing | CoefficientsBearing
+Bearing = Annotated[GivenBearing, Field(discriminator="kind")]
 ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
 
 
@@ -181,7 +275,7 @@ def _without_film(bearing: object) -> bool:
 def _named(bearing: object, name: str) -> object:
     if isinstance(bearing, dict):
         return {"name": name, **bearing}
-    if isinstance(bearing, SingleFilmBearing | FloatingRingBearing | CoefficientsBearing) and not bearing.name:
+    if isinstance(bearing, GivenBearing) and not bearing.name:
         return altered(bearing, {"name": name})
     return bearing
 

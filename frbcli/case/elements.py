@@ -105,10 +105,20 @@ class CoefficientsBearing(Model):
         """None, without that of a damper."""
         return ()
 
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table."""
+        return ()
+
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:
         """The bearing itself."""
         assert not films
         return self
+
+    @property
+    def parts(self) -> tuple[Self, ...]:
+        """The bearing at each of its places along the shaft: itself."""
+        return (self,)
 
 
 Element = CoefficientsBearing

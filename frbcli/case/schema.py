@@ -2,8 +2,9 @@
 
 Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
 `two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `given_bearings`, [[disk]] is `disks`. `clearance`
-and `viscosity` may be given as a law: the attributes of these names are its value. Of `given_bearings`, all tables
-[[bearing]], `bearings` are those with a film and `elements` the others.
+and `viscosity` may be given as a law: the attributes of these names are its value. `given_bearings` are all tables
+[[bearing]], `placed_bearings` the same with a cartridge as its two ends; of these `bearings` are those with a film and
+`elements` the others.
 Rules that tie several keys together are in `checks.py`.
 """
 
@@ -148,15 +149,26 @@ class Case(Model):
         return altered(self, _UNCOMPUTED) == altered(other, _UNCOMPUTED)
 
     @property
-    def bearing_keys(self) -> tuple[str, ...]:
-        """The keys of all bearings, with or without a film: "bearing", or "bearing.0" and on for several."""
+    def placed_bearings(self) -> tuple[FilmBearing | Element, ...]:
+        """All bearings, with or without a film, at one place along the shaft each: a cartridge as its two ends."""
+        return tuple(part for bearing in self.given_bearings for part in bearing.parts)
+
+    @property
+    def given_keys(self) -> tuple[str, ...]:
+        """The keys of all tables [[bearing]]: "bearing", or "bearing.0" and on for several."""
         count = len(self.given_bearings)
         return ("bearing",) if count == 1 else tuple(f"bearing.{place}" for place in range(count))
 
     @property
+    def bearing_keys(self) -> tuple[str, ...]:
+        """The keys of all placed bearings."""
+        keyed = zip(self.given_keys, self.given_bearings, strict=True)
+        return tuple(key for key, bearing in keyed for _ in bearing.parts)
+
+    @property
     def bearings(self) -> tuple[FilmBearing, ...]:
-        """The bearings that have a film, or two around a ring."""
-        return tuple(bearing for bearing in self.given_bearings if not isinstance(bearing, Element))
+        """The placed bearings that have a film, or two around a ring."""
+        return tuple(bearing for bearing in self.placed_bearings if not isinstance(bearing, Element))
 
     @property
     def elements(self) -> tuple[Element, ...]:
@@ -166,7 +178,7 @@ class Case(Model):
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
         """All films: of the bearings in their order, from the journal outwards, and behind them those of dampers."""
-        own = (film for bearing in self.bearings for film in bearing.films)
+        own = (film for bearing in self.given_bearings for film in bearing.films)
         return (*own, *(bearing.damper for bearing in self.given_bearings if bearing.damper is not None))
 
     def with_films(self, films: Sequence[FilmGeometry]) -> Case:

@@ -31,7 +31,7 @@ class GivenCoefficients(MachineElement):
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
-        for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+        for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if isinstance(bearing, CoefficientsBearing):
                 yield cls(key, bearing)
 

@@ -36,7 +36,7 @@ class DamperElement(MachineElement):
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
-        for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+        for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if bearing.damper is not None:
                 yield cls(f"{key}.damper", bearing.name, bearing.damper)
 

@@ -39,7 +39,7 @@ class HousingElement(MachineElement):
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
         if case.housing is not None:
-            places = () if case.rotor.symmetric else case.given_bearings
+            places = () if case.rotor.symmetric else case.placed_bearings
             yield cls(KEY, case.housing, tuple((bearing.name, bearing.position or 0.0) for bearing in places))
 
     def node(self, bearing: str) -> str:

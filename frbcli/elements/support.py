@@ -33,7 +33,7 @@ class SupportElement(MachineElement):
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
-        for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+        for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if bearing.support is not None:
                 yield cls(f"{key}.support", bearing.name, bearing.support)
 

@@ -112,8 +112,8 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     speeds = np.zeros(system.ring_count)
     for ring in range(system.ring_count):
         outer, inner = (system.bodies == ring).T
-        driving = omega * drag[inner] + moment[inner] + moment[outer]
-        speeds[ring] = (driving / (drag[inner] + drag[outer])).item()
+        driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
+        speeds[ring] = np.sum(driving) / np.sum(drag[inner] + drag[outer])
     return speeds
 
 

@@ -122,7 +122,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
             machine = StaticMachines(case, memory=True).at(2.0 * math.pi * speed_Hz)
     except NotConverged as none:
         raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, str(none), ""),)) from none
-    rotor = without_spins(machine.system.rotor, machine.system.ring_count)
+    rotor = without_spins(machine.system.rotor, machine.at_rest.position.ring_speeds)
     stations = shaft_of(case).stations(rotor)
     point = with_errors(point_at_rest(machine, speed_Hz), machine)
     shapes = []

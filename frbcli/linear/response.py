@@ -206,17 +206,18 @@ def response(
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
-    rotor = without_spins(system.rotor, system.ring_count)
-    motions, forces, journals = zip(*(_at(case, rotor, point, excitation) for point in resting), strict=True)
+    rotors = [without_spins(system.rotor, 2.0 * math.pi * np.array(point.ring_speeds_Hz)) for point in resting]
+    found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
+    motions, forces, journals = zip(*found, strict=True)
     systems = (system if point.warm is None else point.warm.system for point in resting)
     clearances = np.array([each.clearances for each in systems])
     motion = np.array(motions)
     speeds = np.array([point.speed_Hz for point in resting])
-    peaks, others = peak_speeds(speeds, motion), _on_others(rotor, resting, excitation)
+    peaks, others = peak_speeds(speeds, motion), _on_others(rotors, resting, excitation)
     return Response(
         case=case,
         speeds_Hz=speeds,
-        points=tuple(name for name, _ in rotor.points),
+        points=tuple(name for name, _ in system.rotor.points),
         motion=motion,
         films=system.names,
         elements=tuple(element.name for element in case.elements),
@@ -289,16 +290,16 @@ def _at(
 
 
 def _on_others(
-    rotor: LinearRotor, points: Sequence[StabilityPoint], excitation: str
+    rotors: Sequence[LinearRotor], points: Sequence[StabilityPoint], excitation: str
 ) -> list[tuple[Amplitudes, float]]:
-    """The motion (n, p, 2) of the points of a rotor on each other mesh of its films, with the share of the difference
-    that is the error; none where a mesh is missing at a speed."""
+    """The motion (n, p, 2) of the points of a rotor, as it is at each speed, on each other mesh of its films, with the
+    share of the difference that is the error; none where a mesh is missing at a speed."""
     if len({len(point.others) for point in points}) > 1:
         return []
     found = []
     for number in range(len(points[0].others)):
         motion = []
-        for point in points:
+        for rotor, point in zip(rotors, points, strict=True):
             omega = 2.0 * math.pi * point.speed_Hz
             q = forced_motion(rotor, omega, excited(rotor, omega, excitation), *point.others[number][:2])
             motion.append([place @ q for _, place in rotor.points])

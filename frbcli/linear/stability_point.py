@@ -155,7 +155,8 @@ def critical_eigenvalue(values: Eigenvalues) -> complex:
 def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalues:
     """(2 n,) eigenvalues in 1/s of a machine at rest with its films as they are solved, on its own mesh or another."""
     system = machine.system
-    return eigenvalues(without_spins(system.rotor, system.ring_count), machine.omega, *_coefficients(films))
+    rotor = without_spins(system.rotor, machine.at_rest.position.ring_speeds)
+    return eigenvalues(rotor, machine.omega, *_coefficients(films))
 
 
 def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]:
@@ -228,8 +229,8 @@ def _with_memory(machine: MachineAtRest, fine: bool = False) -> Eigenvalues:
 
 def linear_machine(machine: MachineAtRest) -> Oscillator:
     """A machine at rest without its films; its rings turn with the speeds that they have there."""
-    system = machine.system
-    return oscillator(without_spins(system.rotor, system.ring_count), machine.omega)
+    rotor = without_spins(machine.system.rotor, machine.at_rest.position.ring_speeds)
+    return oscillator(rotor, machine.omega)
 
 
 def _at_frequency(film: RestingFilm, dynamic: DynamicFilm, frequency: float) -> RestingFilm:

@@ -104,7 +104,7 @@ class _Bearing:
 
 
 def _bearings(case: Case) -> Iterator[_Bearing]:
-    for key, bearing in zip(case.bearing_keys, case.given_bearings, strict=True):
+    for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
         films, symbols = bearing.films, symbols_at(case, key)
         if films and bearing.damper is not None:  # which has the dimensions of a film around others
             films, symbols = (*films, bearing.damper), tuple(each for each in symbols if each != DamperElement.symbol)
@@ -175,7 +175,7 @@ def _of_sections(case: Case) -> str:
     length = sum(section.length for section in case.shaft)
     disks = [(disk, *_cylinder(disk.mass, disk.polar_inertia, disk.diametral_inertia)) for disk in case.disks]
     reach = max([_largest_radius(case), *(radius for _, radius, _ in disks), *(0.5 * s.diameter for s in case.shaft)])
-    bearings = [bearing.position or 0.0 for bearing in case.given_bearings]
+    bearings = [bearing.position or 0.0 for bearing in case.placed_bearings]
     held = _held(case, bearings)
     left = min([0.0, *held, *(disk.position - 0.5 * width for disk, _, width in disks)])
     right = max([length, *held, *(disk.position + 0.5 * width for disk, _, width in disks)])
@@ -197,7 +197,7 @@ def _of_sections(case: Case) -> str:
         parts += _film_parts(bearing.films, at, scale)
         parts.append(_named(bearing.name, at, scale, half + 16.0))
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
-    for given in case.given_bearings:
+    for given in case.placed_bearings:
         at = given.position or 0.0
         places |= {f"{body}_{given.name}": at for body in ("journal", "ring", "shell", "support", "housing")}
     places["housing"] = (case.housing and case.housing.position) or 0.0

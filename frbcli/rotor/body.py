@@ -57,6 +57,28 @@ def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, e
     )
 
 
+def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, length: float, gravity: float) -> Body:
+    """A rigid body with its nodes at both ends of a length in m and its centre of mass in the middle: the body of a
+    cartridge. mass in kg; tilt_inertia about a diameter through its centre, kg m^2. q = [x, y, x, y] of both nodes; its
+    centre moves with their mean, its slope is their difference over the length."""
+    together, against = 0.25 * mass, tilt_inertia / length**2
+    own, other = together + against, together - against
+    plane = np.eye(2)
+    first, second = np.hstack([plane, 0.0 * plane]), np.hstack([0.0 * plane, plane])
+    nothing = np.zeros((4, 4))
+    return Body(
+        mass=np.kron(np.array([[own, other], [other, own]]), plane),
+        damping=nothing,
+        gyroscopic=nothing,
+        stiffness=nothing,
+        static_load=np.array([0.0, -0.5 * mass * gravity] * 2),
+        unbalance_cos=np.zeros(4),
+        unbalance_sin=np.zeros(4),
+        nodes=((nodes[0], first), (nodes[1], second)),
+        inertia=0.5 * mass * (first + second),
+    )
+
+
 def spin(inertia: float) -> Body:
     """The angle of a ring that turns, in rad, which no element between nodes acts on; inertia in kg m^2."""
     one, none = np.eye(1), np.zeros((1, 1))

@@ -34,6 +34,9 @@ class LinearRotor:
     points: names and (2, n) maps of the points that a run records and whose error is controlled.
     over_speed: what elements add to mass, damping and stiffness at a speed, None where nothing depends on it.
     loads: what else acts on it, and changes with the angle of the rotor or with time.
+    cones: of bodies that turn by themselves and tilt, cartridges: each with the degree of freedom of its angle, and (2,
+    n) its slopes in x and y times the root of its polar inertia: its gyroscopic moments pull with -(C^T J C) q' times
+    its speed, J = [[0, 1], [-1, 0]].
     """
 
     mass: Array
@@ -48,6 +51,7 @@ class LinearRotor:
     points: tuple[tuple[str, Array], ...]
     over_speed: LinearPart | None = None
     loads: tuple[Load, ...] = ()
+    cones: tuple[tuple[int, Array], ...] = ()
 
     @property
     def size(self) -> int:
@@ -73,6 +77,13 @@ class LinearRotor:
             over_speed=None,
         )
 
+    def precession(self, speeds: Array) -> Array:
+        """(n, n) what multiplies q' beside the damping by the cones, at speeds (n,) of the angles in rad/s."""
+        found = np.zeros_like(self.damping)
+        for spin, cone in self.cones:
+            found += speeds[spin] * (np.outer(cone[0], cone[1]) - np.outer(cone[1], cone[0]))
+        return found
+
     def with_parts(self, parts: Sequence[LinearPart]) -> LinearRotor:
         """The rotor with linear parts on all of its degrees of freedom: constant ones join its matrices."""
         stiffness, damping, mass = self.stiffness, self.damping, self.mass
@@ -96,14 +107,19 @@ def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tupl
     return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
-def without_spins(rotor: LinearRotor, count: int) -> LinearRotor:
-    """The machine without its last `count` degrees of freedom, the angles of its rings."""
+def without_spins(rotor: LinearRotor, speeds: Array) -> LinearRotor:
+    """The machine without its last degrees of freedom, the angles of its rings, which keep their speeds (rings,) in
+    rad/s."""
+    count = len(speeds)
     if count == 0:
         return rotor
+    damping = rotor.damping
+    if rotor.cones:
+        damping = damping + rotor.precession(np.concatenate([np.zeros(rotor.size - count), speeds]))
     return replace(
         rotor,
         mass=rotor.mass[:-count, :-count],
-        damping=rotor.damping[:-count, :-count],
+        damping=damping[:-count, :-count],
         gyroscopic=rotor.gyroscopic[:-count, :-count],
         stiffness=rotor.stiffness[:-count, :-count],
         static_load=rotor.static_load[:-count],
@@ -113,4 +129,5 @@ def without_spins(rotor: LinearRotor, count: int) -> LinearRotor:
         points=tuple((name, place[:, :-count]) for name, place in rotor.points),
         over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(count),
         loads=tuple(load.without(count) for load in rotor.loads),
+        cones=(),
     )

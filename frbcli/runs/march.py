@@ -256,7 +256,7 @@ class March:
         for i, name in enumerate(system.names):
             if system.remembering[i]:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
-        for name, spin in zip(ring_names(system), system.spins, strict=True):
+        for name, spin in ring_names(system).items():
             signals[name] = v[:, spin] / (2 * math.pi)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
         kinds, warm = recorded(self._case), self._numbers(times)

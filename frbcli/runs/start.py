@@ -20,6 +20,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.system import System
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs
+from frbcli.solve.stage.cones import make_cones
 from frbcli.solve.stage.loads import varying_loads
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
 
@@ -62,6 +63,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         loads=varying_loads(rotor.loads),
         inputs=inputs,
         standing=standing if stations > 1 else (),
+        cones=make_cones(rotor.cones, rotor.size - system.ring_count),
     )
 
 
@@ -128,6 +130,8 @@ def accelerations(
     alpha, omega, angle = rotation
     rotor, (along, across) = system.rotor.at(omega), unbalance_shares(alpha, omega, math.sin(angle), math.cos(angle))
     forces = rotor.static_load - rotor.stiffness @ q - (rotor.damping + omega * rotor.gyroscopic) @ v
+    if rotor.cones:
+        forces = forces - rotor.precession(v) @ v
     forces = forces + along * rotor.unbalance_cos
     forces = forces + across * rotor.unbalance_sin
     if rotor.loads:

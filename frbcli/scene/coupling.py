@@ -10,6 +10,7 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
+from frbcli.scene.films import turning_cartridges
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.rule import Rule, refusal
 from frbcli.scene.machine.elements import changes_with_speed
@@ -53,6 +54,10 @@ def _over_speed(case: Case) -> str | None:
     return case.film.coupling if changes_with_speed(case) else None
 
 
+def _cartridge(case: Case) -> str | None:
+    return case.film.coupling if turning_cartridges(case) else None
+
+
 def _signals(case: Case) -> str | None:
     signals = case.output.signals
     return ", ".join(signals) if any(kind != "film-thickness" for kind in signals) else None
@@ -88,6 +93,11 @@ APART = Coupling(
         refusal(
             (RUN,), KEY, _over_speed,
             "solves a rotor with constant coefficients, and those of a bearing depend on the speed", "Write auto.",
+        ),
+        refusal(
+            (RUN,), KEY, _cartridge,
+            "solves a rotor with constant coefficients, and a cartridge has gyroscopic moments by its own speed",
+            "Write auto.",
         ),
         refusal(
             (RUN,), KEY, _over_time, "takes the pressure and the temperatures of the supply as constant", "Write auto."

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.films.film_model import FilmModel
 from frbcli.case.model import altered
@@ -45,19 +45,17 @@ class FilmPlace:
 def film_places(case: Case) -> tuple[FilmPlace, ...]:
     """All films of a case, as `Case.films`: the inner before the outer one of a floating ring, the bearings in their
     order, and behind them the dampers."""
-    places, ring = [], 0
+    places, spins = [], iter(_spins(case))
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
             places.append(FilmPlace(bearing, ROTOR, HOUSING, _opening_body(bearing, ROTOR, HOUSING), bearing.name))
         else:
             names = (f"{bearing.name}_{side}".lstrip("_") for side in ("inner", "outer"))
-            inner, outer = next(names), next(names)
-            between = ring if bearing.ring.spin == "free" else HOUSING
+            inner, outer, between = next(names), next(names), next(spins)
             places.append(FilmPlace(bearing.inner, ROTOR, between, _opening_body(bearing.inner, ROTOR, between), inner))
             feed_holes = feed_holes_in_outer_film(bearing)
             body = _opening_body(bearing.outer, between, HOUSING) if feed_holes is None else between
             places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, feed_holes))
-            ring += between == ring
     places += [FilmPlace(each.given, HOUSING, HOUSING, HOUSING, each.film) for each in DamperElement.of(case)]
     return tuple(places)
 
@@ -77,9 +75,31 @@ def rings(case: Case) -> tuple[FloatingRingBearing, ...]:
     return tuple(bearing for bearing in case.bearings if isinstance(bearing, FloatingRingBearing))
 
 
-def turning_rings(case: Case) -> tuple[FloatingRingBearing, ...]:
-    """The bearings with rings that turn, in the order of the rings' numbers."""
-    return tuple(bearing for bearing in rings(case) if bearing.ring.spin == "free")
+def turning_rings(case: Case) -> tuple[tuple[FloatingRingBearing, ...], ...]:
+    """The rings that turn, in the order of their numbers: the bearings around each, two of a cartridge."""
+    return tuple(around for around in _around_rings(case) if around[0].ring.spin == "free")
+
+
+def _around_rings(case: Case) -> Iterator[tuple[FloatingRingBearing, ...]]:
+    """The bearings around each ring."""
+    for given in case.given_bearings:
+        if around := tuple(part for part in given.parts if isinstance(part, FloatingRingBearing)):
+            yield around
+
+
+def _spins(case: Case) -> Iterator[int]:
+    """The body that the ring of each bearing with one turns as: its number, or HOUSING of a blocked one."""
+    number = 0
+    for around in _around_rings(case):
+        free = around[0].ring.spin == "free"
+        yield from (number if free else HOUSING for _ in around)
+        number += free
+
+
+def turning_cartridges(case: Case) -> tuple[str, ...]:
+    """The keys of the cartridges that turn."""
+    keyed = zip(case.given_keys, case.given_bearings, strict=True)
+    return tuple(key for key, each in keyed if isinstance(each, CartridgeBearing) and each.ring.spin == "free")
 
 
 def full_films(case: Case) -> Case:
@@ -137,11 +157,12 @@ def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[fl
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
     end is that of the groove which they open to.
     """
-    centrifugal, ringed = [], turning_rings(case)
-    for place, film in zip(film_places(case), volumes, strict=True):
-        has_channels = place.outside >= 0 and place.grid_body == place.outside and not coupled(ringed[place.outside])
-        pressure = centrifugal_pressure(case, ringed[place.outside]) if has_channels else 0.0
-        centrifugal.append(0.5 * pressure / film.section.pressure_scale)
+    around = [bearing for bearing in case.bearings for _ in bearing.films]
+    centrifugal = [0.0] * len(volumes)
+    for number, (place, bearing) in enumerate(zip(bearing_films(case), around, strict=True)):
+        if isinstance(bearing, FloatingRingBearing) and 0 <= place.outside == place.grid_body and not coupled(bearing):
+            pressure = centrifugal_pressure(case, bearing)
+            centrifugal[number] = 0.5 * pressure / volumes[number].section.pressure_scale
     return tuple(centrifugal)
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.elements import Element
 from frbcli.case.film_geometry import RingFilm
 from frbcli.case.schema import Case
@@ -11,17 +10,15 @@ from frbcli.elements.damper import DamperElement
 
 def bearing_key(case: Case, index: int) -> str:
     """The key of a bearing with a film: "bearing", or "bearing.0" where there are several, with or without one."""
-    keyed = zip(case.bearing_keys, case.given_bearings, strict=True)
+    keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
     return [key for key, bearing in keyed if not isinstance(bearing, Element)][index]
 
 
 def film_keys(case: Case) -> tuple[str, ...]:
     """The keys of all films in the order of film_places, e.g. "bearing" or "bearing.1.inner"."""
-    keys: list[str] = []
-    for index, bearing in enumerate(case.bearings):
-        key = bearing_key(case, index)
-        keys += [f"{key}.inner", f"{key}.outer"] if isinstance(bearing, FloatingRingBearing) else [key]
-    return (*keys, *(each.key for each in DamperElement.of(case)))
+    keyed = zip(case.given_keys, case.given_bearings, strict=True)
+    own = (f"{key}.{film}".rstrip(".") for key, bearing in keyed for film in bearing.film_keys)
+    return (*own, *(each.key for each in DamperElement.of(case)))
 
 
 def cavitation_keys(case: Case) -> tuple[tuple[str, str], ...]:

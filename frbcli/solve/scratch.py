@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.solve.stage.cones import prepare_cones
 from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING
 from frbcli.solve.stage.inverse import prepare
 from frbcli.solve.stage.loads import prepare_loads
@@ -52,4 +53,5 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
     if numbers[INVERSE_G] > 0.0:
         prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:6])
         prepare_loads(rotor.loads, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])
+        prepare_cones(rotor.cones, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])
     return scratch

@@ -45,6 +45,7 @@ class RotorData(NamedTuple):
     loads: Any = ()  # that change with the angle of the rotor or with time, see stage/loads.py
     inputs: Any = ()  # that change with time, see inputs.py
     standing: Any = ()  # (journals, 2) m, where these are in their shells when the rotor has not moved; empty: centred
+    cones: Any = ()  # of rings that turn and tilt, see stage/cones.py
 
 
 class Control(NamedTuple):

@@ -19,6 +19,7 @@ from frbcli.solve.inputs import Inputs, set_inputs
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
+from frbcli.solve.stage.cones import prepare_cones, turn_cones
 from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
@@ -133,11 +134,13 @@ def _solve_stage(
     if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
         prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
         prepare_loads(rotor.loads, rotor, g, speed)
+        prepare_cones(rotor.cones, rotor, g, speed)
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
     add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
     guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
+    turn_cones(rotor.cones, rings.bodies, s, s - 1, g, selection, at, stage_a, journal)
     set_speeds(turning, rings.bodies, rings.angles, journal, grids)
     set_sliding(control.rough, turning, rings.bodies)
     begin_stage(films, work, wet, flows, weights, s, step, g, moments[s] * step / numbers[STEP_DONE],
@@ -157,6 +160,8 @@ def _solve_stage(
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
                 set_sliding(control.rough, turning, rings.bodies)
+                turned = turn_cones(rotor.cones, rings.bodies, s, s, g, selection, at, stage_a, journal)
+                left = max(left, g * turned / _smallest(clearances))
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):

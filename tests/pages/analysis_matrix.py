@@ -86,6 +86,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
+    "cartridge": ("turbocharger-car-cartridge", ()),
+    "cartridge that does not turn": ("turbocharger-car-cartridge", ("bearing.ring.spin=blocked",)),
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
     "pocket": ("jeffcott", (POCKET,)),
@@ -145,6 +147,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "co-simulation and a bearing model of one's own": ("jeffcott", (APART, MODEL_THEORY)),
     "co-simulation and harmonic forces": ("jeffcott", (HARMONIC, APART)),
     "co-simulation and rings that turn": ("floating-ring", (APART,)),
+    "co-simulation and cartridges that turn": ("turbocharger-car-cartridge", (APART,)),
     "co-simulation and several bearings": ("turbocharger-heavy", (APART,)),
 }  # fmt: skip
 

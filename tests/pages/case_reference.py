@@ -51,6 +51,7 @@ TABLES = {
     "[[disk]]": "Disk",
     '[bearing] kind = "single-film"': "SingleFilmBearing",
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
+    '[bearing] kind = "cartridge"': "CartridgeBearing",
     '[bearing] kind = "coefficients"': "CoefficientsBearing",
     "[[thrust_bearing]]": "ThrustBearing",
     "[axial]": "Axial",

@@ -160,7 +160,7 @@ def test_picture_of_the_modes(heavy: Case, stiffness: float | None) -> None:
 
 def whole(case: Case) -> LinearRotor:
     """Without the angles of the two rings."""
-    return without_spins(make_rotor(case), 2)
+    return without_spins(make_rotor(case), np.zeros(2))
 
 
 def test_size_films_and_points(heavy: Case) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.elements import CoefficientsBearing
 from frbcli.case.film_geometry import RingFilm
 from frbcli.case.films.film_model import FilmModel
@@ -64,7 +64,7 @@ def remove_law(name: str) -> None:
 
 def _adopt_laws() -> None:
     adopt(FilmModel, (RingFilm, Damper))
-    for holder in (SingleFilmBearing, FloatingRingBearing, CoefficientsBearing, Case):
+    for holder in (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, Case):
         holder.model_rebuild(force=True)
 
 

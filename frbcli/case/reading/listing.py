@@ -56,9 +56,10 @@ def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value
         if len(found) > MOST_LISTED and isinstance(found[0], float):
             yield Value(key, len(found), "", f"{len(found)} values")
             return
-        single = key in ("bearing", "base") and len(found) == 1
+        both = isinstance(written, dict) and len(found) > 1  # one table that stands for both ends of a cartridge
+        single = both or (key in ("bearing", "base") and len(found) == 1)
         each = written if isinstance(written, list) else [written] * len(found)
-        for index, (item, its_text) in enumerate(zip(found, each, strict=True)):
+        for index, (item, its_text) in enumerate(zip(found[:1] if both else found, each, strict=not both)):
             yield from _one(key if single else f"{key}.{index}", item, field, its_text)
     elif isinstance(found, float):
         unit = unit_of(field) or NUMBER

@@ -9,6 +9,8 @@ from typing import Any
 from frbcli.case.reading.lines import Path
 from frbcli.units import ValueFault, quantity
 
+RINGED = ("floating-ring", "cartridge")  # kinds of bearings with an inner and an outer film
+
 
 @dataclass(frozen=True)
 class Breach:
@@ -32,6 +34,19 @@ def table(data: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The table [key], empty if there is none."""
     found = data.get(key)
     return found if isinstance(found, dict) else {}
+
+
+Located = tuple[Path, dict[str, Any]]  # a table with its path
+
+
+def ring_films(bearing: Mapping[str, Any]) -> list[tuple[Located, Located]]:
+    """The tables of the inner and outer film of a ring, with their paths in the table of its bearing; two pairs where a
+    cartridge has other films at each end; none of a bearing without a ring."""
+    if bearing.get("kind") not in RINGED:
+        return []
+    inner, outer = (tables(bearing, side) or [((side,), {})] for side in ("inner", "outer"))
+    count = max(len(inner), len(outer))
+    return [(inner[min(end, len(inner) - 1)], outer[min(end, len(outer) - 1)]) for end in range(count)]
 
 
 def number(values: Mapping[str, Any], key: str, unit: str, default: float | None = None) -> float | None:

@@ -14,8 +14,9 @@ from frbcli.case.course.control import OUTPUT_STEP
 from frbcli.case.course.speed import DEFAULT_HOLD
 from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
+from frbcli.case.rules.cartridge_checks import cartridge_breaches, positions
 from frbcli.case.rules.contact_checks import contact_breaches
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
@@ -85,11 +86,18 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
-    inner, outer = (number(table(bearing, side), "diameter", "m") for side in ("inner", "outer"))
-    if inner and outer and inner >= outer:
-        problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
-        yield Breach((*path, "inner", "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
+    for (at, inside), (_, outside) in ring_films(bearing):
+        inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
+        if inner and outer and inner >= outer:
+            problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
+            yield Breach((*path, *at, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
     ring = bearing.get("ring")
+    if bearing.get("kind") == "cartridge":
+        yield from cartridge_breaches(path, bearing)
+        return
+    if isinstance(ring, dict) and "tilt_inertia" in ring:
+        problem = "has no effect: a ring of its own does not tilt."
+        yield Breach((*path, "ring", "tilt_inertia"), problem, 'Remove it, or take kind = "cartridge".')
     if isinstance(ring, dict) and not {"mass", "material"} & ring.keys():
         remedy = 'Add e.g. mass = "30 g", or material = "brass", from which it follows.'
         yield Breach((*path, "ring", "mass"), "is missing.", remedy)
@@ -98,7 +106,8 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _damper(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
-    film = table(bearing, "outer") if bearing.get("kind") == "floating-ring" else bearing
+    ringed = ring_films(bearing)
+    film = ringed[0][1][1] if ringed else bearing
     inner, outer = number(film, "diameter", "m"), number(table(bearing, "damper"), "diameter", "m")
     if inner and outer and inner >= outer:
         problem = f"is {display(outer, 'm')}, not above that of the film in the shell, {display(inner, 'm')}."
@@ -121,16 +130,21 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
             yield Breach(("shaft",), "is missing.", "Add [[shaft]] sections with length and diameter, or rotor.file.")
         if {"modes", "cutoff"} <= set(table(data, "rotor")):
             yield Breach(("rotor", "cutoff"), "is given beside modes.", "Keep one of the two.")
-        if len(bearings) < 2:
+        if sum(2 if bearing.get("kind") == "cartridge" else 1 for _, bearing in bearings) < 2:
             yield Breach(("bearing",), "is given once; a turbocharger rotor needs two.", "Write [[bearing]] twice.")
         for path, bearing in bearings:
-            if "position" not in bearing:
+            if "position" not in bearing and bearing.get("kind") != "cartridge":
                 yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm".')
         yield from _on_shaft(data, bearings)
     elif kind in SYMMETRIC:
         for key in ("shaft", "disk"):
             if key in data:
                 yield Breach((key,), f"does not go with a {kind} rotor.", 'Remove it, or take kind = "turbocharger".')
+        for path, bearing in bearings:
+            if bearing.get("kind") == "cartridge":
+                problem = f"does not tilt around a {kind} rotor, which moves in its plane."
+                remedy = 'Take kind = "floating-ring" with half of its mass and inertia, or a turbocharger rotor.'
+                yield Breach((*path, "kind"), problem, remedy)
 
 
 def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:
@@ -148,10 +162,11 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
         return
     total = sum(length for length in lengths if length is not None)
     for path, part in (*bearings, *tables(data, "thrust_bearing"), *tables(data, "disk")):
-        position = number(part, "position", "m")
-        if position is not None and not 0 <= position <= total * (1 + 1e-9):
-            problem = f"is {display(position, 'm')}, not on the shaft of {display(total, 'm')}."
-            yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
+        places = [((*path, "position"), number(part, "position", "m")), *positions(path, part)]
+        for at, position in places:
+            if position is not None and not 0 <= position <= total * (1 + 1e-9):
+                problem = f"is {display(position, 'm')}, not on the shaft of {display(total, 'm')}."
+                yield Breach(at, problem, "Positions count from the start of the first section.")
 
 
 def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -187,8 +202,7 @@ def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:
 def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:
     if bearing.get("kind") == "single-film":
         yield path, bearing
-    if bearing.get("kind") == "floating-ring":
-        for side in ("inner", "outer"):
-            yield (*path, side), table(bearing, side)
+    for end in ring_films(bearing):
+        yield from (((*path, *at), film) for at, film in end)
     if isinstance(bearing.get("damper"), dict):
         yield (*path, "damper"), table(bearing, "damper")

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 from frbcli.case.quantities import LARGEST
 from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.reading.tables import Breach, Located, number, ring_films, table, tables
 from frbcli.case.rules.film_checks import warm_clearance
 from frbcli.film.operating import RING_SPEED, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import BRASS, STEEL
@@ -65,14 +65,14 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
     top = _top_speed(data)
     fastest = 0.0
     for path, bearing in tables(data, "bearing"):
-        ring = bearing.get("kind") == "floating-ring"
-        journal = table(bearing, "inner") if ring else bearing
-        diameter = _size(journal, "diameter", "m")
-        if top is not None and diameter:
-            fastest = max(fastest, math.pi * diameter * top.value)
-        growths = _ring_growths(bearing, top) if ring else _journal_growth(bearing, top)
-        for side, growth in growths.items():
-            yield from _film((*path, side) if side else path, table(bearing, side) if side else bearing, growth, top)
+        ends: Sequence[Sequence[Located]] = ring_films(bearing)
+        for end in ends or [[((), bearing)]]:
+            diameter = _size(end[0][1], "diameter", "m")
+            if top is not None and diameter:
+                fastest = max(fastest, math.pi * diameter * top.value)
+            growths = _ring_growths(end[0][1], end[1][1], top) if ends else _journal_growth(bearing, top)
+            for (at, film), growth in zip(end, growths, strict=True):
+                yield from _film((*path, *at), film, growth, top)
         yield from _film((*path, "damper"), table(bearing, "damper"), 0.0, top)
     if top is not None and fastest > FASTEST_SURFACE:
         problem = f"gives a surface speed of the journal of {fastest:.4g} m/s, above {FASTEST_SURFACE:g} m/s"
@@ -99,22 +99,22 @@ def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None
             yield _Doubt(where, "gap-growth", problem, "m")
 
 
-def _journal_growth(bearing: Mapping[str, Any], top: _Speed | None) -> dict[str, float]:
+def _journal_growth(bearing: Mapping[str, Any], top: _Speed | None) -> tuple[float, ...]:
     """Change of the clearance of a bearing with one film by centrifugal growth."""
     diameter = _size(bearing, "diameter", "m")
     if top is None or not diameter:
-        return {"": 0.0}
-    return {"": -0.5 * diameter * shaft_rotation_strain(STEEL, top.omega, 0.5 * diameter)}
+        return (0.0,)
+    return (-0.5 * diameter * shaft_rotation_strain(STEEL, top.omega, 0.5 * diameter),)
 
 
-def _ring_growths(bearing: Mapping[str, Any], top: _Speed | None) -> dict[str, float]:
-    """Changes of the clearances inside and outside of a floating ring by centrifugal growth."""
-    inner, outer = (_size(table(bearing, side), "diameter", "m") for side in ("inner", "outer"))
+def _ring_growths(inside: Mapping[str, Any], outside: Mapping[str, Any], top: _Speed | None) -> tuple[float, ...]:
+    """Changes of the clearances of the films inside and outside of a floating ring by centrifugal growth."""
+    inner, outer = (_size(film, "diameter", "m") for film in (inside, outside))
     if top is None or not inner or not outer:
-        return {"inner": 0.0, "outer": 0.0}
+        return 0.0, 0.0
     shaft = shaft_rotation_strain(STEEL, top.omega, 0.5 * inner)
-    inside, outside = ring_rotation_strains(BRASS, RING_SPEED * top.omega, 0.5 * inner, 0.5 * outer)
-    return {"inner": 0.5 * inner * (inside - shaft), "outer": -0.5 * outer * outside}
+    bore, rim = ring_rotation_strains(BRASS, RING_SPEED * top.omega, 0.5 * inner, 0.5 * outer)
+    return 0.5 * inner * (bore - shaft), -0.5 * outer * rim
 
 
 def _top_speed(data: Mapping[str, Any]) -> _Speed | None:

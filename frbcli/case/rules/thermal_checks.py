@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rules.film_checks import law_breaches
 from frbcli.case.surroundings.over_time import is_over_time, values_of
 from frbcli.case.thermal import HOTTEST_FILM
@@ -32,10 +32,8 @@ def thermal_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             problem = f"is {display(value, 'K')}, not below thermal.hottest_film, {display(hottest, 'K')}."
             yield Breach(path, problem, "Lower it. Temperatures in degrees Celsius have the unit degC.")
     for path, bearing in tables(data, "bearing"):
-        films = [(path, bearing)]
-        if bearing.get("kind") == "floating-ring":
-            films = [((*path, side), table(bearing, side)) for side in ("inner", "outer")]
-        for film_path, film in films:
+        films = [((*path, *at), film) for end in ring_films(bearing) for at, film in end]
+        for film_path, film in films or [(path, bearing)]:
             yield from _film(film_path, film)
 
 

@@ -21,7 +21,7 @@ SYMMETRIC_PLACE = "bearing"  # of a symmetric rotor, whose bearings move alike
 
 def housing_places(case: Case) -> tuple[str, ...]:
     """The places at which a housing carries bearings."""
-    return (SYMMETRIC_PLACE,) if case.rotor.symmetric else tuple(bearing.name for bearing in case.given_bearings)
+    return (SYMMETRIC_PLACE,) if case.rotor.symmetric else tuple(bearing.name for bearing in case.placed_bearings)
 
 
 def housing_breaches(case: Case) -> Iterator[Breach]:

@@ -21,9 +21,9 @@ def places(case: Case) -> tuple[str, ...]:
     if rotor.symmetric:
         found += ["journal"] if rotor.kind == "rigid" else ["journal", "disk"]
     else:
-        found += [f"journal_{bearing.name}" for bearing in case.given_bearings]
+        found += [f"journal_{bearing.name}" for bearing in case.placed_bearings]
         found += [f"disk_{disk.name or number}" for number, disk in enumerate(case.disks, start=1)]
-    for bearing in case.given_bearings:
+    for bearing in case.placed_bearings:
         if bearing.kind == "floating-ring":
             found.append(f"ring_{bearing.name}".rstrip("_"))
         if bearing.damper is not None:
@@ -32,7 +32,7 @@ def places(case: Case) -> tuple[str, ...]:
             found.append(f"support_{bearing.name}".rstrip("_"))
     if case.housing is not None:
         found += () if case.housing.modes and not rotor.symmetric else ("housing",)
-        found += () if rotor.symmetric else [f"housing_{bearing.name}" for bearing in case.given_bearings]
+        found += () if rotor.symmetric else [f"housing_{bearing.name}" for bearing in case.placed_bearings]
     return tuple(found)
 
 

@@ -142,7 +142,7 @@ def make_machine(system: System, top: float) -> Machine:
     at, still, speed = np.array([[NEAR, 0.0]]), np.zeros((1, 2)), np.array([top])
     damping = [-0.5 * np.sum(film_samples(film, at, still, speed)[0, [BY_V, BY_V + 3]]) for film in films]
     machine = Machine(
-        rotor=without_spins(system.rotor, system.ring_count),
+        rotor=without_spins(system.rotor, np.zeros(system.ring_count)),  # whose speed turns no ring that tilts
         films=films,
         names=system.names,
         clearances=np.array(system.clearances),

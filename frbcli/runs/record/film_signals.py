@@ -141,6 +141,8 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
         for i, (stiffness, damping, mass) in enumerate(map(rotor.over_speed.at, omega.tolist())):
             left[i] += mass @ a[i] + damping @ samples.v[i] + stiffness @ samples.q[i]
     left = left + omega[:, None] * (samples.v @ rotor.gyroscopic.T)
+    if rotor.cones:
+        left = left + np.array([rotor.precession(v) @ v for v in samples.v])
     left = left - along[:, None] * rotor.unbalance_cos
     left = left - across[:, None] * rotor.unbalance_sin
     if rotor.loads:

@@ -40,10 +40,12 @@ def named(quantity: str, film: str) -> str:
     return f"{quantity}_{film}" if film else quantity
 
 
-def ring_names(system: System) -> list[str]:
-    """The signals of the rings' speeds."""
-    outer = [name for name, (inside, _) in zip(system.names, system.bodies, strict=True) if inside >= 0]
-    return [f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name in outer]
+def ring_names(system: System) -> dict[str, int]:
+    """The signals of the rings' speeds with the degree of freedom of each, which both ends of a cartridge share."""
+    around = zip(system.names, system.bodies[:, 0].tolist(), strict=True)
+    outer = [(name, ring) for name, ring in around if ring >= 0]
+    names = {name: f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name, _ in outer}
+    return {names[name]: system.spins[ring] for name, ring in outer}
 
 
 def signal_names(kind: str, film: str) -> list[str]:

@@ -93,7 +93,7 @@ def _by_machine(case: Case) -> Iterator[_Limited]:
     yield _Limited(freedoms / 30.0, "rotor", f"{freedoms} degrees of freedom", "Keep fewer modes, or a lower cut-off.")
     yield _Limited(len(case.shaft) / 1e3, "shaft", f"{len(case.shaft)} sections", "Join neighbours that are alike.")
     yield _Limited(len(case.disks) / 100.0, "disk", f"{len(case.disks)} disks", "Join neighbours.")
-    yield _Limited(len(case.given_bearings) / 4.0, "bearing", f"{len(case.given_bearings)} bearings", "Take fewer.")
+    yield _Limited(len(case.placed_bearings) / 4.0, "bearing", f"{len(case.placed_bearings)} bearings", "Take fewer.")
     yield _Limited(steps / 10.0, "bearing.clearance_steps", f"{steps} steps", "Take fewer: each has its own films.")
 
 

@@ -81,7 +81,7 @@ def signal_count(case: Case) -> int:
     """Signals that a run records; with heat at most."""
     places, floating = film_places(case), rings(case)
     disks = shaft_of(case).disk_count
-    found = 2 + 2 * (len(case.given_bearings) + len(floating) + disks) + len(turning_rings(case))
+    found = 2 + 2 * (len(case.placed_bearings) + len(floating) + disks) + len(turning_rings(case))
     found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
     found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
     found += 3 * len(places) if case.contact.rough else 0

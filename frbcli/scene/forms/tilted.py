@@ -44,10 +44,10 @@ def _machine_faults(case: Case) -> Iterator[Fault]:
     elif not shaft_of(case).tilts:
         problem = "moves in its plane: its journals do not tilt."
         yield Fault("rotor.kind", case.rotor.kind, None, problem, f'Take kind = "turbocharger". {WITHOUT}')
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing):
-            problem = "has a ring, whose own tilt is not modelled."
-            yield Fault(f"{bearing_key(case, index)}.kind", bearing.kind, None, problem, WITHOUT)
+    for key, given in zip(case.given_keys, case.given_bearings, strict=True):
+        if isinstance(given.parts[0], FloatingRingBearing):
+            problem = "has a ring, whose tilt its films do not follow."
+            yield Fault(f"{key}.kind", given.kind, None, problem, WITHOUT)
     for damper in DamperElement.of(case):
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
 

@@ -8,7 +8,15 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
-from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain, rings, turns_with_oil
+from frbcli.scene.films import (
+    HOUSING,
+    FilmPlace,
+    film_places,
+    is_plain,
+    rings,
+    turning_cartridges,
+    turns_with_oil,
+)
 from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.machine.elements import harmonics_of, speed_dependent
 from frbcli.scene.planning.film_choice import all_clipped, form_of
@@ -25,6 +33,13 @@ def coefficient_faults(case: Case) -> Iterator[Fault]:
     own."""
     if case.heat is not None or (case.films and by_shooting(case)):
         yield from speed_dependent(case, CONSTANT)
+
+
+def cartridge_faults(case: Case) -> Iterator[Fault]:
+    """The gyroscopic moments of a cartridge follow the speed of its ring, which is no constant of these motions."""
+    for key in turning_cartridges(case):
+        problem = "turns a cartridge, whose gyroscopic moments change with the speed of its ring along a limit cycle."
+        yield Fault(f"{key}.ring.spin", "free", None, problem, "Take a run-up, which follows them.")
 
 
 def cycle_heat_faults(case: Case) -> Iterator[Fault]:

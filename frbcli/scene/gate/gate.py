@@ -100,6 +100,7 @@ RULES = (
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
     Rule(cycles.coefficient_faults, (SPEED_CYCLES,)),
+    Rule(cycles.cartridge_faults, EVERY_CYCLE),
     Rule(lambda case: speed_dependent(case, cycles.CONSTANT), (CYCLES,)),
     Rule(cycles.cycle_heat_faults, (SPEED_CYCLES,)),
     Rule(partial(cycles.other_cycle_heat_faults, but=cycles.TWO_FREQUENCIES), (WHIRLS,)),
@@ -131,7 +132,7 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
         asked = RUN if analysis == STILL and not rule.moving else analysis
         if asked in rule.analyses and not (rule.last and found):
             found += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
-    return found
+    return list(dict.fromkeys(found))  # both ends of a cartridge have the same
 
 
 def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:

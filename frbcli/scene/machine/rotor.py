@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterator
 from dataclasses import replace
 
-from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Parts
 from frbcli.elements.thrust import COLLAR
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import PLANE, Body, point_mass, spin
+from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass
 from frbcli.rotor.held import preset
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.scene.films import turning_rings
@@ -25,7 +27,8 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
     Raises InputError if its shaft has no modes.
     """
     bodies, films, elements, centred = _bodies_and_links(case, sees)
-    return preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
+    rotor = preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
+    return replace(rotor, cones=tuple(_cones(case, rotor)))
 
 
 def collar_tilt(case: Case) -> Array | None:
@@ -39,16 +42,43 @@ def _bodies_and_links(case: Case, sees: tuple[str, ...]) -> tuple[list[Body], li
     """Bodies of the machine, links of its films, parts of its elements, and which of the films are centred dampers."""
     site, count = site_of(case), float(shaft_of(case).equal_bearings)
     bodies, films = [shaft_of(case).body()], []
+    for given in case.given_bearings:
+        bodies += _rings(given, count, case.rotor.gravity)
     for bearing in case.bearings:
         journal, shell = site.journal(bearing.name), site.shell(bearing.name)
-        if isinstance(bearing, FloatingRingBearing):  # the rings of equal bearings move as one, with the mass of all
-            ring = f"ring_{bearing.name}".rstrip("_")
-            bodies.append(point_mass(ring, count * bearing.ring_mass, case.rotor.gravity))
+        if isinstance(bearing, FloatingRingBearing):
+            ring = _ring_node(bearing)
             films += [Link(journal, ring, count, sees), Link(ring, shell, count, sees)]
         else:
             films.append(Link(journal, shell, count, sees))
     dampers = list(DamperElement.of(case))
     centred = [len(films) + number for number, damper in enumerate(dampers) if damper.given.centred]
     films += [replace(damper.link(site), sees=sees) for damper in dampers]
-    elements, spins = element_parts(case), [spin(bearing.ring_inertia) for bearing in turning_rings(case)]
+    elements = element_parts(case)
+    spins = [spin(sum(bearing.ring_inertia for bearing in around)) for around in turning_rings(case)]
     return [*bodies, *elements.bodies, *spins], films, elements, centred
+
+
+def _ring_node(bearing: FloatingRingBearing) -> str:
+    """The node of a ring: of a cartridge, that of one end."""
+    return f"ring_{bearing.name}".rstrip("_")
+
+
+def _rings(bearing: GivenBearing, count: float, gravity: float) -> Iterator[Body]:
+    """The bodies of the ring of a bearing: the rings of equal bearings move as one, with the mass of all."""
+    if isinstance(bearing, CartridgeBearing):
+        (mass, _, tilt_inertia), (left, right), (start, end) = bearing.body, bearing.parts, bearing.positions
+        yield tilting_mass((_ring_node(left), _ring_node(right)), mass, tilt_inertia, end - start, gravity)
+    if isinstance(bearing, FloatingRingBearing):
+        yield point_mass(_ring_node(bearing), count * bearing.ring_mass, gravity)
+
+
+def _cones(case: Case, rotor: LinearRotor) -> Iterator[tuple[int, Array]]:
+    """See LinearRotor: the slopes of the rings that turn and have two places."""
+    nodes, around = dict(rotor.points), turning_rings(case)
+    for number, ends in enumerate(around, start=rotor.size - len(around)):
+        if len(ends) > 1:
+            left, right = ends
+            inertia, length = left.ring_inertia + right.ring_inertia, (right.position or 0.0) - (left.position or 0.0)
+            slope = (nodes[_ring_node(right)] - nodes[_ring_node(left)]) / length
+            yield number, math.sqrt(inertia) * slope

@@ -9,7 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
@@ -214,6 +214,9 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         decide(*decided)
     if rings(case):
         decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
+    for given in case.given_bearings:
+        if isinstance(given, CartridgeBearing):
+            decide(f"{given.name} cartridge".strip(), *_body(given))
     for bearing in rings(case):
         if computed := _computed(bearing):
             decide(f"{bearing.name} ring".strip(), *computed)
@@ -231,6 +234,15 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     if case.heat is not None:
         gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"
         decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
+
+
+def _body(bearing: CartridgeBearing) -> tuple[str, str]:
+    """The body of a cartridge, and how it moves."""
+    (mass, _, tilt_inertia), (start, end) = bearing.body, bearing.positions
+    value = f"{1e3 * mass:.4g} g, tilt {1e6 * tilt_inertia:.4g} kg*mm^2"
+    spins = "turns" if bearing.ring.spin == "free" else "is kept from turning by a pin"
+    why = f"one rigid body from {display(start, 'm')} to {display(end, 'm')}, which moves, tilts and {spins}"
+    return value, f"{why}; the gap of each film is even along its width"
 
 
 def _computed(bearing: FloatingRingBearing) -> tuple[str, str] | None:

@@ -59,7 +59,7 @@ class TurbochargerShaft(Shaft):
     @property
     def bearings_modelled(self) -> tuple[str, str]:  # type: ignore[override]
         """See Shaft."""
-        count = len(self.case.given_bearings)
+        count = len(self.case.placed_bearings)
         return f"{count} of {count}", "the rotor is not symmetric"
 
     def body(self) -> Body:
@@ -165,7 +165,7 @@ class TurbochargerShaft(Shaft):
     def beam_freedoms(self) -> int:
         """See Shaft."""
         case = self.case
-        return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.given_bearings))
+        return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.placed_bearings))
 
     @property
     def natural_frequencies(self) -> tuple[tuple[float, ...], str]:
@@ -182,6 +182,6 @@ class TurbochargerShaft(Shaft):
         free = self.free()
         maps = np.zeros((len(free.modes.positions), 2, machine.size))
         maps[:, 0, : free.kept] = maps[:, 1, free.kept : 2 * free.kept] = free.modes.shapes[:, : free.kept]
-        marks = [(bearing.name, bearing.position or 0.0) for bearing in self.case.given_bearings]
+        marks = [(bearing.name, bearing.position or 0.0) for bearing in self.case.placed_bearings]
         marks += [(disk.name, disk.position) for disk in self.case.disks]
         return Stations(free.modes.positions, maps, True, tuple(marks))

@@ -66,7 +66,7 @@ def varying_loads(loads: Sequence[Load]) -> VaryingLoads | tuple[()]:
 def prepare_loads(loads: Any, rotor: RotorData, g: float, speed: float) -> None:
     """The inverse of `prepare` for this g and speed with the loads."""
     if isinstance(loads, VaryingLoads):
-        _prepare(loads, rotor, g, speed)
+        solve_columns(loads.columns, loads.response, loads.elimination, rotor, g, speed)
 
 
 def add_loads(loads: Any, t: float, angle: float, g: float, selection: Array, at: Array, journal: Array) -> None:
@@ -83,7 +83,9 @@ def _have_loads(loads: Any) -> bool:
 def _prepare_loads(loads, rotor, g, speed):  # type: ignore[no-untyped-def]
     if not _have_loads(loads):
         return lambda loads, rotor, g, speed: None
-    return lambda loads, rotor, g, speed: _prepare(loads, rotor, g, speed)
+    return lambda loads, rotor, g, speed: solve_columns(
+        loads.columns, loads.response, loads.elimination, rotor, g, speed
+    )
 
 
 @overload(add_loads, inline="always")
@@ -94,22 +96,25 @@ def _add_loads(loads, t, angle, g, selection, at, journal):  # type: ignore[no-u
 
 
 @compiled()
-def _prepare(loads: VaryingLoads, rotor: RotorData, g: float, speed: float) -> None:
-    n, count = rotor.mass.shape[0], loads.columns.shape[0]
-    dynamic, right = loads.elimination[0], loads.elimination[1]  # the loads lie behind the columns of add_table
+def solve_columns(
+    columns: Array, response: Array, elimination: Array, rotor: RotorData, g: float, speed: float
+) -> None:
+    """response <- the inverse E of inverse.py for this g and speed with columns (c, n) of forces."""
+    n, count = rotor.mass.shape[0], columns.shape[0]
+    dynamic, right = elimination[0], elimination[1]  # the forces lie behind the columns of add_table
     for i in range(n):
         for j in range(n):
             dynamic[i, j] = rotor.mass[i, j] + g * (
                 rotor.damping[i, j] + speed * rotor.gyroscopic[i, j] + g * rotor.stiffness[i, j]
             )
         for k in range(count):
-            right[i, 2 * n + k] = loads.columns[k, i]
+            right[i, 2 * n + k] = columns[k, i]
     if rotor.table_speeds.shape[0] > 0:
         add_table(rotor, g, speed, dynamic, right)
     solve_dense(dynamic, right)
     for i in range(n):
         for k in range(count):
-            loads.response[k, i] = right[i, 2 * n + k]
+            response[k, i] = right[i, 2 * n + k]
 
 
 @compiled()
