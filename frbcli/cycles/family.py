@@ -12,7 +12,7 @@ from frbcli.cycles.method.changing import kept
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Equilibrium, between, settled
 from frbcli.cycles.parts.machine import Machine, make_machine
-from frbcli.cycles.parts.other_meshes import cycle_plans
+from frbcli.cycles.parts.other_meshes import other_films
 from frbcli.errors import Fault, InputError
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -24,7 +24,7 @@ NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*
 
 class Family:
     """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`;
-    settings: of other keys, KEY=VALUE; mesh: number of another mesh of their films, see cycle_plans."""
+    settings: of other keys, KEY=VALUE; mesh: number of another mesh of their films, see other_films."""
 
     def __init__(
         self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = (),
@@ -56,7 +56,7 @@ class Family:
         """The system at a share of the largest value. Raises InputError if the case cannot have it."""
         case = self.case_at(share)
         plan = make_plan(case)
-        return make_system(case, plan if self.mesh is None else cycle_plans(plan)[self.mesh][0])
+        return make_system(case, plan) if self.mesh is None else other_films(plan)[self.mesh].system(case)
 
     def _machine(self, value: float) -> Machine:
         """The machine at a share. Raises Unreachable where the number is not above zero."""

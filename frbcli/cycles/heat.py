@@ -32,13 +32,13 @@ from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
-from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
+from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.model import HeatModel, rates, viscosities_at
 
@@ -264,8 +264,8 @@ def warm_walk(
     resting = resting_along(course, at_rest(machine, top.resting), slowest, fastest)
     follower = WarmFollower(motions, slowest, fastest, asked)
     meshes = []
-    for other, share in cycle_plans(plan):
-        films = make_system(case, other)
+    for other in other_films(plan):
+        films = other.system(case)
         its = replace(motions, base=make_machine(films, fastest), ends=films.films.end_flows)
-        meshes.append(OtherMesh(WarmSpeed(its), WarmFollower(its, slowest, fastest), share))
+        meshes.append(OtherMesh(WarmSpeed(its), WarmFollower(its, slowest, fastest), other.share))
     return over_speed(course, resting, follower, tuple(meshes), why_no_error(plan))

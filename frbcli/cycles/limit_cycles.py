@@ -18,7 +18,7 @@ from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.over_speed import changing_walk
 from frbcli.cycles.parts.machine import Machine, make_machine
-from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
+from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import synchronous_response
@@ -114,7 +114,7 @@ def _walk(
     if system.rotor.over_speed is not None:
         return changing_walk(case, plan, system, slowest, fastest, asked)
     resting = resting_curve(system, machine, slowest, fastest)
-    others = [(make_machine(make_system(case, other), fastest), share) for other, share in cycle_plans(plan)]
+    others = [(make_machine(other.system(case), fastest), other.share) for other in other_films(plan)]
     meshes = tuple(OtherMesh(OverSpeed(its), Follower(its, slowest, fastest), share) for its, share in others)
     follower = Follower(machine, slowest, fastest, asked)
     return over_speed(OverSpeed(machine), resting, follower, meshes, why_no_error(plan))

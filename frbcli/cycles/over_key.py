@@ -21,7 +21,7 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
 from frbcli.cycles.method.follower import MOST_UNKNOWNS
 from frbcli.cycles.method.mesh_error import OtherMesh
-from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
+from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
@@ -86,7 +86,7 @@ def limit_cycles_over(
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed over {key}.") from None
     plan, lowest = make_plan(family.case_at(1.0)), first / last
-    others = [(family.on_mesh(number), share) for number, (_, share) in enumerate(cycle_plans(plan))]
+    others = [(family.on_mesh(number), other.share) for number, other in enumerate(other_films(plan))]
     meshes = tuple(OtherMesh(other, KeyFollower(other, lowest), share) for other, share in others)
     walk = Walk(key, family, resting, last, KeyFollower(family, lowest), meshes, why_no_error(plan))
     found = with_hopf_errors(diagram(case, walk, observe, lambda: time.process_time() - begun), walk)

@@ -23,9 +23,9 @@ from frbcli.cycles.method.equilibria import (
 from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine
-from frbcli.cycles.parts.other_meshes import cycle_plans, why_no_error
+from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.equilibrium.resting import resting_position
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 
 Array = NDArray[np.float64]
@@ -72,7 +72,7 @@ def changing_walk(
     course = ChangingSpeed(system, fastest)
     near = at_rest(course.machine_at(1.0), resting_position(course.system_at(fastest), fastest))
     resting = resting_along(course, near, slowest, fastest)
-    others = [(ChangingSpeed(make_system(case, other), fastest), share) for other, share in cycle_plans(plan)]
+    others = [(ChangingSpeed(other.system(case), fastest), other.share) for other in other_films(plan)]
     meshes = tuple(OtherMesh(its, ChangingFollower(its.machine_at, slowest, fastest), share) for its, share in others)
     follower = ChangingFollower(course.machine_at, slowest, fastest, asked)
     return over_speed(course, resting, follower, meshes, why_no_error(plan))

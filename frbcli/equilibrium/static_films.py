@@ -114,7 +114,7 @@ class StaticFilms:
             return tuple(FieldFilms(*films, other.share) for films in both)
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
         pairs = zip(map(EvenFilm, own), map(EvenFilm, self._on(fewer)), strict=True)
-        return tuple(FieldFilms(*films, _share(fewer, CELLS)) for films in pairs)
+        return tuple(FieldFilms(*films, share_of_cells(fewer, CELLS)) for films in pairs)
 
     def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
         return tuple(volume_film(self.case, each, cells, self.top_Hz) for each in film_places(self.case))
@@ -139,13 +139,13 @@ def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
         return ()
     if plan.form.by_cells:
         own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
-        return tuple((replace(plan, cells=cells), _share(cells, own)) for cells in coarser)
+        return tuple((replace(plan, cells=cells), share_of_cells(cells, own)) for cells in coarser)
     meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
 
 
-def _share(cells: tuple[int, int], own: tuple[int, int]) -> float:
+def share_of_cells(cells: tuple[int, int], own: tuple[int, int]) -> float:
     """Share of a difference between results on their own cells and on fewer that is the error of the former."""
     return float(1.0 / ((own[0] / cells[0]) ** FRONTS - 1.0))
 

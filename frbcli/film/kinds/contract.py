@@ -168,6 +168,10 @@ class Films(ABC):
         what the time loop takes."""
         return self
 
+    def with_half_the_nodes(self) -> Self:
+        """The films with every other node of their tables, of films that are tabulated from solutions on cells."""
+        raise NotImplementedError
+
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
         outside of each film over its total, 0 without one that turns."""

@@ -15,6 +15,7 @@ from frbcli.film.gap import Section
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.contract import Compared, Films, couette_power
 from frbcli.film.penalty_table.film import SourceFilm
+from frbcli.film.penalty_table.table import PenaltyTableFilm, with_half_the_nodes
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
@@ -112,6 +113,11 @@ class SolutionFilms(TableFilms):
 
     solved: tuple[SourceFilm, ...]
     mesh: Mesh
+
+    def with_half_the_nodes(self) -> Self:
+        """See Films."""
+        tables = (film for film in self.data if isinstance(film, PenaltyTableFilm))
+        return replace(self, data=tuple(film._replace(table=with_half_the_nodes(film.table)) for film in tables))
 
     def compared(self) -> Compared:
         """See Films.compared."""
