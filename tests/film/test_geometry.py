@@ -437,6 +437,11 @@ def test_check_shows_gap_and_reynolds_number(capsys: pytest.CaptureFixture[str])
     assert (inner.omega, outer.omega) == pytest.approx((1.3 * ENGINE, 0.3 * ENGINE))
     assert inner.turning == pytest.approx(12.5e-3 * (0.584e-3 * (0.3 / 0.4) ** 2 - 0.095e-3), rel=0.01)
     assert outer.turning == pytest.approx(-20e-3 * 0.314e-3 * (0.3 / 0.4) ** 2, rel=0.01)
+    steel = operating_points(load_case("turbocharger-heavy", [*engine, "bearing.0.ring.material=steel"]))[1]
+    share = (7850.0 / 2.1e11) / (8860.0 / 78e9)  # of density over modulus, and little of Poisson's ratio
+    assert steel.turning == pytest.approx(share * outer.turning, rel=0.1)
+    inner, outer = operating_points(load_case("turbocharger-heavy", [*engine, "bearing.0.ring.spin=blocked"]))[:2]
+    assert (inner.omega, outer.omega, outer.turning) == pytest.approx((ENGINE, 0.0, 0.0))
     warm = ("{cold='35 um', reference_temperature='20 degC', shell_temperature='70 degC', "
             "journal_temperature='100 degC', shell_expansion='1.17e-5 1/K', "
             "journal_expansion='1.18e-5 1/K'}")  # fmt: skip

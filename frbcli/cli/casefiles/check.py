@@ -254,7 +254,7 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
     if grown:
         changes = ", ".join(f"of {film.name} by {film.turning / film.clearance:+.0%}" for film in grown)
         terminal.sentence(
-            f"Note: centrifugal growth of a steel shaft and a brass ring changes the gap {changes}. Runs "
+            f"Note: centrifugal growth of shaft and rings changes the gap {changes}. Runs "
             'include it with thermal.centrifugal_growth = "follows"; without it, add it to the clearance if needed.'
         )
 

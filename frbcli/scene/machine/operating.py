@@ -18,7 +18,7 @@ from frbcli.film.operating import (
     ring_rotation_strains,
     shaft_rotation_strain,
 )
-from frbcli.materials.solids import BRASS, STEEL
+from frbcli.materials.solids import SOLIDS, STEEL, Solid
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class FilmOperation:
     """One film at the top speed of a case, SI units.
 
     omega: omega_J + omega_S in rad/s; warming: what heat has added to the cold clearance in m; turning: what the growth
-    of a steel shaft and a brass ring that turn would add to the clearance in m, which is left out.
+    of a shaft and a ring that turn would add to the clearance in m, which is left out.
     """
 
     name: str
@@ -63,7 +63,7 @@ def operating_points(case: Case) -> tuple[FilmOperation, ...]:
     found: list[FilmOperation] = []
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
-            strain = shaft_rotation_strain(STEEL, omega, 0.5 * bearing.diameter)
+            strain = shaft_rotation_strain(_shaft(case), omega, 0.5 * bearing.diameter)
             found.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
         else:
             found.extend(_floating(case, bearing, omega))
@@ -72,14 +72,19 @@ def operating_points(case: Case) -> tuple[FilmOperation, ...]:
 
 
 def _floating(case: Case, bearing: FloatingRingBearing, omega: float) -> tuple[FilmOperation, FilmOperation]:
-    ring = RING_SPEED * omega
-    shaft = shaft_rotation_strain(STEEL, omega, 0.5 * bearing.inner.diameter)
-    inside, outside = ring_rotation_strains(BRASS, ring, 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter)
+    ring = RING_SPEED * omega if bearing.ring.spin == "free" else 0.0
+    within, without = 0.5 * bearing.inner.diameter, 0.5 * bearing.outer.diameter
+    shaft = shaft_rotation_strain(_shaft(case), omega, within)
+    inside, outside = ring_rotation_strains(bearing.ring.solid, ring, within, without)
     name = f"{bearing.name} ".lstrip()
     return (
         _operation(case, bearing.inner, f"{name}inner", omega + ring, inside - shaft),
         _operation(case, bearing.outer, f"{name}outer", ring, -outside),
     )
+
+
+def _shaft(case: Case) -> Solid:
+    return STEEL if case.thermal is None else SOLIDS[case.thermal.shaft_material]
 
 
 def _operation(case: Case, film: FilmGeometry, name: str, omega: float, strain: float) -> FilmOperation:
