@@ -75,30 +75,31 @@ def land_loads(
         _pressed_between(film, ring, cells, states, fields, push)
     else:
         _pressed(film, ring, cells, states, fields, push)
+    first = k + BY_ENDS
     for a in range(4):
         loads[a] = 0.0
         for b in range(4):
             slopes[a, b] = 0.0
-    for i in range(m):
-        for j in range(k):
-            z, slope = places[MIDDLES, j], states[PRESSURE_SLOPE, i, j]
-            x, y = ring[PUSH_X, i] * push[2, i, j], ring[PUSH_Y, i] * push[2, i, j]
-            loads[0] += x
-            loads[1] += y
-            loads[2] += z * x
-            loads[3] += z * y
+    for j in range(k):  # sums of a circumference stay in registers
+        x, y, x_0, x_1, x_2, x_3, y_0, y_1, y_2, y_3 = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        for i in range(m):
+            slope, p = states[PRESSURE_SLOPE, i, j], push[2, i, j]
+            x += ring[PUSH_X, i] * p
+            y += ring[PUSH_Y, i] * p
             by_x, by_y = slope * push[0, i, j], slope * push[1, i, j]
-            for b in range(4):
-                change = fields[i, j, k + BY_ENDS + b]
-                slopes[0, b] += by_x * change
-                slopes[1, b] += by_y * change
-                slopes[2, b] += z * by_x * change
-                slopes[3, b] += z * by_y * change
-    for a in range(2):  # what does not push at the far end does so at the near one
-        loads[a] -= loads[a + 2]
-        for b in range(4):
-            slopes[a, b] -= slopes[a + 2, b]
-    for a in range(4):
-        loads[a] *= film.force_scale
-        for b in range(4):
-            slopes[a, b] *= film.force_scale
+            u_0, u_1 = fields[i, j, first], fields[i, j, first + 1]
+            u_2, u_3 = fields[i, j, first + 2], fields[i, j, first + 3]
+            x_0, x_1, x_2, x_3 = x_0 + by_x * u_0, x_1 + by_x * u_1, x_2 + by_x * u_2, x_3 + by_x * u_3
+            y_0, y_1, y_2, y_3 = y_0 + by_y * u_0, y_1 + by_y * u_1, y_2 + by_y * u_2, y_3 + by_y * u_3
+        near, far = film.force_scale * (1.0 - places[MIDDLES, j]), film.force_scale * places[MIDDLES, j]
+        for a, share in ((0, near), (2, far)):
+            loads[a] += share * x
+            loads[a + 1] += share * y
+            slopes[a, 0] += share * x_0
+            slopes[a, 1] += share * x_1
+            slopes[a, 2] += share * x_2
+            slopes[a, 3] += share * x_3
+            slopes[a + 1, 0] += share * y_0
+            slopes[a + 1, 1] += share * y_1
+            slopes[a + 1, 2] += share * y_2
+            slopes[a + 1, 3] += share * y_3
