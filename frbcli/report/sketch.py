@@ -11,6 +11,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
+from frbcli.case.bearing import FilmBearing
+from frbcli.case.elements import Element
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.places import node_at
@@ -103,6 +105,13 @@ class _Bearing:
         return (1.0 + HOUSING) * (0.5 * self.films[-1].diameter + self.films[-1].clearance) if self.films else 0.0
 
 
+def _joined(case: Case) -> Iterator[tuple[FilmBearing | Element, FilmBearing | Element]]:
+    """Neighbours whose rings are one body, which is a tube from one to the other."""
+    for bearing in case.given_bearings:
+        parts: tuple[FilmBearing | Element, ...] = bearing.parts
+        yield from pairwise(parts)
+
+
 def _bearings(case: Case) -> Iterator[_Bearing]:
     for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
         films, symbols = bearing.films, symbols_at(case, key)
@@ -190,6 +199,9 @@ def _of_sections(case: Case) -> str:
         bore = 0.5 * section.inner_diameter
         parts.append(scale.box(z, z + section.length, bore, 0.5 * section.diameter, "shaft"))
         z += section.length
+    for one, other in _joined(case):
+        ends, films = (one.position or 0.0, other.position or 0.0), one.films
+        parts.append(scale.box(*ends, 0.5 * films[0].diameter, 0.5 * films[-1].diameter, "ring"))
     for bearing in _bearings(case):
         at = bearing.position
         radius = bearing.shell_radius or _radius_at(case, at)

@@ -169,6 +169,12 @@ def test_symbols_of_elements_are_drawn() -> None:
     assert [symbols_at(case, key) for key in case.bearing_keys] == [("spring", "damper")]
 
 
+def test_a_cartridge_is_one_tube() -> None:
+    """It has a part more than two rings, above and below the axis, which leads from one to the other."""
+    rings, tube = (rotor_sketch(frbcli.load_case(f"turbocharger-car{end}"))[0] for end in ("", "-cartridge"))
+    assert (rings.count('class="ring"'), tube.count('class="ring"')) == (4, 6)
+
+
 def test_a_shaft_is_drawn_to_scale() -> None:
     """The bar of the drawing and the sections of the shaft have one scale along and across the axis."""
     case = frbcli.load_case("turbocharger-car")
