@@ -58,7 +58,9 @@ def _list(terminal: Terminal) -> None:
 
     cases = shipped_cases()
     terminal.table("shipped cases", ("name", "title"), list(cases.items()))
-    terminal.remark("`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it; --hard lists hard cases.")
+    terminal.remark(
+        "`frb cases NAME` prints a case, `frb cases NAME -o FILE` copies it.\n`frb cases --hard` lists hard cases."
+    )
     terminal.emit({"command": "cases", "cases": [{"name": name, "title": title} for name, title in cases.items()]})
 
 

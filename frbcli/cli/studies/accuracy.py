@@ -87,7 +87,7 @@ def _report(found: AccuracyLadder, terminal: Terminal) -> None:
     for item in (item for item in found.ladder if item.planned):
         stated = item.stated.get("eccentricity")
         told = "" if stated is None else f", its stated error is {short_number(stated)}"
-        terminal.result(f"the choice of the plan costs {found.above_front():.2g} times Pareto's front{told}.")
+        terminal.sentence(f"the choice of the plan costs {found.above_front():.2g} times Pareto's front{told}.")
     ended = {item.error.until_s for item in found.ladder} - {found.until_s}
     if ended:
         terminal.result(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")

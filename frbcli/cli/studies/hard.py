@@ -23,7 +23,7 @@ def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
     found = table_of(HARD_CASE, hard_cases())
     terminal.show("hard cases", found, LIST)
-    terminal.remark("`frb cases --hard NAME` prints one as a case file, `frb cases --run-hard` runs them all.")
+    terminal.remark("`frb cases --hard NAME` prints one as a case file.\n`frb cases --run-hard` runs them all.")
     terminal.emit({"command": "cases", "hard": found.documents()})
 
 
