@@ -5,6 +5,11 @@ The difference of such a pair, times SAFETY, is the uncertainty. Two runs may ag
 uncertainty of an onset, a lock-in and an offset is at least the usual one of all of them, relative to the speed and to
 the frequency, and that of any event at least what the search does not resolve. What happens at another speed happens
 with another frequency: that of a frequency is at least the uncertainty of the speed, times their ratio.
+
+How many times the root mean square of n differences holds an error of the same spread in 9 of 10 cases is Student's t
+of n degrees of freedom: 6.3 of a single difference, 2.4 of three. SAFETY is that of a single one, for a run whose
+errors are half of the differences. Several whirls share their usual difference, and need less, by the share of the
+differences that the errors of the run are.
 """
 
 from __future__ import annotations
@@ -24,13 +29,18 @@ BETWEEN = 0.03  # of a step of the search: how far a moment that is read between
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
 SAFETY = 3.0  # times the difference of both runs in an event, which may be small by chance ...
+BESIDE = 4.0  # ... times the share of the error, in one of three whirls or more, whose usual one counts, too ...
 SAFETY_OF_MEANS = 1.5  # ... and of the largest one in a slow signal
+HALF = 0.5  # share of a difference to a run with three times the tolerance, if errors are proportional to it
+STUDENT = (6.31, 2.92, 2.35, 2.13, 2.02, 1.94, 1.89, 1.86)  # t of 1 ... 8 differences, in 9 of 10 cases
+TRIMMED = 1.5  # root mean square of normal differences over that without their largest quarter
+PEAK = 0.1  # of what a search finds a frequency by: beside weaker peaks a parabola is off in both runs alike
 FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
 GIVEN = "clearance-step"  # its time stands in the case
 SAME = ("kind", "film", "point")
 OF_WHIRLS = ("onset", "lock-in", "offset")
-SPEED, FREQUENCY, AMPLITUDE = "speed_Hz", "frequency_Hz", "amplitude"
+NUMBERS = SPEED, FREQUENCY, AMPLITUDE = "speed_Hz", "frequency_Hz", "amplitude"
 
 WINDOWS = 100  # parts of a run in which means are taken: long against a whirl, short against what warms up
 SLOW = {"ring_speed": "ring_speed_uncertainty_Hz", "temperature": "temperature_uncertainty_K",
@@ -40,7 +50,7 @@ Record = Mapping[str, Any]
 
 
 def with_uncertainties(
-    run: RunLike, events: Sequence[Record], second: Sequence[Record], amplitude: float = 0.0
+    run: RunLike, events: Sequence[Record], second: Sequence[Record], amplitude: float = 0.0, share: float = HALF
 ) -> list[dict[str, Any]]:
     """The events of a run with the uncertainties of speed and frequency in Hz and of the amplitude.
 
@@ -52,6 +62,8 @@ def with_uncertainties(
         The events of the run, and of the second run.
     amplitude : float
         Least uncertainty of an amplitude: the error of the eccentricities before a whirl, say.
+    share : float
+        Share of a difference of both runs that the error of the run is expected to be.
 
     Returns
     -------
@@ -61,8 +73,8 @@ def with_uncertainties(
     """
     others = partners(events, second)
     both = [(event, other) for event, other in zip(events, others, strict=True) if other is not None]
-    usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS], amplitude)
-    alone = _Usual(amplitude=amplitude)
+    usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS], amplitude, share)
+    alone = _Usual.of([], amplitude, share)
     return [
         {**event, **_unmatched(event, events, second)}
         if other is None
@@ -73,20 +85,21 @@ def with_uncertainties(
 
 @dataclass(frozen=True)
 class _Usual:
-    """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude."""
+    """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude; safety:
+    times the difference of one of them, by the number."""
 
+    safety: Mapping[str, float]
     speed: float = 0.0
     frequency: float = 0.0
     amplitude: float = 0.0
 
     @classmethod
-    def of(cls, both: Sequence[tuple[Record, Record]], amplitude: float) -> _Usual:
-        """Those of some pairs. amplitude: least one."""
-        speed, frequency = (
-            _usual([_apart(*pair, key) / _size(pair[0], key) for pair in both]) for key in (SPEED, FREQUENCY)
-        )
-        usual = _usual([_apart(*pair, AMPLITUDE) for pair in both])
-        return cls(SAFETY * speed, SAFETY * frequency, max(amplitude, SAFETY * usual))
+    def of(cls, both: Sequence[tuple[Record, Record]], amplitude: float, share: float) -> _Usual:
+        """Those of some pairs. amplitude: least one; share: see with_uncertainties."""
+        kept = {key: _without_outliers([_relative(*pair, key) for pair in both]) for key in NUMBERS}
+        safety = {key: min(BESIDE * share, SAFETY) if len(values) > 1 else SAFETY for key, values in kept.items()}
+        speed, frequency, usual = (_usual(values, share) for values in kept.values())
+        return cls(safety, speed, frequency, max(amplitude, usual))
 
 
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
@@ -140,8 +153,9 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
     if event["kind"] == GIVEN:
         return {"speed_uncertainty_Hz": 0.0, "certain": True}
     step_Hz, line_Hz = resolution(run, event)
-    off = {key: SAFETY * _apart(event, other, key) for key in (SPEED, FREQUENCY, AMPLITUDE)}
+    off = {key: safety * _apart(event, other, key) for key, safety in usual.safety.items()}
     read = step_Hz if off[SPEED] == 0.0 else BETWEEN * step_Hz  # equal moments: both are no finer than a step
+    line_Hz *= 1.0 if off[FREQUENCY] == 0.0 else PEAK
     speed = max(off[SPEED], usual.speed * _size(event, SPEED), read)
     at_another_speed = abs(_number(event, "frequency_ratio")) * speed
     frequency = max(off[FREQUENCY], usual.frequency * _size(event, FREQUENCY), line_Hz, at_another_speed)
@@ -198,6 +212,11 @@ def _apart(event: Record, other: Record, key: str) -> float:
     return abs(own - its)
 
 
+def _relative(event: Record, other: Record, key: str) -> float:
+    """Difference of a number, relative to it but for amplitudes, which are over the clearance."""
+    return _apart(event, other, key) / (1.0 if key == AMPLITUDE else _size(event, key))
+
+
 def _size(event: Record, key: str) -> float:
     return max(abs(_number(event, key)), 1e-300)
 
@@ -207,8 +226,15 @@ def _number(event: Record, key: str) -> float:
     return np.nan if value is None else float(value)
 
 
-def _usual(differences: Sequence[float]) -> float:
-    """Their root mean square without at least the largest quarter, which are outliers."""
+def _without_outliers(differences: Sequence[float]) -> Values:
+    """Those that are known, ascending, without at least the largest quarter."""
     known = np.sort([value for value in differences if not np.isnan(value)])
-    kept = known[: max(1, int(0.75 * len(known)))]
-    return float(np.sqrt(np.mean(kept**2))) if len(known) else 0.0
+    return known[: max(1, int(0.75 * len(known)))]
+
+
+def _usual(kept: Values, share: float) -> float:
+    """The uncertainty of an event by the differences of all of them without outliers."""
+    if not len(kept):
+        return 0.0
+    beside = SAFETY * TRIMMED * STUDENT[min(len(kept), len(STUDENT)) - 1] / STUDENT[0] * share / HALF
+    return (min(beside, SAFETY) if len(kept) > 1 else SAFETY) * float(np.sqrt(np.mean(kept**2)))

@@ -112,7 +112,8 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThresho
     kept = "keep their oil, on" if shooting.flow.held.any() else "are on"
     notes = [
         f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
-        "with the error of the cells; multipliers are known to 5e-3."
+        "with the error of the cells; multipliers are known to 5e-3. Hopf points alone have an error: that of folds "
+        "and cycles would take the same ones on other cells."
     ]
     between = f"{hertz(rests[0].omega):.4g} and {hertz(rests[-1].omega):.4g} Hz"
     if hopf:

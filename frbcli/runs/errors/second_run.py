@@ -12,10 +12,11 @@ import numpy as np
 from frbcli.analysis.events import find_events
 from frbcli.analysis.signals import Values
 from frbcli.analysis.uncertainty import NEAR, slow_uncertainties, with_uncertainties
+from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run
 from frbcli.runs.march import March, Progress
-from frbcli.scene.planning.coarser_plan import coarser_plan
+from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING
 
 SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run
@@ -69,10 +70,19 @@ def with_second_run(march: March, run: Run, observe: Observer | None = None) -> 
     if second is None:
         return run.events, run.error
     found = [asdict(event) for event in find_events(second)]
-    events = with_uncertainties(run, run.events, found, _least_amplitude(run.error))
+    events = with_uncertainties(run, run.events, found, _least_amplitude(run.error), _share(march))
     if march.plan.form.table_of_solutions:
         events = [_shared(event) for event in events]
     return events, {**run.error, **slow_uncertainties(run, second)}
+
+
+def _share(march: March) -> float:
+    """Share of the difference between both runs that the error of the finer one is expected to be: by the cells, else
+    by the tolerances."""
+    own, other = march.plan.cells, coarser_plan(march.case, march.plan).cells
+    if own is None or other is None or other[0] >= own[0]:
+        return 1.0 / (LOOSER - 1.0)
+    return share_of_cells(other, own)
 
 
 def _shared(event: Record) -> Record:
