@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -190,6 +191,18 @@ def test_a_concentric_cartridge_spins_up_as_its_torques_say(tmp_path: Path) -> N
     np.testing.assert_array_equal(run["ring_speed_right_Hz"], run["ring_speed_left_Hz"])
 
 
+def test_both_ends_are_as_warm_as_two_rings() -> None:
+    """Concentric, and alike at both ends: what the body of the cartridge joins plays no part."""
+    heat = ('oil.viscosity={grade="SAE 10W-40"}', 'thermal={model="lumped", supply_temperature="70 degC"}')
+    settings = ("rotor.gravity=0", "accuracy.mesh=[3, 16]", *heat)
+    one = frbcli.warm_machine(cartridge(*settings))
+    other = frbcli.warm_machine(two_rings(*settings, ring='{mass = "10 g", inertia = "0.35 kg*mm^2"}'))
+    assert [ring.ring for ring in one.rings] == ["left", "right"]
+    np.testing.assert_allclose(one.steady.temperatures, other.steady.temperatures, rtol=1e-9)
+    assert one.rings[0].speed_ratio == pytest.approx(one.rings[1].speed_ratio)
+    assert one.rings[0].inner > 343.15 + 1.0
+
+
 def test_small_motions_decay_and_grow_as_the_eigenvalues_say() -> None:
     """Each motion of the linearised machine that the gyroscopic moments of the ring change, beside a run from it."""
     case = cartridge("rotor.gravity=0", ring=RING.replace('inertia = "0.7', 'inertia = "4.5'))
@@ -293,4 +306,6 @@ def test_text_and_keys_of_a_cartridge() -> None:
     assert rings == ["ring_core_left", "ring_core_right"]
     films = [*case.films[:2], *other.films[2:]]
     assert case.with_films(films).films == tuple(films)
-    assert rotor_sketch(case)[0].count("ring") >= 1
+    drawn = re.findall(r'width="([0-9.]+)" height="[0-9.]+" class="(ring|shell)"', rotor_sketch(case)[0])
+    ring, shell = ({float(width) for width, kind in drawn if kind == asked} for asked in ("ring", "shell"))
+    assert max(ring) == pytest.approx(30.0 / 6.0 * max(shell), rel=1e-3)  # from the middle of one end to the other
