@@ -99,7 +99,8 @@ def settled(
     coarse, film = _films(section, law, motion, cells)
     if start is None or start.shape != film.grid.shape:  # the edges of openings cut other cells
         start = film.from_coarser(coarse, FilmSolver(coarse).steady(motion).w)
-    return settled_force(film, motion, FilmSolver(film).steady(motion, start))
+    solver = FilmSolver(film)
+    return settled_force(solver, motion, solver.steady(motion, start))
 
 
 def _films(

@@ -20,6 +20,7 @@ Films = TypeVar("Films")
 ITERATIONS = 80
 GAP_KEPT = 0.25  # a step may shrink 1 - eps of a journal to this share of it
 SHORTER = 0.5  # of the share of a step that is tried, while the force that is left over does not fall
+NEAR = 0.1  # share that a step leaves of the force left over, below which its change tells what the slopes lack
 STUCK, GAIN = 10, 1e-3  # shortened steps in a row that each take less than this share of the force that is left over
 
 
@@ -76,13 +77,15 @@ def search_rest(
     best = here = SearchEnd(start, balance(start, None), False)
     still = ends(np.zeros_like(start))
     since = stuck = 0
+    lacking = np.zeros_like(here.balance.slope)
     for _ in range(ITERATIONS):
         found = here.balance
         if found.left < search.force:
             return replace(here, settled=True)
-        if not (np.isfinite(found.slope).all() and np.linalg.matrix_rank(found.slope) == len(found.slope)):
+        slope = found.slope + lacking
+        if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
-        solved = np.asarray(np.linalg.solve(found.slope, -found.residual), dtype=np.float64)
+        solved = np.asarray(np.linalg.solve(slope, -found.residual), dtype=np.float64)
         step = solved.reshape(*here.position.shape)
         there, moved = ends(here.position), ends(step) - still
         if _leaves(there, moved, search.gap):
@@ -95,6 +98,7 @@ def search_rest(
             if arrives or new.left < found.left or SHORTER * share <= search.share:
                 break
             share *= SHORTER
+        lacking = _lacking(lacking, found, new, share * solved)
         here = SearchEnd(following, new, arrives and share == 1.0)
         since = 0 if arrives or new.left < best.balance.left else since + 1
         best = here if since == 0 else best
@@ -102,6 +106,15 @@ def search_rest(
         if here.settled or since > search.patience or stuck == STUCK:
             break
     return best
+
+
+def _lacking(before: Array, found: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
+    """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): as the
+    change of what is left over tells it along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
+    if not 0.0 < new.left < NEAR * found.left:
+        return np.zeros_like(before)
+    told = 0.5 * (found.slope + new.slope) @ step + before @ step
+    return before + np.outer(new.residual - found.residual - told, step) / (step @ step)
 
 
 def _leaves(places: Array, moved: Array, gap: float) -> bool:

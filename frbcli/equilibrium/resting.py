@@ -48,8 +48,11 @@ class RestingPosition:
         return found
 
 
-def resting_position(system: System, omega: float, start: Array | None = None) -> RestingPosition:
-    """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), then from the centre.
+def resting_position(
+    system: System, omega: float, start: Array | None = None, search: Search = SEARCH
+) -> RestingPosition:
+    """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
+    gaps there, then from the centre.
 
     Raises NotConverged if no start leads to one.
     """
@@ -67,12 +70,14 @@ def resting_position(system: System, omega: float, start: Array | None = None) -
     if system.films.coordinates > 2:
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
+    ends = partial(_ends, system, held)
     if start is not None:
-        starts.insert(0, system.rotor.journals @ start if held.journals is None else start)
+        near = system.rotor.journals @ start if held.journals is None else start
+        if np.linalg.norm(ends(near), axis=1).max() < LARGEST_ECCENTRICITY:
+            starts.insert(0, near)
     left = np.inf
     for first in starts:
-        ends = partial(_ends, system, held)
-        found = search_rest(partial(_balance, system, held, omega), first, ends, SEARCH)
+        found = search_rest(partial(_balance, system, held, omega), first, ends, search)
         within = np.linalg.norm(ends(found.position), axis=1).max() < LARGEST_ECCENTRICITY
         if found.settled and within:
             displacements = held.shape + held.following @ found.position.ravel()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ from frbcli.equilibrium.coefficients import (
     resting_film,
 )
 from frbcli.equilibrium.dynamic_films import DynamicFilm, constant_film, dynamic_film
-from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.resting import SEARCH, resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
@@ -28,6 +28,8 @@ from frbcli.scene.planning.plan import make_plan
 
 Array = NDArray[np.float64]
 
+SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
+CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
 
 @dataclass(frozen=True)
 class MachineAtRest:
@@ -35,7 +37,8 @@ class MachineAtRest:
     its position and the films as they are solved; warm: the heat of the machine, None without; others: the same on
     other meshes, each with the share of the difference that is the error, see MeshFilms; none without errors; dynamic:
     the films with the memory of their oil, of machines that were asked for with it and have such films, whose
-    coefficients in `films` are then one-sided ones without error."""
+    coefficients in `films` are then one-sided ones without error; by_omega: (n,) how its displacements change with the
+    speed in m s, as from a machine near it, 0 without one."""
 
     static: StaticFilms
     omega: float
@@ -44,11 +47,16 @@ class MachineAtRest:
     warm: WarmMachine | None = None
     others: tuple[tuple[FilmsAtRest, float], ...] = ()
     dynamic: tuple[DynamicFilm, ...] = ()
+    by_omega: Array | float = 0.0
 
     @property
     def system(self) -> System:
         """The machine."""
         return self.static.system
+
+    def foreseen(self, omega: float) -> Array:
+        """(n,) displacements at another speed in rad/s, on a straight line."""
+        return self.at_rest.position.displacements + self.by_omega * (omega - self.omega)
 
 
 class StaticMachines:
@@ -68,7 +76,7 @@ class StaticMachines:
     ) -> None:
         self._case = case
         films, self._heat = static_films(case, load, top_Hz), None
-        self._static = films.coarse if coarse else films
+        self._static, self._search = (films.coarse, SCOUT) if coarse else (films, SEARCH)
         self._memory = memory and self._static.system.remembers
         if case.heat is not None:
             plan = make_plan(case, STILL)
@@ -97,7 +105,7 @@ class StaticMachines:
         wanted, else they are NaN. Raises NotConverged."""
         self._check_axis(omega)
         warm, static = None, self._static
-        start = None if near is None else near.at_rest.position.displacements
+        start = None if near is None else near.foreseen(omega)
         if self._heat is not None:
             warm = self._heat.at(omega, None if near is None else near.warm)
             viscosities, clearances = (
@@ -106,16 +114,27 @@ class StaticMachines:
             static, start = static.warm(viscosities, clearances), warm.resting.displacements
         others: list[tuple[FilmsAtRest, float]] = []
         settled, with_error = not self._memory, with_error and not self._memory
-        if static.on_cells:  # a coarse mesh also brings the journals near to where they rest
+        brought = near is not None and not (with_error or static.system.remembers)
+        if static.on_cells and not brought:  # a coarse mesh also brings the journals near to where they rest
             start, others = _on_others(static.others if with_error else static.others[:1], omega, start, settled)
-        position = resting_position(static.system, omega, start)
+        position = resting_position(static.system, omega, start, self._search)
         found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
             _, others = _on_others(static.others, omega, position.displacements)
         counted = others if with_error else []
         films = tuple(_resting_film(static.system, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
-        return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic)
+        changes = _by_omega(near, omega, position.displacements)
+        return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic, changes)
+
+
+def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) -> Array | float:
+    """See MachineAtRest; that of the machine near it where both are too close to each other to tell."""
+    if near is None:
+        return 0.0
+    if abs(omega - near.omega) < CLOSE * omega:
+        return near.by_omega
+    return (displacements - near.at_rest.position.displacements) / (omega - near.omega)
 
 
 def _resting_film(

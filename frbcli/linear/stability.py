@@ -118,8 +118,9 @@ def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -
     points = list(_sweep(case, StaticMachines(case, coarse=True), speeds_Hz, with_error=False))
     if not all(point.rests for point in points):
         return ()
+    near: MachineAtRest | None = None
     for number in deciding(points):
-        own, _ = _point(case, machines, points[number].speed_Hz, None, None, with_error=False)
+        own, near = _point(case, machines, points[number].speed_Hz, near, None, with_error=False)
         if not own.rests or (own.growth > 0.0) != (points[number].growth > 0.0):
             return ()
         points[number] = own

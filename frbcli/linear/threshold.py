@@ -11,7 +11,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
-from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged
 from frbcli.linear.stability_point import (
     Eigenvalues,
@@ -99,24 +99,27 @@ def _crossing(
     case: Case, machines: StaticMachines, low: StabilityPoint, high: StabilityPoint
 ) -> tuple[Threshold | None, str]:
     """The threshold between two points."""
+    known: list[MachineAtRest] = []  # the last one is near to the next
+
+    def point(speed: float) -> StabilityPoint:
+        known.append(machines.at(2 * math.pi * speed, known[-1] if known else None, with_error=False))
+        return point_at_rest(known[-1], speed)
+
     try:
         with advised(case):
             close = SCATTERED_TOLERANCE if machines.system.remembers else THRESHOLD_TOLERANCE
-            found = hopf.located(lambda speed: _point(machines, speed), low, high, 0, close)
-            return threshold_at(machines, found.speed_Hz), ""
+            found = hopf.located(point, low, high, 0, close)
+            return threshold_at(machines, found.speed_Hz, near=known[-1] if known else None), ""
     except NotConverged as error:
         between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
         return None, f"A threshold lies between {between}, but was not found: {error}"
 
 
-def _point(machines: StaticMachines, speed: float) -> StabilityPoint:
-    """The machine at a speed in Hz."""
-    return point_at_rest(machines.at(2 * math.pi * speed, with_error=False), speed)
-
-
-def threshold_at(machines: StaticMachines, speed: float, frequency_Hz: float | None = None) -> Threshold:
-    """The threshold at a speed in Hz. Its error is the distance to the thresholds on the other meshes, to first order
-    in the eigenvalues there.
+def threshold_at(
+    machines: StaticMachines, speed: float, frequency_Hz: float | None = None, near: MachineAtRest | None = None
+) -> Threshold:
+    """The threshold at a speed in Hz, sought from the machine near it. Its error is the distance to the thresholds on
+    the other meshes, to first order in the eigenvalues there.
 
     frequency_Hz: of the whirl whose threshold it is on films of a run, which may be others; the distance to that on
     these films is part of the error. By default it is the threshold of the least damped whirl on these films.
@@ -127,11 +130,12 @@ def threshold_at(machines: StaticMachines, speed: float, frequency_Hz: float | N
             return critical_eigenvalue(values)
         return complex(values[np.argmin(np.abs(values - 2j * math.pi * frequency_Hz))])
 
-    machine = machines.at(2 * math.pi * speed)
+    machine = machines.at(2 * math.pi * speed, near)
     own = critical(point_at_rest(machine, speed).eigenvalues)
     frequency = own.imag / (2 * math.pi)
     ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD
-    slope = (critical(_point(machines, speed * (1.0 + ahead)).eigenvalues) - own) / (ahead * speed)
+    beyond = point_at_rest(machines.at(2 * math.pi * speed * (1.0 + ahead), machine, with_error=False), speed)
+    slope = (critical(beyond.eigenvalues) - own) / (ahead * speed)
     known = machine.static.case.films == () or bool(machine.others or machine.dynamic)
     least = (LEAST if machine.static.case.films else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]

@@ -89,3 +89,26 @@ def test_a_search_that_gains_nothing_by_shortened_steps_ends() -> None:
         return ForceBalance(np.array(residual), slope / CLEARANCES[0, 0], None)
 
     assert counted(winding, [0.0, 0.0], Search(1e-10, 0.0, 1e-8)) < 250
+
+
+def test_what_the_slopes_lack_is_told_by_the_steps() -> None:
+    """A journal on springs that stiffen, whose slope lacks what a ring's speed adds, 2 % of its size. With the true
+    slope the search takes 6 balances; else 8, since it learns on the way what the slope lacks, and 9 if it did not."""
+    springs, lacking = np.array([[1.0, 0.6], [-0.6, 1.2]]), np.array([[0.01, -0.02], [0.015, 0.02]])
+
+    def search(share: float) -> int:
+        places = []
+
+        def balance(position: np.ndarray, _: object) -> ForceBalance[None]:
+            x, whole = over_clearance(position).ravel(), springs + lacking
+            places.append(x)
+            slope = (1.0 + x @ x) * whole + 2.0 * np.outer(whole @ x, x)
+            residual = np.array([0.3, -0.2]) - (1.0 + x @ x) * whole @ x
+            return ForceBalance(residual, (share * lacking - slope) / CLEARANCES[0, 0], None)
+
+        found = search_rest(balance, np.zeros((1, 2)), over_clearance, Search(1e-12, 0.0, 1e-8))
+        assert found.settled
+        assert found.balance.left < 1e-14
+        return len(places)
+
+    assert (search(0.0), search(1.0)) == (6, 8)

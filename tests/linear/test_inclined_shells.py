@@ -10,7 +10,7 @@ import pytest
 from frbcli import bearing_sheet, load_case, rotation, sommerfeld_chart
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points
-from frbcli.scene.gate.analysis import RUN, STABILITY, WHIRL
+from frbcli.scene.gate.analysis import RUN, STABILITY
 from frbcli.scene.gate.gate import faults
 
 SPEED, CLEARANCE, WIDTH, MRAD = 50.0, 35e-6, 0.02, 0.5
@@ -87,7 +87,6 @@ def test_a_bearing_alone_has_a_chart_until_an_end_touches() -> None:
 @pytest.mark.parametrize(
     ("case", "settings", "analysis", "told"),
     [
-        ("jeffcott", [SHELL.format(1, 0)], WHIRL, "Leave it out"),
         ("jeffcott", [SHELL.format(1, 0), "film.coupling=co-simulation"], RUN, 'Write coupling = "auto".'),
         ("jeffcott", [SHELL.format(4, 0)], RUN, "Write less than 3.5 mrad."),
         ("turbocharger-car", [SHAFT], RUN, 'Write film.tilt = "follows"'),

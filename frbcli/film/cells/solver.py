@@ -78,9 +78,8 @@ class FilmSolver:
     """Solves one film for any motion. Its arrays are filled anew in every iteration."""
 
     def __init__(self, film: VolumeFilm) -> None:
-        self.film = film
-        data, (m, k) = volume_films([film]), film.grid.shape
-        self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+        self.film, self.data, (m, k) = film, volume_films([film]), film.grid.shape
+        self._parts = self.data.films[0], self.data.ring[0], self.data.width[0], self.data.cells[0]
         self._carries, self._off = False, 0.0  # whether free gas goes with the oil; what it has changed by last
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)

@@ -12,7 +12,6 @@ from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
 from frbcli.film.cells.balance.feed import ALL, taken
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, TURNOVER
-from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
@@ -44,20 +43,22 @@ def steady_force(
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
+    solver = FilmSolver(film_at(film, math.hypot(*motion.d), omega))
     try:
-        solution = steady_solution(film, motion, start)
+        solution = solver.steady(motion, start)
     except FilmUnsolved:
         if start is None:
             raise
-        solution = steady_solution(film, motion)
-    return settled_force(film_at(film, math.hypot(*motion.d), omega), motion, solution)
+        solution = solver.steady(motion)
+    return settled_force(solver, motion, solution)
 
 
-def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """Force and derivatives of a steady film that is solved, in SI units."""
+def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
+    """Force and derivatives, in SI units, of a steady film that a solver has solved."""
+    film, data = solver.film, solver.data
     if solution.filling < ALL:
-        return _force_at_flow(film, motion, solution)
-    data, c, (m, k) = volume_films([film]), film.section.clearance, film.grid.shape
+        return _force_at_flow(solver, motion, solution)
+    c, (m, k) = film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
     if solution.gas is not None:
@@ -74,10 +75,11 @@ def settled_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.w)
 
 
-def _force_at_flow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> FilmForce:
+def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
     """See settled_force, of a film that takes what its supply gives: so it does when the journal moves, and the filling
     of its openings follows. By central differences of force and flow over the filling and the motion."""
-    c, solver, nudge = film.section.clearance, FilmSolver(film), NUDGE * (1.0 - math.hypot(*motion.d))
+    film, nudge = solver.film, NUDGE * (1.0 - math.hypot(*motion.d))
+    c = film.section.clearance
     sizes = (NUDGE * max(abs(solution.filling), NUDGE), nudge, nudge, nudge * motion.rate, nudge * motion.rate)
 
     def at(number: int, change: float) -> Array:
