@@ -220,7 +220,7 @@ def test_small_motions_decay_and_grow_as_the_eigenvalues_say() -> None:
     found, times = from_mode(system, rest.displacements, rest.velocities(system), value, shape)
     expected = np.real(np.outer(np.exp(value * times), shape))
     size = np.abs(expected).max()
-    assert np.abs(found - expected).max() < 5e-3 * size
+    assert np.abs(found - expected).max() < 1e-3 * size
     nearest = others[np.argmin(np.abs(others - value))]
     assert np.abs(np.real(np.outer(np.exp(nearest * times), shape)) - expected).max() > 0.05 * size
 
