@@ -61,16 +61,17 @@ STILL_MOTION, STILL_STEP = 1e-4, 1e-6
 @dataclass(frozen=True)
 class Attempt:
     """One way to go. first: the first pseudo-time step times the motion's rate; growth: the most that it grows by in
-    one iteration; limit: of iterations."""
+    one iteration; limit: of iterations; gas: share of its change that free gas follows in one iteration."""
 
     first: float
     growth: float
     limit: int
+    gas: float = 1.0
 
 
 PLAIN = Attempt(math.inf, 1.0, 20)
-DAMPED = Attempt(1.0, 4.0, 150)
-GENTLE = Attempt(0.1, 1.5, 300)
+DAMPED = Attempt(1.0, 4.0, 150, 0.5)
+GENTLE = Attempt(0.1, 1.5, 300, 0.2)
 ATTEMPTS = (PLAIN, DAMPED, GENTLE)
 
 
@@ -211,7 +212,7 @@ class FilmSolver:
         worst, off_before = np.zeros_like(w), math.inf
         limit = attempt.limit * (GAS_LIMIT if self._carries else 1)
         for iteration in range(1, limit + 1):
-            residual = self._assemble(motion, w, storage)
+            residual = self._assemble(motion, w, storage, attempt.gas)
             with np.errstate(over="ignore"):  # on the way to a failure
                 worst = np.abs(residual) / self._terms(passed, w, storage)
             largest, left = float(np.max(worst)), float(np.abs(residual).sum())
@@ -232,12 +233,16 @@ class FilmSolver:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
         return w, limit, self._where(worst)
 
-    def _assemble(self, motion: Motion, w: Array, storage: Storage) -> Array:
-        """(m, k) what does not balance, and in the arrays of the solver Newton's equations."""
+    def _assemble(self, motion: Motion, w: Array, storage: Storage, gas: float = 1.0) -> Array:
+        """(m, k) what does not balance, and in the arrays of the solver Newton's equations. gas: see Attempt."""
         self._states[BEFORE_UPSTREAM] = self._before
         self._set_states(w)
         if self._carries:
+            carried = self._states[CARRIED_GAS:BEFORE_UPSTREAM]
+            before = carried.copy()
             self._off = self._carry(motion)
+            if gas < 1.0:
+                carried -= (1.0 - gas) * (carried - before)
             self._set_states(w)
         self._flow(motion, storage.past)
         states, kept = self._states, self._area * storage.factor
