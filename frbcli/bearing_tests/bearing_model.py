@@ -13,6 +13,7 @@ from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.rectangles.film import FilmForce, evaluate
 from frbcli.scene.machine.bearing_model_films import bearing_film
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 UNKNOWN = math.nan
@@ -49,11 +50,16 @@ def model_force(
 
 
 def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> list[FilmForce]:
-    """Forces on the journal by the whole bearing."""
+    """Forces on the journal by the whole bearing, and by its summits."""
     assert plan.rectangle is not None
-    film, c = bearing_film(case, plan.rectangle), plan.section.clearance
-    return [evaluate(film, c, c * np.array(motion.d), c * np.array(motion.v), motion.omega) for motion in motions]
+    film, c, rubbing = bearing_film(case, plan.rectangle), plan.section.clearance, rubbing_of(case)
+
+    def force(motion: Motion) -> FilmForce:
+        place, rate = c * np.array(motion.d), c * np.array(motion.v)
+        return rubbing.beside(evaluate(film, c, place, rate, motion.omega), place, rate, motion.omega)
+
+    return [force(motion) for motion in motions]
 
 
 def _loads(x: float, y: float) -> FilmLoads:
-    return FilmLoads((x, y), Torque(*[UNKNOWN] * 2), UNKNOWN, UNKNOWN, UNKNOWN, OilBalance(*[UNKNOWN] * 5))
+    return FilmLoads((x, y), Torque(UNKNOWN, UNKNOWN), UNKNOWN, UNKNOWN, UNKNOWN, OilBalance(*[UNKNOWN] * 5))

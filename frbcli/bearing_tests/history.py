@@ -27,6 +27,7 @@ from frbcli.film.cells.loads import FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion, Path, gap_on, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.lands import land_paths, lands, summed
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 from frbcli.scene.tilt import slope_of, tilt_of
 
@@ -223,9 +224,13 @@ def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: S
 
 def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, worst: _Moment) -> tuple[float, int]:
     """Error of the largest force of a film without a state: from a mesh twice as coarse or, if modal, twice as fine."""
-    force = worst.loads.force
+    force, at, rubbing = worst.loads.force, worst.on_lands[0].motion, rubbing_of(case)
+
+    def with_summits(alone: tuple[float, float]) -> tuple[float, float]:
+        return rubbing.loads(replace(worst.loads, force=alone), at, plan.turning).force
+
     if plan.modal:
-        finer = modal_force(plan, worst.on_lands[0].motion)
+        finer = with_summits(modal_force(plan, at))
         return (math.dist(finer, force) / math.hypot(*finer) if any(finer) else math.nan), 0
     coarse, iterations = np.zeros(2), 0
     try:
@@ -236,8 +241,8 @@ def _error_of_moment(case: Case, plan: KinematicPlan, path: Path, times: Array, 
             iterations += solution.iterations
     except NotConverged:
         return math.nan, 0
-    x, y = turned((float(coarse[0]), float(coarse[1])), plan.turning * worst.time)
-    return estimate(force, (x, y), plan.law.order), iterations
+    coarser = turned(with_summits((float(coarse[0]), float(coarse[1]))), plan.turning * worst.time)
+    return estimate(force, coarser, plan.law.order), iterations
 
 
 def _coarser(plan: KinematicPlan) -> KinematicPlan:
@@ -302,9 +307,10 @@ def _moment(case: Case, film: _MovingFilm, moments: tuple[Moment, ...]) -> _Mome
         for land, moment in zip(film.lands, moments, strict=True)
     ]
     found = summed(list(zip(parts, each, strict=True)))
-    found = replace(found, force=turned(found.force, angle), moment=turned(found.moment, angle))
-    if plan.modal:
+    if plan.modal:  # then nothing turns
         found = replace(found, force=modal_force(plan, motion, COARSE_MODAL_MESH))
+    found = rubbing_of(case).loads(found, motion, plan.turning)
+    found = replace(found, force=turned(found.force, angle), moment=turned(found.moment, angle))
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(film_field(first.film, moments[0].motion, moments[0].solution), PROBE - angle, place)
     gap = float(gap_on(plan.section, moments[0].motion, np.array([PROBE - angle]), np.array([place]))[0, 0])

@@ -31,7 +31,9 @@ from frbcli.film.gap import gap_height
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import published_loads
 from frbcli.film.published.solution import NodeState, PublishedSolution
+from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.scene.machine.machine_films import published_film
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Array = NDArray[np.float64]
@@ -74,12 +76,13 @@ def resting_in_published(case: Case, plan: KinematicPlan, load: float, omega: fl
     omega: in rad/s. Raises NotConverged if no start leads to one.
     """
     film, side, problem = published_film(case, plan.section, plan.cells), math.copysign(1.0, omega), ""
+    rubbing = rubbing_of(case)
     gentle = PublishedFilm(plan.section, TwoPhase(GENTLE), case.film.two_phase.diffusion, *plan.cells)
     for e in STARTS:
         start = e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)])
         try:
-            near = _rest(gentle, load, omega, start)[0] if film.law.steepness > GENTLE else start
-            return _rest(film, load, omega, near)
+            near = _rest(gentle, rubbing, load, omega, start)[0] if film.law.steepness > GENTLE else start
+            return _rest(film, rubbing, load, omega, near)
         except NotConverged as failure:
             problem = str(failure)
     raise NotConverged(
@@ -123,6 +126,7 @@ def _moment(
     """As seen in the lab."""
     motion, angle = solution.motion, plan.turning * time
     found = published_loads(film, solution, motion.omega + 2.0 * plan.turning, case.film.cavitation_factor)
+    found = rubbing_of(case).loads(found, motion, plan.turning)
     found = replace(found, force=turned(found.force, angle))
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(_field(film, solution), PROBE - angle, place)
@@ -130,7 +134,9 @@ def _moment(
     return _NodeMoment(time, turned(motion.d, angle), found, probe, gap, solution.iterations, solution)
 
 
-def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple[Array, NodeState]:
+def _rest(
+    film: PublishedFilm, rubbing: Rubbing, load: float, omega: float, start: Array
+) -> tuple[Array, NodeState]:
     """Where a film carries a load, sought from a displacement (2,) over the clearance, and the film there."""
     c = film.section.clearance
 
@@ -139,10 +145,11 @@ def _rest(film: PublishedFilm, load: float, omega: float, start: Array) -> tuple
         trusted = before is not None and before.films.unsettled < DERIVATIVES
         state = before.films.state if before is not None and trusted else None
         solution = film.steady(Motion((x, y), (0.0, 0.0), omega), state)
-        slope = solution.response.by_d / c
+        summits = rubbing.force(position[0], np.zeros(2), omega)
+        slope = solution.response.by_d / c + summits.by_displacement
         if before is not None and solution.unsettled >= DERIVATIVES:
             slope = before.slope
-        return ForceBalance(solution.response.force - [0.0, load], slope, solution)
+        return ForceBalance(solution.response.force + summits.force - [0.0, load], slope, solution)
 
     search = Search(step=0.0, force=SETTLED * load, share=1.0, patience=PATIENCE)
     found = search_rest(balance, c * start[None], lambda at: at / c, search)

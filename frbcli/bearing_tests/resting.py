@@ -19,6 +19,7 @@ from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.section_faults import no_inflow
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Array = NDArray[np.float64]
@@ -53,6 +54,8 @@ def resting_displacement(
     target = np.array([0.0, load])
     side = math.copysign(1.0, omega)  # the journal gives way in the sense of rotation
     starts = [e * np.array([side * math.sin(ATTITUDE), -math.cos(ATTITUDE)]) for e in STARTS]
+    if (standing := rubbing_of(case).standing(load)) > 0.0:
+        starts.append(np.array([0.0, -standing / plan.section.clearance]))
     if plan.on_cells and plan.rectangle is not None:
         starts = [*_in_a_table(plan.rectangle, target, omega, starts), *starts]
     problems = []

@@ -22,6 +22,7 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
+from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 UNKNOWN = math.nan
@@ -48,8 +49,8 @@ def short_force(_: Case, plan: KinematicPlan, __: tuple[int, int], motion: Motio
     return _force(section, _film(plan, section), motion)
 
 
-def short_course(plan: KinematicPlan, path: Path, times: Array) -> Course:
-    """The film along a path at the times after the first; times: (n,) s."""
+def short_course(plan: KinematicPlan, rubbing: Rubbing, path: Path, times: Array) -> Course:
+    """The film and its summits along a path at the times after the first; times: (n,) s."""
     moments = []
     for time in times[1:].tolist():
         motion, section = path(time), _rectangle(plan, _share(plan, time))
@@ -58,10 +59,12 @@ def short_course(plan: KinematicPlan, path: Path, times: Array) -> Course:
         along = PROBE_WIDTH * section.bearing_width / section.width
         probe = float(_pressures(section, film, motion, np.array([PROBE]), np.array([along]))[0, 0])
         gap = float(gap_height(section, motion.d, np.array([PROBE]))[0])
-        moments.append(MovedFilm(time, motion.d, _loads(section, film, motion, (x, y)), probe, gap, 0))
+        found = rubbing.loads(_loads(section, film, motion, (x, y)), motion)
+        moments.append(MovedFilm(time, motion.d, found, probe, gap, 0))
     worst = max(moments, key=lambda moment: moment.size)
     there = short_moment(plan, path(worst.time), _share(plan, worst.time))
-    return Course(history_of(moments), there.field, worst.loads, there.force_error, 0, 0, "")
+    error = there.force_error * rubbing.share_of_error(there.loads, worst.loads)
+    return Course(history_of(moments), there.field, worst.loads, error, 0, 0, "")
 
 
 def _share(plan: KinematicPlan, time: float) -> float:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
+
+import numpy as np
 
 from frbcli.bearing_tests.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.history import Course, film_course
@@ -15,10 +17,12 @@ from frbcli.bearing_tests.steady_film import Array, FilmMoment, film_force, film
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.published.solution import NodeState
+from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import SHORT
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Tell = Callable[[int], None]
@@ -46,17 +50,40 @@ def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: f
     return resting_displacement(case, plan, load, omega, force), None
 
 
+def _rubbing(force: ForceOf) -> ForceOf:
+    """The force of a film with that of its summits."""
+
+    def whole(
+        case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
+    ) -> FilmForce:
+        film, c = force(case, plan, cells, motion, near), plan.section.clearance
+        return rubbing_of(case).beside(film, c * np.array(motion.d), c * np.array(motion.v), motion.omega)
+
+    return whole
+
+
+def _on_summits(case: Case, motion: Motion, film: FilmMoment) -> FilmMoment:
+    """A film with its summits beside it."""
+    rubbing = rubbing_of(case)
+    whole = rubbing.loads(film.loads, motion)
+    return replace(film, loads=whole, force_error=film.force_error * rubbing.share_of_error(film.loads, whole))
+
+
 SOLVED = TestedFilm(  # on finite volumes, or the modal film of a rectangular gap
-    partial(_rest, film_force),
-    lambda case, plan, motion, _: film_moment(case, plan, motion, plan.cells),
+    partial(_rest, _rubbing(film_force)),
+    lambda case, plan, motion, _: _on_summits(case, motion, film_moment(case, plan, motion, plan.cells)),
     film_course,
 )
 FILMS: dict[FilmForm, TestedFilm] = {
-    PUBLISHED: TestedFilm(resting_in_published, published_moment, published_course),
+    PUBLISHED: TestedFilm(
+        resting_in_published,
+        lambda case, plan, motion, start: _on_summits(case, motion, published_moment(case, plan, motion, start)),
+        published_course,
+    ),
     SHORT: TestedFilm(
-        partial(_rest, short_force),
-        lambda _, plan, motion, __: short_moment(plan, motion),
-        lambda _, plan, path, times, __: short_course(plan, path, times),
+        partial(_rest, _rubbing(short_force)),
+        lambda case, plan, motion, _: _on_summits(case, motion, short_moment(plan, motion)),
+        lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
     ),
     GIVEN: TestedFilm(
         partial(_rest, model_force),

@@ -39,18 +39,27 @@ PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
+NO_STIFFNESS = without_memory(np.zeros((2, 2)), np.zeros((2, 2)))
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 
 
 @dataclass(frozen=True)
 class DynamicFilm:
     """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
-    exact: the film that this is a projection of, None of a film without memory."""
+    exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
+    the oil, but for `exact`."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
     one: DynamicStiffness
     exact: LinearFilm | None = None
+    summits: DynamicStiffness = NO_STIFFNESS
+
+    def on(self, summits: FilmForce) -> DynamicFilm:
+        """The film with the summits of rough surfaces beside it, which have no memory."""
+        more = without_memory(-summits.by_displacement, -summits.by_velocity)
+        own, fine, one = (weighted([(each, 1.0), (more, 1.0)]) for each in (self.own, self.fine, self.one))
+        return DynamicFilm(own, fine, one, self.exact, more)
 
 
 def dynamic_film(film: VolumeFilm, place: Array, total: float, omega: float) -> DynamicFilm:
@@ -178,5 +187,5 @@ def _iterated(
 def _trusted(film: DynamicFilm, s: complex) -> bool:
     if film.exact is None:
         return True
-    exact = stiffness_at(film.exact, s)
+    exact = stiffness_at(film.exact, s) + film.summits.at(s)[0]
     return bool(np.abs(film.one.at(s)[0] - exact).max() < TRUSTED * np.abs(exact).max())

@@ -66,7 +66,7 @@ def resting_position(
     starts = [np.zeros_like(loads), OUTER_START * clearances * along]
     if system.asperities is not None:
         carried = size[:, 0] / system.rotor.multiplicity
-        starts.append(along * [[system.standing(i, load)] for i, load in enumerate(carried.tolist())])
+        starts.append(along * [[system.rubbing(i).standing(load)] for i, load in enumerate(carried.tolist())])
     if system.films.coordinates > 2:
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)

@@ -152,11 +152,15 @@ def _resting_film(
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
     """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
-    films, places, totals = system.films.with_fields, found.position.journals, found.totals.tolist()
-    return tuple(
-        dynamic_film(films[i], places[i], totals[i], omega) if keeps else constant_film(found.forces[i])
-        for i, keeps in enumerate(system.remembering)
-    )
+    places, totals = found.position.journals, found.totals.tolist()
+
+    def film(i: int, keeps: bool) -> DynamicFilm:
+        if not keeps:
+            return constant_film(found.forces[i])
+        own = dynamic_film(system.films.with_fields[i], places[i], totals[i], omega)
+        return own if system.asperities is None else own.on(system.rubbing(i).force(places[i], np.zeros(2), totals[i]))
+
+    return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
 
 
 def _on_others(

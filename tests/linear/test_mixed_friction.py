@@ -9,12 +9,15 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.equilibrium.dynamic_films import dynamic_film
 from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.film_state import FilmState, MixedFriction
-from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.linear.stability import stability
+from frbcli.scene.gate.analysis import BEARING, HEAT, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -156,12 +159,46 @@ def test_the_plan_tells_what_rough_surfaces_do() -> None:
     assert not any(decision.choice == "contact" for decision in make_plan(load_case("rigid")).decisions)
 
 
+@pytest.mark.parametrize("analysis", [HEAT, STABILITY, SPEED_CYCLES])
+def test_rings_and_heat_without_runs_do_not_know_of_friction(analysis: str) -> None:
+    heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
+    ring = load_case("floating-ring", [*ROUGH, "film.cavitation=half-sommerfeld"])
+    for case, problem in ((rigid(*heat), "makes heat by friction"), (ring, "drags a ring along")):
+        with pytest.raises(InputError, match=problem):
+            require(case, analysis)
+
+
 def test_rough_shells_are_in_line() -> None:
     with pytest.raises(InputError, match="same along the axis"):
         require(rigid('bearing.misalignment=["0.1 mrad", "0 mrad"]'), BEARING)
 
 
-@pytest.mark.parametrize("analysis", [STABILITY, SPEED_CYCLES])
-def test_motions_near_rest_do_not_know_of_summits(analysis: str) -> None:
-    with pytest.raises(InputError, match="asperities"):
-        require(rigid(), analysis)
+def test_stability_is_that_of_the_machine_on_the_stiffness_of_the_sheet() -> None:
+    """M s^2 + (D + Omega G) s + K of a rigid rotor on two bearings: det = 0 at each eigenvalue, on film and summits."""
+    (point,), (state,) = stability(rigid(), [0.2]).points, bearing_sheet(rigid(), [0.2]).points
+    (film,) = point.films
+    assert mixed(state).share > 0.1
+    np.testing.assert_allclose(film.displacement, state.displacement, rtol=1e-9)
+    np.testing.assert_allclose(film.stiffness, state.stiffness, rtol=1e-9)
+    system = make_system(rigid(), make_plan(rigid()))
+    summits = system.rubbing(0).force(system.clearances[0] * film.displacement, np.zeros(2), 2.0 * math.pi * 0.2)
+    assert -summits.by_displacement[1, 1] > 0.5 * film.stiffness[1, 1]
+    for s in point.eigenvalues:
+        matrix = 0.5 * 6.1 * s**2 * np.eye(2) + s * film.damping + film.stiffness
+        size = np.abs(0.5 * 6.1 * s**2) + np.abs(s * film.damping).max() + np.abs(film.stiffness).max()
+        assert np.linalg.svd(matrix / size)[1][-1] < 1e-6
+
+
+def test_oil_and_summits_answer_beside_each_other() -> None:
+    supply = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressure="2 bar"}'
+    case = rigid("film.cavitation=elrod", supply)
+    machine = StaticMachines(case, memory=True).at(2.0 * math.pi * 0.3)
+    (film,), (place,), system = machine.dynamic, machine.at_rest.position.journals, machine.system
+    assert system.asperities is not None
+    summits = system.rubbing(0).force(place, np.zeros(2), 2.0 * math.pi * 0.3)
+    assert -summits.by_displacement[1, 1] > 1e6
+    alone = dynamic_film(system.films.with_fields[0], place, 2.0 * math.pi * 0.3, 2.0 * math.pi * 0.3)
+    for s in (0.5j, -0.1 + 3.0j):
+        more = -summits.by_displacement - s * summits.by_velocity
+        for own, other in ((film.own, alone.own), (film.fine, alone.fine), (film.one, alone.one)):
+            np.testing.assert_allclose(own.at(s)[0], other.at(s)[0] + more, atol=1e-9 * np.abs(more).max())

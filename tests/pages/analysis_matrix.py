@@ -97,6 +97,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "clearance steps": ("jeffcott", (STEP,)),
     "elastic contact": ("jeffcott", ("contact={policy='elastic', stiffness='1e8 N/m'}",)),
     "rough surfaces": ("jeffcott", (ROUGH,)),
+    "rough surfaces around a floating ring": ("floating-ring", (ROUGH, "film.cavitation=half-sommerfeld")),
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),

@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
+from scipy.linalg import expm
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.roughness.asperities import touch
 from frbcli.film.roughness.summits import LAST
 from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.runs.march import Progress
@@ -95,6 +97,25 @@ def test_a_slow_rotor_stays_where_the_sheet_has_it(tmp_path: Path) -> None:
     assert run["asperity_share"][-1] == pytest.approx(state.mixed.share, rel=0.05)  # of sizes, not along the load
     assert run["contact_power_W"][-1] == pytest.approx(state.mixed.power, rel=1e-5)
     assert run["power_W"][-1] == pytest.approx(state.power, rel=5e-3)  # the sheet solves its film on cells
+
+
+def test_a_disturbance_goes_on_as_the_linearised_machine_has_it(tmp_path: Path) -> None:
+    """Next to rest, on film and summits: x(t) = exp(A t) x(0) with stiffness and damping of `stability`."""
+    (point,) = stability(rigid(), [0.2]).points
+    (film,), mass = point.films, 0.5 * 6.1
+    nothing, one = np.zeros((2, 2)), np.eye(2)
+    matrix = np.block([[nothing, one], [-film.stiffness / mass, -film.damping / mass]])
+    moved = np.array([2e-5, -1e-5])
+    x, y = (film.displacement + moved).tolist()
+    case = load_case("rigid", [
+        *ROUGH, "rotor.unbalance=0 g*mm", f"start.displacement=[{x!r}, {y!r}]", "output.step=1e-3 s",
+        'speed={points=[["0 s", "0.2 Hz"], ["0.2 s", "0.2 Hz"]]}', "accuracy.tolerance=1e-10",
+    ])  # fmt: skip
+    run = runup(case, tmp_path / "run.h5")
+    found = np.stack([run["journal_x_m"], run["journal_y_m"]], axis=1) / 35e-6 - film.displacement
+    expected = np.array([(expm(matrix * t) @ [*moved, 0.0, 0.0])[:2] for t in run["time_s"]])
+    assert np.abs(found[-1] - moved).max() > 2.0 * np.abs(moved).max()
+    np.testing.assert_allclose(found, expected, atol=0.01 * np.abs(moved).max())
 
 
 def test_wear_is_its_rate_times_pressure_and_path(tmp_path: Path) -> None:

@@ -26,6 +26,7 @@ from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.roughness.asperities import RUB_COLUMNS, Asperities, rub_samples
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
@@ -52,7 +53,8 @@ class Machine:
     Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
     rotor as transfer takes it, see rotor_parts.py; scales: (F,) viscosity of each film over that which it was made
     with; temperatures: (F,) K of the films, empty without heat; orders: how often in a revolution what drives the rotor
-    swings, 1 of the unbalance, and then of the forces that change with its angle.
+    swings, 1 of the unbalance, and then of the forces that change with its angle; asperities: of rough surfaces, whose
+    shells do not turn.
     """
 
     rotor: LinearRotor
@@ -72,6 +74,7 @@ class Machine:
     scales: Array
     temperatures: Array
     orders: tuple[int, ...]
+    asperities: Asperities | None = None
 
     @property
     def film_count(self) -> int:
@@ -159,6 +162,7 @@ def make_machine(system: System, top: float) -> Machine:
         scales=np.ones(len(films)),
         temperatures=np.zeros(0),
         orders=(1, *(abs(round(load.order)) for load in turning_loads(system.rotor))),
+        asperities=system.asperities,
     )
     return replace(machine, parts=_parts(machine))
 
@@ -202,7 +206,23 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
         by_speed[:, own] = by_omega * shares[0]
     loads = Loads(values, by_u, by_v, by_speed, drive)
     _add_torques(machine, d, speeds, loads)
+    if machine.asperities is not None:
+        _add_summits(machine, machine.asperities, u, v, speeds, loads)
     return loads
+
+
+def _add_summits(machine: Machine, asperities: Asperities, u: Array, v: Array, speeds: Array, loads: Loads) -> None:
+    """Force and friction of the summits of rough surfaces."""
+    for f in range(machine.film_count):
+        own, shares = slice(2 * f, 2 * f + 2), machine.turning[f, 1]
+        d, rate = (np.ascontiguousarray(each[:, own]) for each in (u, v))
+        found = np.empty((len(u), RUB_COLUMNS))
+        rub_samples(asperities, f, float(machine.clearances[f]), d, rate, speeds @ shares, found)
+        loads.values[:, own] += found[:, FORCE:BY_D]
+        loads.by_u[:, own, own] += found[:, BY_D:BY_V].reshape(-1, 2, 2)
+        loads.by_v[:, own, own] += found[:, BY_V:BY_OMEGA].reshape(-1, 2, 2)
+        loads.by_speed[:, own] += shares[0] * found[:, BY_OMEGA:-1]
+        loads.drive[:] -= found[:, -1]
 
 
 def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> None:

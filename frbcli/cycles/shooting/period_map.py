@@ -214,7 +214,7 @@ def period_map(case: Case) -> PeriodMap:
     return PeriodMap(
         system=system,
         films=films,
-        control=control_of(case, plan),
+        control=control_of(case, plan, system.asperities),
         tableau=tableau._replace(defect=np.zeros_like(tableau.defect)),
         clearances=np.array(system.clearances),
         turned=system.turning[:, GRID],

@@ -46,20 +46,22 @@ class GasBalance:
 
 @dataclass(frozen=True)
 class Torque:
-    """Torque of the film in N m by its two terms (3.17): added up on the journal, subtracted on the shell."""
+    """Torque of the film in N m by its two terms (3.17): added up on the journal, subtracted on the shell; summits: of
+    the friction of rough surfaces on the journal and, in its sense of rotation, on the shell."""
 
     couette: float
     poiseuille: float
+    summits: tuple[float, float] = (0.0, 0.0)
 
     @property
     def journal(self) -> float:
         """Torque on the journal."""
-        return self.couette + self.poiseuille
+        return self.couette + self.poiseuille + self.summits[0]
 
     @property
     def shell(self) -> float:
         """Torque on the shell (section 3.2.4): the shear at its surface, in the journal's sense of rotation."""
-        return self.couette - self.poiseuille
+        return self.couette - self.poiseuille + self.summits[1]
 
 
 @dataclass(frozen=True)

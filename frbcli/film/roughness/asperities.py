@@ -17,6 +17,7 @@ from frbcli.film.roughness.summits import LAST, elastic_summits, touching_summit
 
 POINTS = 40  # of the trapezoidal rule over half of the arc
 HALVINGS = 60  # of the bracket of an eccentricity
+RUB_COLUMNS = 13  # of rub_samples; all but the last one as film_samples has them
 SLOW = 1e-3  # m/s: friction is fully developed at some times this sliding speed, and below it holds the surfaces
 
 
@@ -58,8 +59,8 @@ class Touch(NamedTuple):
 class Rub(NamedTuple):
     """What the summits do to a journal. Force (x, y) in N and its derivatives by displacement in N/m and velocity in
     N s/m, row by row; torque: on the journal about its middle, N m; shell_torque: on the shell about its own; radial:
-    force that pushes the surfaces apart, N; power: that friction turns into heat, W; grip: what the torque falls by per
-    slip, N m s."""
+    force that pushes the surfaces apart, N; power: that friction turns into heat, W; grip, drift: what the torque falls
+    by per slip, N m s, and the friction across the line of centres grows by, N s."""
 
     f_x: float
     f_y: float
@@ -76,9 +77,10 @@ class Rub(NamedTuple):
     radial: float
     power: float
     grip: float
+    drift: float
 
 
-APART = Rub(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+APART = Rub(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @compiled()
@@ -169,6 +171,7 @@ def rub(
         radial,
         coefficient * normal * sliding,
         bend * radius * radius * normal,
+        bend * radius * radial,
     )
 
 
@@ -216,3 +219,23 @@ def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array,
         e_x, e_y, v_x, v_y, slip, shell_speed = motions[k]
         each = rub(asperities, f, clearances[k], e_x, e_y, v_x, v_y, slip, shell_speed)
         found[k, 0], found[k, 1], found[k, 2], found[k, 3] = each.f_x, each.f_y, each.torque, each.power
+
+
+@compiled()
+def rub_samples(
+    asperities: Asperities, f: int, clearance: float, d: Array, v: Array, slips: Array, found: Array
+) -> None:
+    """found (n, RUB_COLUMNS) <- of film f in a shell that does not turn, at displacements d over the clearance and
+    their rates v in 1/s (n, 2), slips (n,) in rad/s: force in N, derivatives by d, by v and by the slip, and torque on
+    the journal in N m."""
+    for i in range(d.shape[0]):
+        e_x, e_y = clearance * d[i, 0], clearance * d[i, 1]
+        own = rub(asperities, f, clearance, e_x, e_y, clearance * v[i, 0], clearance * v[i, 1], slips[i], 0.0)
+        found[i, 0], found[i, 1] = own.f_x, own.f_y
+        found[i, 2], found[i, 3] = clearance * own.k_xx, clearance * own.k_xy
+        found[i, 4], found[i, 5] = clearance * own.k_yx, clearance * own.k_yy
+        found[i, 6], found[i, 7] = clearance * own.d_xx, clearance * own.d_xy
+        found[i, 8], found[i, 9] = clearance * own.d_yx, clearance * own.d_yy
+        size = max(math.sqrt(e_x * e_x + e_y * e_y), 1e-300)
+        found[i, 10], found[i, 11] = own.drift * e_y / size, -own.drift * e_x / size
+        found[i, 12] = own.torque

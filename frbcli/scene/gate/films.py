@@ -18,14 +18,13 @@ from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, RUN, SHEETS
+from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, SHEETS
 from frbcli.scene.keys import cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
-from frbcli.scene.tilt import misaligned, tilts
+from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
-ROUGH = (*SHEETS, RUN, FILMS)  # analyses that asperities are modelled in
 AT_FLOW = (*SHEETS, FILMS, HEAT, ROTATION)  # analyses of films whose supply gives a flow at the most
 SMOOTH = 'Write contact.model = "spring"'
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
@@ -157,11 +156,12 @@ def rough_faults(case: Case) -> Iterator[Fault]:
         yield Fault(key, value, None, problem, f"{SMOOTH}, or leave it out.")
 
 
-def unmodelled_rough_faults(case: Case) -> Iterator[Fault]:
-    """Analyses of motions that summits have no part in yet."""
-    if case.contact.rough:
-        problem = "is not modelled in this analysis."
-        yield Fault("contact.model", "asperities", None, problem, f"{SMOOTH}.")
+def rough_tilt_faults(case: Case) -> Iterator[Fault]:
+    """Tests with a journal that tilts in a shell that is in line."""
+    given = case.motion is not None and len(case.bearings) == 1 and tilts(case)
+    if case.contact.rough and given and not any(misaligned(case)):
+        problem = "is not modelled with asperities, whose gap is the same along the axis."
+        yield Fault(*tilt_key(case), None, problem, f"{SMOOTH}, or leave the tilt out.")
 
 
 def rough_coupling_faults(case: Case) -> Iterator[Fault]:
@@ -172,13 +172,13 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
         yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
 
 
-def rough_sheet_faults(case: Case) -> Iterator[Fault]:
-    """Rings and heat at rest do not know of boundary friction."""
+def rough_rest_faults(case: Case) -> Iterator[Fault]:
+    """Rings and heat at rest, in cycles and in tests do not know of boundary friction."""
     if not case.contact.rough:
         return
     if turning_rings(case):
-        problem = "drags a ring along by friction, and at rest a ring turns as its films drag it alone."
-        yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or bearing.ring.spin = "blocked".')
+        problem = "drags a ring along by friction, and outside of runs a ring turns as its films drag it alone."
+        yield Fault("contact.model", "asperities", None, problem, f"{SMOOTH}, or take a run-up.")
     if case.heat is not None:
-        problem = "makes heat by friction, and at rest the heat is that of the films alone."
+        problem = "makes heat by friction, and outside of runs the heat is that of the films alone."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

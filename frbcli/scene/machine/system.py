@@ -13,7 +13,8 @@ from frbcli.case.schema import Case
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.asperities import Asperities, make_asperities, rub, standing_eccentricity
+from frbcli.film.roughness.asperities import Asperities, make_asperities
+from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.rotor.body import COORDINATES
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
@@ -48,22 +49,11 @@ class System:
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """Force and derivatives of film i, see Films, and of rough surfaces beside it. Their friction has the sense of
         the total: a ring turns more slowly than its rotor, and a journal that stands still does not rub."""
-        film = self.films.force(i, place, rate, total, near)
-        if self.asperities is None:
-            return film
-        (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
-        rubbing = rub(self.asperities, i, self.clearances[i], e_x, e_y, v_x, v_y, total, 0.0)
-        by_place, by_rate = (np.array(rubbing[first : first + 4]).reshape(2, 2) for first in (2, 6))
-        return FilmForce(
-            film.force + rubbing[:2], film.by_displacement + by_place, film.by_velocity + by_rate, film.field
-        )
+        return self.rubbing(i).beside(self.films.force(i, place, rate, total, near), place, rate, total)
 
-    def standing(self, i: int, load: float) -> float:
-        """Eccentricity in m of a journal that stands still on the summits of its shell under a load in N; 0 between
-        smooth surfaces."""
-        if self.asperities is None:
-            return 0.0
-        return standing_eccentricity(self.asperities, i, self.clearances[i], load)
+    def rubbing(self, i: int) -> Rubbing:
+        """The summits of film i."""
+        return Rubbing(self.asperities, i, self.clearances[i])
 
     @property
     def clearances(self) -> tuple[float, ...]:
@@ -147,6 +137,11 @@ def rough_surfaces(case: Case) -> Asperities | None:
         contact.roughness, contact.summit_radius, contact.summit_density, contact.modulus, contact.hardness,
         contact.friction, 0.5 * np.array([film.diameter for film in films]), np.array([film.width for film in films]),
     )  # fmt: skip
+
+
+def rubbing_of(case: Case) -> Rubbing:
+    """The summits of the only film of a case."""
+    return Rubbing(rough_surfaces(case), 0, film_places(case)[0].geometry.clearance)
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:

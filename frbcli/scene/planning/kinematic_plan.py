@@ -123,6 +123,8 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
         decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
     else:
         decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
+    if (summits := case.contact.about_summits) is not None:
+        decisions += (Decision("contact", *summits),)
     return KinematicPlan(
         test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
         turning=turning, ramp=film.supply.rise_time, model=chosen,

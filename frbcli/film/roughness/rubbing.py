@@ -1,0 +1,67 @@
+"""The summits of one film beside what it does: force with derivatives, and loads."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from frbcli.film.cells.loads import FilmLoads
+from frbcli.film.cells.motion import Motion
+from frbcli.film.grid import Array
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity
+
+
+@dataclass(frozen=True)
+class Rubbing:
+    """surfaces: None between smooth ones; film: its number of these; clearance: m."""
+
+    surfaces: Asperities | None
+    film: int
+    clearance: float
+
+    def force(self, place: Array, rate: Array, slip: float) -> FilmForce:
+        """What the summits do to a journal at `place` (2,) in m with a velocity (2,) in m/s in a shell that does not
+        turn; slip: omega_J - omega_S, rad/s."""
+        if self.surfaces is None:
+            return FilmForce(np.zeros(2), np.zeros((2, 2)), np.zeros((2, 2)))
+        (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
+        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, 0.0)
+        by_place, by_rate = (np.array(found[first : first + 4]).reshape(2, 2) for first in (2, 6))
+        return FilmForce(np.array(found[:2]), by_place, by_rate)
+
+    def beside(self, film: FilmForce, place: Array, rate: Array, slip: float) -> FilmForce:
+        """A film and its summits, see force."""
+        if self.surfaces is None:
+            return film
+        own = self.force(place, rate, slip)
+        return FilmForce(
+            film.force + own.force,
+            film.by_displacement + own.by_displacement,
+            film.by_velocity + own.by_velocity,
+            film.field,
+        )
+
+    def standing(self, load: float) -> float:
+        """Eccentricity in m of a journal that stands still on its summits under a load in N; 0 between smooth
+        surfaces."""
+        return 0.0 if self.surfaces is None else standing_eccentricity(self.surfaces, self.film, self.clearance, load)
+
+    def loads(self, film: FilmLoads, motion: Motion, turning: float = 0.0) -> FilmLoads:
+        """The loads of a film with those of its summits. motion: in a shell at rest, seen from a frame that turns with
+        `turning` rad/s, as the force is."""
+        if self.surfaces is None:
+            return film
+        c, (d_x, d_y), (v_x, v_y) = self.clearance, motion.d, motion.v
+        slip = motion.omega + 2.0 * turning
+        found = rub(self.surfaces, self.film, c, c * d_x, c * d_y, c * v_x, c * v_y, slip, -turning)
+        x, y = film.force
+        torque = replace(film.torque, summits=(found.torque, -found.shell_torque))
+        return replace(film, force=(x + found.f_x, y + found.f_y), torque=torque)
+
+    def share_of_error(self, film: FilmLoads, whole: FilmLoads) -> float:
+        """Relative error of the force with the summits over that of the film alone."""
+        size = math.hypot(*whole.force)
+        return math.hypot(*film.force) / size if self.surfaces is not None and size > 0.0 else 1.0
