@@ -13,6 +13,7 @@ from scipy.linalg import expm
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position
 from frbcli.film.roughness.asperities import touch
 from frbcli.film.roughness.summits import LAST
 from frbcli.linear.bearing_sheet import bearing_sheet
@@ -21,7 +22,8 @@ from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.runs.march import Progress
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.machine.system import rough_surfaces
+from frbcli.scene.machine.system import make_system, rough_surfaces
+from frbcli.scene.planning.plan import make_plan
 
 ROUGH = (
     "contact.model=asperities",
@@ -168,6 +170,20 @@ def test_an_interrupted_run_goes_on_in_contact_as_if_it_had_not_stopped(
     assert again.checkpoint is not None
     assert whole.checkpoint is not None
     np.testing.assert_array_equal(again.checkpoint["wear"], whole.checkpoint["wear"])
+
+
+@pytest.mark.nightly  # minutes of compilation
+def test_a_run_with_flow_factors_stays_where_its_film_rests_on_fewer_summits(tmp_path: Path) -> None:
+    still = 'speed={points=[["0 s", "0.3 Hz"], ["0.05 s", "0.3 Hz"]]}', "output.step=1e-3 s", "accuracy.mesh=[96, 12]"
+    case, omega = rigid(*still, "contact.flow_factors=true"), 2.0 * np.pi * 0.3
+    run = runup(case, tmp_path / "run.h5")
+    system = make_system(case, make_plan(case))
+    (place,) = resting_position(system, omega).journals
+    film, _ = system.films.power_and_flow(0, place, omega, omega, 0.0)
+    np.testing.assert_allclose(run["eccentricity"], np.hypot(*place) / 35e-6, rtol=1e-9)
+    assert run["power_W"][-1] == pytest.approx(film + run["contact_power_W"][-1], rel=1e-4)
+    smooth = runup(rigid(*still, "film.solution=cells"), tmp_path / "smooth.h5")
+    assert smooth["asperity_share"][-1] > run["asperity_share"][-1] > 0.0
 
 
 @pytest.mark.nightly  # half a minute of compilation
