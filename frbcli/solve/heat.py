@@ -27,7 +27,7 @@ from frbcli.film.cells.data import (
     VolumeFilms,
 )
 from frbcli.film.rectangles.end_flow import end_flow
-from frbcli.film.state import OIL, RATE
+from frbcli.film.state import OIL
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import CELLS, MODELS, by_kind, kind_of
@@ -248,7 +248,7 @@ def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
 def _scale_oil(wet: Array, f: int, factor: float) -> None:
     """keep_oil of films on cells."""
     if factor != 1.0:
-        for layer in (OIL, RATE):
+        for layer in range(OIL, wet.shape[0]):  # oil and gas with their rates
             for i in range(wet.shape[2]):
                 for j in range(wet.shape[3]):
                     wet[layer, f, i, j] *= factor

@@ -136,9 +136,9 @@ class VolumeFilm:
         cavity = self.scales.cavitation
         return cavity + clipped_means(state.pressure - cavity)
 
-    def content(self, motion: Motion, w: Array) -> Array:
-        """(m, k) oil in the cells, H theta."""
-        content: Array = self.gaps(motion) * self.cells(w).fraction
+    def content(self, motion: Motion, w: Array, carried: Carried | None = None) -> Array:
+        """(m, k) oil in the cells, H theta; carried: see cells."""
+        content: Array = self.gaps(motion) * self.cells(w, carried).fraction
         return content
 
     def from_coarser(self, coarse: VolumeFilm, w: Array) -> Array:
@@ -170,26 +170,27 @@ def supplied(film: VolumeFilm, share: float) -> VolumeFilm:
 
 
 def refilled(
-    old: VolumeFilm, new: VolumeFilm, d: tuple[float, float], oil: Array, w: Array
+    old: VolumeFilm, new: VolumeFilm, d: tuple[float, float], oil: Array, w: Array, carried: Carried | None = None
 ) -> tuple[Array, Array]:
     """(m, k) unknowns of the film `new`, and the oil that it is given in its own units, from the oil and unknowns of
-    the film `old`, which has another clearance. d: of the journal, over the new clearance."""
+    the film `old`, which has another clearance. d: of the journal, over the new clearance; carried: see
+    VolumeFilm.cells."""
     share, free = old.section.clearance / new.section.clearance, ~new.grid.fixed
     pressure = old.scales.reference * old.section.pressure_scale / (new.scales.reference * new.section.pressure_scale)
     given = share * oil
     full = np.maximum(new.full(), pressure * w)  # cells with enough oil keep their pressure
     gap = new.gap(d, new.grid.centre)[:, None]
-    return np.where(free, _with_fraction(new, given / gap, full), w), given
+    return np.where(free, _with_fraction(new, given / gap, full, carried), w), given
 
 
-def _with_fraction(film: VolumeFilm, fraction: Array, full: Array) -> Array:
+def _with_fraction(film: VolumeFilm, fraction: Array, full: Array, carried: Carried | None) -> Array:
     """(m, k) unknowns of cells with given oil fractions, at most `full`: they grow with each other."""
     scales = film.scales
     least = -2.0 - (scales.cavitation + scales.ambient) / scales.reference  # neither oil nor pressure
     low, high = np.full_like(full, least), full.copy()
-    enough = film.cells(full).fraction <= fraction
+    enough = film.cells(full, carried).fraction <= fraction
     for _ in range(HALVINGS):
         middle = 0.5 * (low + high)
-        above = film.cells(middle).fraction > fraction
+        above = film.cells(middle, carried).fraction > fraction
         low, high = np.where(above, low, middle), np.where(above, middle, high)
     return np.where(enough, full, 0.5 * (low + high))

@@ -16,6 +16,7 @@ from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm, refilled, supplied
+from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
@@ -27,7 +28,7 @@ from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.section_faults import is_unfed
-from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
+from frbcli.film.state import GAS, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 AROUND = 360  # angles at which the gap of lobes is looked at
@@ -113,16 +114,20 @@ class CellFilms(Films):
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
         """See Films.first_state. The oil does not change at first: the journals stand still."""
-        wet = np.zeros((WET, self.count, *self.own[0].grid.shape))
+        layers = WET_WITH_GAS if any(film.law.carries_gas for film in self.own) else WET
+        wet = np.zeros((layers, self.count, *self.own[0].grid.shape))
         for i, film in enumerate(self.own):
             at = places[i] / self.clearances[i]
             motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(totals[i]))
-            w = film.full()
+            w, gas = film.full(), None
             if np.any(at != 0.0) and totals[i] != 0.0:
                 with contextlib.suppress(NotConverged):
-                    w = steady_solution(film, motion).w
+                    solution = steady_solution(film, motion)
+                    w, gas = solution.w, solution.gas
             wet[W, i] = wet[W_BEFORE, i] = w
-            wet[OIL, i] = film.content(motion, w)
+            wet[OIL, i] = film.content(motion, w, None if gas is None else gas.carried)
+            if film.law.carries_gas:
+                wet[GAS, i] = wet[OIL, i] * (film.law.free_gas(film.cells(w), film.scales) if gas is None else gas.free)
         return wet, np.zeros((2, self.count, FLOWS))
 
     def refill(
@@ -132,14 +137,21 @@ class CellFilms(Films):
         if not self.remembering[i]:
             return None
         film, old = self.own[i], before.with_fields[i]
-        w, oil = refilled(old, film, d, wet[OIL, i], wet[W, i])
+        gas = self._gas_of(i, wet)
+        w, oil = refilled(old, film, d, wet[OIL, i], wet[W, i], gas)
         wet[W, i] = wet[W_BEFORE, i] = w
-        wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w)
+        wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w, gas)
+        if gas is not None:
+            wet[GAS, i] = wet[OIL, i] * gas.gas
         flows[:, i] *= old.section.clearance / film.section.clearance
         spilled = float((film.grid.area * (oil - wet[OIL, i]))[~film.grid.fixed].sum())
         for flow in (OUTFLOW, ENDS_NET):
             flows[PASSED, i, flow] += spilled
-        return force(film, film.mean_pressure(film.cells(w)))
+        return force(film, film.mean_pressure(film.cells(w, gas)))
+
+    def _gas_of(self, i: int, wet: Array) -> Carried | None:
+        """The free gas that the oil of film i has in a state."""
+        return with_own_gas(wet[GAS, i] / wet[OIL, i]) if self.own[i].law.carries_gas else None
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         """Oil in the cells that their unknowns do not account for, over what has passed through.
@@ -152,7 +164,7 @@ class CellFilms(Films):
         for i, film in enumerate(self.own):
             if not self.remembering[i]:
                 continue
-            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i])
+            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i], self._gas_of(i, wet))
             worst = max(worst, missing_oil(film, now, wet[OIL, i], flows[PASSED, i]))
         return worst
 

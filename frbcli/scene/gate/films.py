@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
+from frbcli.scene.channels import coupled
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS
@@ -19,7 +21,7 @@ from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, SHEETS
-from frbcli.scene.keys import cavitation_keys, film_keys
+from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
@@ -86,8 +88,28 @@ def gas_faults(case: Case) -> Iterator[Fault]:
     """Films whose oil carries gas, which is a second state of each cell, in analyses that do not follow it."""
     for key, name in dict(cavitation_keys(case)).items():
         if law_named(name).carries_gas and form_of(case).solved:
-            problem = "lets the oil carry free gas, a state that only kinematic tests, stability and response follow."
+            problem = "lets the oil carry free gas, which only kinematic tests, stability, response and runs follow."
             yield Fault(key, name, None, problem, 'Write "peeken" here, which is its limit of fast exchange.')
+
+
+def moved_gas_faults(case: Case) -> Iterator[Fault]:
+    """What runs do not follow free gas in: channels, films that follow a tilt, films with steps of their own."""
+    if not form_of(case).solved or not any(law_named(name).carries_gas for name in case.cavitations):
+        return
+    problem = "is not modelled with oil that carries free gas."
+    peeken = 'or film.cavitation = "peeken", its limit of fast exchange'
+    if case.film.tilt == "follows":
+        yield Fault("film.tilt", "follows", None, problem, f'Write film.tilt = "none", {peeken}.')
+    elif form_of(case) is INCLINED:
+        for key, value in misaligned(case):
+            yield Fault(key, value, None, problem, f"Write none, {peeken}.")
+    if coupling_of(case).in_turn:
+        remedy = f'Write film.coupling = "monolithic", {peeken}.'
+        yield Fault("film.coupling", case.film.coupling, None, problem, remedy)
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            key = f"{bearing_key(case, index)}.channels"
+            yield Fault(key, "coupled", None, problem, f'Write channels = "pressure" here, {peeken}.')
 
 
 def sealed_faults(case: Case) -> Iterator[Fault]:

@@ -7,28 +7,31 @@ that none is lost.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cells.balance.balances import FLOWS, SIDES
-from frbcli.film.cells.balance.states import FRACTION, STATES
+from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURNOVER
 from frbcli.film.cells.data import SHEARED, Records, VolumeFilms
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
-from frbcli.film.state import NOW, OIL, PASSED, RATE, W_BEFORE, W
+from frbcli.film.cells.gas.carry import NONE, PATHS
+from frbcli.film.state import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W
 from frbcli.solve.films.grid import GRID
 from frbcli.solve.stage.equations import lagrange
 
-NineArrays = tuple[Array, Array, Array, Array, Array, Array, Array, Array, Array]
+Three = tuple[Array, Array, Array]
+CellArrays = tuple[*Three, *Three, *Three, *Three]
 
 
 class Work(NamedTuple):
-    """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k,
-    k + SIDES + S); w, first, past (F, m, k) of the stage, first being w of the first stage; stage_oil (stages, F, m, k)
-    rates of the stages; stage_flows (stages, F, FLOWS); grids (F,) records GRID; slopes (F, 4). Coupled channels with Q
-    feed holes, S of one film at most, need channel (F, m, k), answers (Q, 1 + 2 F), changes (F, S), cross (2 F, 2 F),
-    see channels.py; all but changes have no rows if there are none."""
+    """Scratch of the time loop, F films of m x k cells: states (F, STATES, m, k), stencil, blocks, fields (F, m, k, k +
+    SIDES + S); w, first, past (F, m, k) of the stage, first being w of the first stage; stage_oil (stages, F, m, k)
+    rates of the stages; stage_flows (stages, F, FLOWS); of oil that carries gas, else without films, gas_past (F, m,
+    k), stage_gas (stages, F, m, k) and gas_paths (F, PATHS, m, k), as of the oil and see carry.py; grids (F,) records
+    GRID; slopes (F, 4). Coupled channels with Q feed holes, S of one film at most, need channel (F, m, k), answers (Q,
+    1 + 2 F), changes (F, S), cross (2 F, 2 F), see channels.py; all but changes have no rows if there are none."""
 
     states: Array
     stencil: Array
@@ -39,6 +42,9 @@ class Work(NamedTuple):
     past: Array
     stage_oil: Array
     stage_flows: Array
+    gas_past: Array
+    stage_gas: Array
+    gas_paths: Array
     grids: Records
     slopes: Array
     channel: Array
@@ -47,9 +53,10 @@ class Work(NamedTuple):
     cross: Array
 
 
-def cell_arrays(wet: Array, sides: int, stages: int) -> NineArrays:
-    """The first nine of Work, from states to stage_flows. sides: of the right-hand sides of the balances."""
+def cell_arrays(wet: Array, sides: int, stages: int) -> CellArrays:
+    """The first twelve of Work, from states to gas_paths. sides: of the right-hand sides of the balances."""
     _, count, m, k = wet.shape
+    gassy = count if len(wet) > WET else 0
     return (
         np.zeros((count, STATES, m, k)),
         np.zeros((ENTRIES, m, k)),
@@ -60,6 +67,9 @@ def cell_arrays(wet: Array, sides: int, stages: int) -> NineArrays:
         np.zeros((count, m, k)),
         np.zeros((stages, count, m, k)),
         np.zeros((stages, count, FLOWS)),
+        np.zeros((gassy, m, k)),
+        np.zeros((stages, gassy, m, k)),
+        np.zeros((gassy, PATHS, m, k)),
     )
 
 
@@ -130,6 +140,37 @@ def begin_cells(films, work, wet, flows, weights, s, step, g, ahead, lag):  # ty
                     total += weights[s, p] * work.stage_oil[p, f, i, j]
                 work.past[f, i, j] = (wet[OIL, f, i, j] + step * total) / g
         guess_unknowns(work.w[f], work.first[f], wet[W, f], wet[W_BEFORE, f], weights, s, ahead)
+        if films.films[f].carries_gas:
+            _begin_gas(work, wet, weights, s, step, g, f)
+
+
+@compiled()
+def _begin_gas(work: Any, wet: Array, weights: Array, s: int, step: float, g: float, f: int) -> None:
+    """begin_cells for the gas of film f. In the first stage oil is guessed to come with the gas that it has, and to be
+    replaced by what the step stores alone."""
+    _, m, k = work.w.shape
+    for i in range(m):
+        for j in range(k):
+            if s == 1:
+                work.stage_gas[0, f, i, j] = wet[GAS_RATE, f, i, j]
+                work.states[f, CARRIED_GAS, i, j] = wet[GAS, f, i, j] / max(wet[OIL, f, i, j], NONE)
+                work.states[f, TURNOVER, i, j] = 1.0 / g
+            total = 0.0
+            for p in range(s):
+                total += weights[s, p] * work.stage_gas[p, f, i, j]
+            work.gas_past[f, i, j] = (wet[GAS, f, i, j] + step * total) / g
+
+
+@compiled()
+def _accept_gas(work: Any, wet: Array, weights: Array, step: float, f: int) -> None:
+    """accept_cells for the gas of film f."""
+    _, m, k = work.w.shape
+    last = weights.shape[0] - 1
+    for i in range(m):
+        for j in range(k):
+            for p in range(last + 1):
+                wet[GAS, f, i, j] += step * weights[last, p] * work.stage_gas[p, f, i, j]
+            wet[GAS_RATE, f, i, j] = work.stage_gas[last, f, i, j]
 
 
 def accept_cells(films, work, wet, flows, weights, step):  # type: ignore[no-untyped-def]
@@ -154,6 +195,8 @@ def accept_cells(films, work, wet, flows, weights, step):  # type: ignore[no-unt
                 wet[RATE, f, i, j] = work.stage_oil[last, f, i, j]
         for flow in range(FLOWS):
             flows[NOW, f, flow] = work.stage_flows[last, f, flow]
+        if films.films[f].carries_gas:
+            _accept_gas(work, wet, weights, step, f)
 
 
 @compiled()

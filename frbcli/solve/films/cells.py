@@ -39,6 +39,7 @@ from frbcli.film.cells.data import (
 )
 from frbcli.film.cells.elimination.ring_solver import solve_ring_at
 from frbcli.film.cells.film import ABOVE_KINK
+from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.stage.equations import FilmMotion
@@ -62,6 +63,27 @@ NO_FACTOR, GLOBAL_FACTOR, LOCAL_FACTOR, SIMPLE_FACTOR = range(4)
 
 
 @compiled()
+def stray_gas(
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, work: Any, f: int,
+    drop: float, w: Array,
+) -> float:  # fmt: skip
+    """The states of film f at w with the free gas that its flows take along; what it was off by, over all gas."""
+    stray = take_gas_along(film, ring, width, cells, states, motion, work.gas_past[f], work.gas_paths[f])
+    cell_states(film, cells, work.grids[f].law, drop, w, states)
+    return float(stray / film.gas_content)
+
+
+@compiled()
+def store_stage(film: np.record, ring: Array, cells: Array, work: Any, f: int, g: float, flows: Array) -> None:
+    """The rates of oil and gas of film f, whose balances hold in this stage, see store_rates and store_gas_rates."""
+    states, grid = work.states[f], work.grids[f]
+    s = grid.stage
+    store_rates(ring, cells, states, grid.x, grid.y, g, work.past[f], work.fields[f], work.stage_oil[s, f])
+    if film.carries_gas:
+        store_gas_rates(film, cells, states, work.gas_paths[f], work.stage_gas[s, f], flows)
+
+
+@compiled()
 def cell_response(
     films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
@@ -69,15 +91,13 @@ def cell_response(
     film, ring, width, cells = films.films[f], films.ring[f], films.width[f], films.cells[f]
     w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
     stencil, grid, slopes, flows = work.stencil, work.grids[f], work.slopes[f], work.stage_flows[s, f]
-    grid.stage = s
     d_x, d_y, v_x, v_y, omega = motion
-    turn, spin = grid.turn, grid.speed
+    turn, spin, remembers = grid.turn, grid.speed, film.remembers
     cosine, sine = math.cos(turn), math.sin(turn)
     x, y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
-    grid.x, grid.y = x, y
+    grid.stage, grid.x, grid.y = s, x, y
     against_x, against_y = v_x + spin * d_y, v_y - spin * d_x
     v_f, v_g = cosine * against_x + sine * against_y, cosine * against_y - sine * against_x
-    remembers = film.remembers
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         follow_law(film, d_x, d_y, v_x, v_y, omega, grid.law)
     drop, rate = film.centrifugal * spin * spin, 1.0 / g if remembers else 0.0
@@ -85,6 +105,7 @@ def cell_response(
     if iteration == 0:
         hold(states, omega - 2.0 * spin)
     against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
+    stray = stray_gas(film, ring, width, cells, states, against, work, f, drop, w) if film.carries_gas else 0.0
     balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
     slots = fields.shape[2] - fields.shape[1] - SIDES
     if slots > 0:
@@ -92,9 +113,10 @@ def cell_response(
     mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
+    left = max(left, stray / film.settled)
     balanced = left < 1.0
     if balanced and remembers:
-        store_rates(ring, cells, states, x, y, g, past, fields, work.stage_oil[s, f])
+        store_stage(film, ring, cells, work, f, g, flows)
     if balanced and iteration > 0 and grid.ratio < SLOW:
         grid.balance = HELD
         m, k = w.shape
@@ -104,8 +126,9 @@ def cell_response(
                 fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y]
         f_x, f_y, _, _, _, _ = film_loads(film, ring, cells, states, fields)
     else:
-        # Films that share oil have to balance as they are: what passes between them is known for that alone.
-        soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and iteration < PLAIN and slots == 0
+        # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas.
+        alone = iteration < PLAIN and slots == 0 and not film.carries_gas
+        soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
         grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)

@@ -66,6 +66,9 @@ class TiltedWork(NamedTuple):
     past: Array
     stage_oil: Array
     stage_flows: Array
+    gas_past: Array
+    stage_gas: Array
+    gas_paths: Array
     grids: Records
     cross: Array
     places: Array

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import astuple, replace
 
 import numpy as np
 import pytest
@@ -12,9 +12,13 @@ from frbcli.bearing_tests.march import march, whirl_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cells.balance.balances import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED, GridMotion
 from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, FREE_GAS, STATES, TURNOVER
+from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
-from frbcli.film.cells.gas.balance import OilPaths, brought, oil_paths
+from frbcli.film.cells.gas.balance import Carried, KeptGas, OilPaths, brought, oil_paths
+from frbcli.film.cells.gas.carry import PATHS, store_gas_rates, take_gas_along
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 
@@ -75,3 +79,32 @@ def test_a_film_with_gas_takes_few_more_iterations_than_a_two_phase_film() -> No
         film = film_of(law, "circumferential-groove")
         means.append(np.mean([each.solution.iterations for each in march(film, path, times)]))
     assert means[1] < 1.8 * means[0]
+
+
+def test_rates_of_a_step_are_what_it_stores_and_their_flows_add_up() -> None:
+    """d(H theta c)/dt = rate H theta c - past, in the sum what comes in, leaves the solution and leaves the film."""
+    film, rate = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), "axial-groove"), 1e3
+    motion, random = Motion(ROTATION.d, (0.0, 0.0), ROTATION.omega), np.random.default_rng(2)
+    gap, theta = film.gaps(motion), random.uniform(0.9, 1.0, film.grid.shape)
+    past = rate * gap * theta * 0.03
+    solver = FilmSolver(film)
+    guess = Carried(np.full_like(theta, 0.03), np.full_like(theta, rate))
+    solution, content = solver.keep(motion, motion, film.full(), rate, rate * gap * theta, KeptGas(past, guess))
+    assert solution.gas is not None
+    data, rates, flows = volume_films([film]), np.zeros(film.grid.shape), np.zeros(FLOWS)
+    states, paths = np.zeros((STATES, *rates.shape)), np.zeros((PATHS, *rates.shape))
+    film_cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    states[:CARRIED_GAS] = astuple(solution.state)
+    states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
+    states[FREE_GAS], states[BEFORE_UPSTREAM] = solution.gas.free, solution.before
+    at = GridMotion(*motion.d, motion.omega, rate=rate)
+    take_gas_along(*film_cells, states, at, past, paths)
+    store_gas_rates(film_cells[0], film_cells[3], states, paths, rates, flows)
+    free, area = ~film.grid.fixed, film.grid.area
+    expected = (rate * content * solution.gas.free - past)[free]
+    np.testing.assert_allclose(rates[free], expected, rtol=0.0, atol=1e-10 * np.abs(expected).max())
+    gained = flows[GAS_IN] - flows[GAS_OUT] + flows[GAS_RELEASED]
+    assert float((area * rates)[free].sum()) == pytest.approx(gained, abs=1e-13 * flows[GAS_OUT])
+    assert [flows[GAS_IN], flows[GAS_OUT], flows[GAS_RELEASED]] == pytest.approx(
+        [solution.gas.inflow, solution.gas.outflow, solution.gas.released], rel=1e-9
+    )

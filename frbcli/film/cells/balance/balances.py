@@ -49,8 +49,9 @@ from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BE
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
-# supply by given cells; what channels of a ring bring net.
-INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, FLOWS = range(6)
+# supply by given cells; what channels of a ring bring net; free gas that comes in and leaves with the oil, and what
+# leaves the solution net, see gas/carry.py.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, FLOWS = range(9)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 

@@ -38,6 +38,7 @@ from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.grid import Array
 
 STILL = 1e-6
+AT_ONCE = 1e60  # 1/s: oil that is replaced so fast keeps the gas that it comes with
 
 
 class Carried(NamedTuple):
@@ -45,6 +46,11 @@ class Carried(NamedTuple):
 
     gas: Array
     turnover: Array
+
+
+def with_own_gas(free: Array) -> Carried:
+    """What the law takes of cells whose free gas (m, k) is given: their oil is replaced too fast for an exchange."""
+    return Carried(free, np.full_like(free, AT_ONCE))
 
 
 class KeptGas(NamedTuple):

@@ -12,7 +12,15 @@ import math
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balance.balances import GridMotion, end_flow, falls_to_air, section_end
+from frbcli.film.cells.balance.balances import (
+    GAS_IN,
+    GAS_OUT,
+    GAS_RELEASED,
+    GridMotion,
+    end_flow,
+    falls_to_air,
+    section_end,
+)
 from frbcli.film.cells.balance.carried import limited_at
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import (
@@ -227,3 +235,52 @@ def carry_gas(film: np.record, cells: Array, forward: bool, paths: Array, states
         if most <= SHARP * first:
             break
     return first
+
+
+@compiled()
+def take_gas_along(
+    film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
+    paths: Array,
+) -> float:  # fmt: skip
+    """All of the above for a film in a time step: paths (PATHS, m, k) and the gas of states follow the oil of states as
+    they are. past: (m, k) of the gas, as that of the oil. Returns the most that free gas has changed by."""
+    m, k = past.shape
+    for i in range(m):
+        h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
+        for j in range(k):
+            paths[HEIGHT, i, j], paths[FACTOR, i, j], paths[GAS_PAST, i, j] = h, motion.rate * h, past[i, j]
+    follow_oil(film, ring, width, cells, states, motion, paths)
+    off = replace_oil(film, cells, states, paths)
+    return max(off, carry_gas(film, cells, motion.omega >= 0.0, paths, states))
+
+
+@compiled()
+def store_gas_rates(film: np.record, cells: Array, states: Array, paths: Array, rates: Array, flows: Array) -> None:
+    """rates (m, k) <- of the gas H theta c of each cell; GAS_IN, GAS_OUT and GAS_RELEASED of flows <- their sums.
+
+    What cells pass to each other is the same for both, and what leaves the solution counts in full: so no gas is lost
+    however far the balance is from zero."""
+    m, k = rates.shape
+    came, left, freed = 0.0, 0.0, 0.0
+    for i in range(m):
+        b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+        for j in range(k):
+            rates[i, j] = 0.0
+            if cells[UNKNOWN, i, j] == 0.0:
+                continue
+            outside, inside = film.supplied_gas * paths[GIVEN, i, j], 0.0
+            for p, q, flow in (
+                (b, j, paths[ONWARD, b, j]),
+                (n, j, paths[BACKWARD, i, j]),
+                (i, max(j - 1, 0), paths[UPWARD, i, j - 1] if j > 0 else 0.0),
+                (i, min(j + 1, k - 1), paths[DOWNWARD, i, j] if j + 1 < k else 0.0),
+            ):
+                if cells[UNKNOWN, p, q] == 0.0:
+                    outside += flow * states[FREE_GAS, p, q]
+                else:
+                    inside += flow * states[FREE_GAS, p, q]
+            leaves = paths[OUT, i, j] * states[FREE_GAS, i, j]
+            released = paths[KEPT, i, j] * (states[FREE_GAS, i, j] - states[CARRIED_GAS, i, j])
+            rates[i, j] = (outside + inside - leaves + released) / cells[AREA, i, j]
+            came, left, freed = came + outside, left + leaves - inside, freed + released
+    flows[GAS_IN], flows[GAS_OUT], flows[GAS_RELEASED] = came, left, freed

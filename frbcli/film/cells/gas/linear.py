@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import Carried, FreeGas, brought, oil_paths
+from frbcli.film.cells.gas.balance import FreeGas, brought, oil_paths, with_own_gas
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
@@ -31,7 +31,6 @@ if TYPE_CHECKING:
 
 At = tuple[Array, Array, Motion]  # w, c and the motion of the journal
 STEP = 1e-6  # of the differences: balances are nearly linear in it
-FROZEN = 1e60  # 1/s: oil that is replaced so fast keeps the gas that it comes with
 
 
 class LinearStates(NamedTuple):
@@ -92,7 +91,7 @@ class _Settled:
 
     def state(self, w: Array, free: Array) -> CellState:
         """Of cells with the free gas (m, k) as it is given."""
-        return self.film.cells(w, Carried(free, np.full_like(w, FROZEN)))
+        return self.film.cells(w, with_own_gas(free))
 
     def gap(self, motion: Motion) -> Array:
         """(m, k) H."""
