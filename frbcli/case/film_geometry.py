@@ -20,6 +20,7 @@ from frbcli.case.quantities import (
     Expansion,
     Fraction,
     Length,
+    Position,
     Preload,
     Ratio,
     Temperature,
@@ -28,6 +29,7 @@ from frbcli.case.quantities import (
 from frbcli.case.supplies.none import NoSupply
 from frbcli.case.supplies.table import Supply
 from frbcli.case.thermal import ROOM_TEMPERATURE
+from frbcli.film.gap import NO_BATH
 
 
 class ColdClearance(Model):
@@ -86,12 +88,25 @@ class SealedEnds(Model):
     )
 
 
+class PartBath(Model):
+    """Ends that lie in oil up to a level, and above it in the air."""
+
+    bath_level: Position = Field(
+        description="height of the oil over the middle of the shell, y; from the radius of the journal on an oil bath, "
+        "from below the journal on free to air"
+    )
+
+
 def _ends_form(given: object) -> str:
+    if isinstance(given, PartBath) or (isinstance(given, dict) and "bath_level" in given):
+        return "(bath)"
     return "(sealed)" if isinstance(given, dict | SealedEnds) else "(open)"
 
 
 AnyEnds = Annotated[
-    Annotated[Literal["free-to-air", "oil-bath"], Tag("(open)")] | Annotated[SealedEnds, Tag("(sealed)")],
+    Annotated[Literal["free-to-air", "oil-bath"], Tag("(open)")]
+    | Annotated[SealedEnds, Tag("(sealed)")]
+    | Annotated[PartBath, Tag("(bath)")],
     Discriminator(_ends_form),
 ]
 
@@ -105,7 +120,8 @@ class FilmGeometry(Model):
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
     given_ends: AnyEnds = Field(
         default="free-to-air", alias="ends", description="no oil comes in at the ends (4.36), or they lie in oil at "
-        "ambient pressure, or a table with `sealed`: they let out a share of the flow into the air",
+        "ambient pressure; or a table: with `sealed` they let out a share of the flow into the air, with `bath_level` "
+        "they lie in oil up to it",
     )  # fmt: skip
     supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
@@ -119,7 +135,16 @@ class FilmGeometry(Model):
     @property
     def ends(self) -> Literal["free-to-air", "oil-bath"]:
         """What lies at the ends, beyond seals."""
+        if isinstance(self.given_ends, PartBath):
+            return "free-to-air" if self.given_ends.bath_level < 0.5 * self.diameter else "oil-bath"
         return "free-to-air" if isinstance(self.given_ends, SealedEnds) else self.given_ends
+
+    @property
+    def bath(self) -> float:
+        """Height of the oil at free ends over the middle of the shell, over its radius, -1 without any."""
+        if self.ends == "oil-bath" or not isinstance(self.given_ends, PartBath):
+            return NO_BATH
+        return max(self.given_ends.bath_level / (0.5 * self.diameter), NO_BATH)
 
     @property
     def sealed(self) -> float:

@@ -14,6 +14,7 @@ Displacement = tuple[float, float] | tuple[Array, Array]  # x, y over the cleara
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
 OPEN_ENDS = ("oil-bath", "free-to-air")
 CLOSED = 1e-7  # share of the flow of an open end that stands for none: the limit of tight seals
+NO_BATH = -1.0
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
 LARGEST_ECCENTRICITY = 0.9999  # end of the tables
@@ -80,7 +81,8 @@ class Section:
     far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
     open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most;
     flow_roughness: of both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share
-    of its square exceeds that of the shell, -1 to 1.
+    of its square exceeds that of the shell, -1 to 1; bath: height of the oil at free
+    ends over the middle of the shell, over its radius, -1 without any.
     """
 
     radius: float
@@ -101,6 +103,7 @@ class Section:
     largest_flow: float = math.inf
     flow_roughness: float = 0.0
     shear: float = 0.0
+    bath: float = NO_BATH
 
     @property
     def seals(self) -> tuple[float, float]:

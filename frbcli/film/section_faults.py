@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from frbcli.film.cavitation.law import Law
-from frbcli.film.gap import Hole, Section, smallest_gap
+from frbcli.film.gap import NO_BATH, Hole, Section, smallest_gap
 
 TURN = 2.0 * math.pi
 MOST_OPENED = 1.0 - 1e-6  # of a section by its openings: beyond, no film is left
@@ -23,13 +23,13 @@ class SectionFault(NamedTuple):
 def runs_dry(section: Section) -> bool:
     """Whether oil can leave the section but not enter it: its ends are free to air and nothing supplies it."""
     inlets = {"oil-bath", "groove"} & {section.near, section.far}
-    return not inlets and not section.grooves and not section.holes
+    return not inlets and not section.grooves and not section.holes and section.bath <= NO_BATH
 
 
 def starves(section: Section) -> bool:
     """Whether a film that conserves its oil has no inflow: its ends are free to air, and nothing supplies it but a
     groove along the edge z = 1 with a pressure that is not above that of the cavities."""
-    if "oil-bath" in (section.near, section.far) or section.grooves or section.holes:
+    if "oil-bath" in (section.near, section.far) or section.grooves or section.holes or section.bath > NO_BATH:
         return False
     return section.far != "groove" or section.ambient_pressure + section.far_pressure <= section.cavitation_pressure
 
@@ -38,7 +38,7 @@ def no_inflow(section: Section) -> bool:
     """Whether no pressure pushes oil into the section: nothing opens into it, and no edge is above its cavities."""
     if section.grooves or section.holes:
         return False
-    edges = {"oil-bath": 0.0, "groove": section.far_pressure}
+    edges = {"oil-bath": 0.0, "groove": section.far_pressure} | ({"free-to-air": 0.0} if section.bath > NO_BATH else {})
     highest = max((edges[edge] for edge in (section.near, section.far) if edge in edges), default=-math.inf)
     return section.ambient_pressure + highest <= section.cavitation_pressure
 

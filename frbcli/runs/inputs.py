@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 
@@ -24,13 +25,15 @@ PRESSURE, TEMPERATURE = ("supply_pressure_{}_Pa", "Pa"), ("supply_temperature_{}
 class MachineInputs:
     """What changes over time in a run, in SI: temperatures of the supplies of films, and of nodes of the heat; absolute
     pressures of the supplies of films, each with the number of the film or node. ambient: Pa; largest: (films,) gauge
-    pressures of all supplies, of those that change the largest one, 1 where nothing supplies."""
+    pressures of all supplies, of those that change the largest one, 1 where nothing supplies; limited: whether a supply
+    gives a flow at the most, so that the pressure of its openings changes."""
 
     supplies: tuple[tuple[int, OverTime], ...]
     walls: tuple[tuple[int, OverTime], ...]
     pressures: tuple[tuple[int, OverTime], ...]
     ambient: float
     largest: Array
+    limited: bool
 
     def shares(self, times: Array) -> Array | None:
         """(k, films) shares of the largest gauge pressure at times (k,) in s; None where no pressure changes."""
@@ -44,10 +47,11 @@ class MachineInputs:
 
 def machine_inputs(case: Case) -> MachineInputs | None:
     """The inputs of a case that change over time, None without any."""
-    if not any(True for _ in inputs_of(case)):
+    supplies = [place.geometry.supply for place in film_places(case)]
+    limited = any(math.isfinite(supply.largest_flow) for supply in supplies)
+    if not (limited or any(True for _ in inputs_of(case))):
         return None
     ambient, heat = case.oil.ambient_pressure, None if case.heat is None else heat_of(case)
-    supplies = [place.geometry.supply for place in film_places(case)]
     gauges = [supply.gauge(ambient) for supply in supplies]
     fed = (supply.over_time if gauge > 0.0 else None for supply, gauge in zip(supplies, gauges, strict=True))
     found = MachineInputs(
@@ -56,8 +60,9 @@ def machine_inputs(case: Case) -> MachineInputs | None:
         _changing(enumerate(fed)),
         ambient,
         np.array([gauge if gauge > 0.0 else 1.0 for gauge in gauges]),
+        limited,
     )
-    return found if found.supplies or found.walls or found.pressures else None
+    return found if limited or found.supplies or found.walls or found.pressures else None
 
 
 def films_change(case: Case) -> bool:
@@ -85,7 +90,7 @@ class RunInputs:
     @property
     def change_films(self) -> bool:
         """Whether they change the films, beside the heat."""
-        return self.machine is not None and bool(self.machine.pressures)
+        return self.machine is not None and (self.machine.limited or bool(self.machine.pressures))
 
     def at_start(self, system: System) -> System:
         """The machine as it is at the start of a run."""
@@ -111,8 +116,8 @@ class RunInputs:
         films = len(self.names)
         return Inputs(
             np.cumsum([0, *(len(table.time) for table in tables)]),
-            np.concatenate([np.array(table.time) for table in tables]),
-            np.concatenate([np.array(table.x) for table in tables]),
+            np.array([time for table in tables for time in table.time], dtype=np.float64),
+            np.array([value for table in tables for value in table.x], dtype=np.float64),
             places[0],
             places[1],
             places[2],
@@ -121,7 +126,8 @@ class RunInputs:
             machine.largest,
             np.ones(films),
             np.ones(films),
-            system.films.heat_ends() if machine.pressures else (),
+            system.films.heat_ends() if machine.pressures or machine.limited else (),
+            machine.limited,
         )
 
     def units(self) -> dict[str, str]:

@@ -3,6 +3,7 @@ the choice of one."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -47,7 +48,8 @@ def _on_cells(case: Case) -> str | None:
 
 
 def _over_time(case: Case) -> str | None:
-    return case.film.coupling if any(True for _ in inputs_of(case)) else None
+    limited = any(math.isfinite(film.supply.largest_flow) for film in case.films)
+    return case.film.coupling if limited or any(True for _ in inputs_of(case)) else None
 
 
 def _over_speed(case: Case) -> str | None:

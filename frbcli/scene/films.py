@@ -19,7 +19,7 @@ from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import run_grid
-from frbcli.film.gap import Section, ends_at_ambient
+from frbcli.film.gap import NO_BATH, Section, ends_at_ambient
 from frbcli.film.grid import Array
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
 from frbcli.scene.section import film_section
@@ -118,7 +118,7 @@ def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:
 
 def is_plain(film: FilmGeometry) -> bool:
     """Whether a gap looks the same from every angle: its cells may turn as they like."""
-    return film.lobes is None and film.supply.plain
+    return film.lobes is None and film.supply.plain and film.bath <= NO_BATH
 
 
 def turns_with_oil(case: Case, place: FilmPlace) -> bool:

@@ -40,6 +40,7 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         holes=holes,
         lobes=_lobes(bearing),
         sealed=bearing.sealed,
+        bath=bearing.bath,
         largest_flow=bearing.supply.largest_flow / copies,
         flow_roughness=case.contact.flow_roughness,
         shear=case.contact.shear,

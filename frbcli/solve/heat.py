@@ -313,6 +313,8 @@ def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, referen
     film.scales.cavitation, film.scales.ambient = made.scales.cavitation / scale, made.scales.ambient / scale
     film.far.pressure, film.centrifugal = made.far.pressure / scale, made.centrifugal / scale
     film.force_scale, film.roughness = made.force_scale * scale, made.roughness * reference / now[CLEARANCE, f]
+    film.given = made.given * reference / now[CLEARANCE, f]
+    film.line = made.line * reference / now[CLEARANCE, f]
     for p in range(ends.exponents.shape[1]):
         if ends.exponents[f, p] != 0.0:
             film.parameters[p] = made.parameters[p] * scale ** ends.exponents[f, p]

@@ -72,6 +72,7 @@ TABLES = {
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",
     "ends = { sealed = ... }": "SealedEnds",
+    "ends = { bath_level = ... }": "PartBath",
     "clearance_steps = [{ ... }]": "ClearanceStep",
     "lobes = { ... }": "Lobes",
     **{f'supply = {{ kind = "{kind_of(supply)}" }}': supply.__name__ for supply in SUPPLIES},

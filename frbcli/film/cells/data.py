@@ -11,18 +11,20 @@ from numpy.typing import NDArray
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.ends import end_slopes
+from frbcli.film.cells.balance.feed import supply_line
 from frbcli.film.cells.balance.plain import NO_DISTANCE
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import force_weights
+from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
 
 Records = NDArray[np.record]
 TIGHTLY = 1e-4  # settled, where nothing is said of it
 
-ENDS = {"symmetry": 0, "oil-bath": 1, "groove": 1, "free-to-air": 2}
-CLOSED, GIVEN, FREE = range(3)
+CLOSED, GIVEN, FREE, FED = range(4)
+ENDS = {"symmetry": CLOSED, "oil-bath": GIVEN, "groove": FED, "free-to-air": FREE}
 # Of forces: how they clip the pressure at p_cav.
 NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
 
@@ -33,7 +35,8 @@ def record(*fields: tuple[Any, ...]) -> Any:
 
 
 SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  # see Scales
-# An end of a section: CLOSED, GIVEN or FREE; the slope of the pressure there, see EndSlope; the pressure in a groove.
+# An end of a section: CLOSED, GIVEN, FREE, or FED by a groove; the slope of the pressure there, see EndSlope; the
+# pressure in a groove.
 END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
 # One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it keeps
 # its oil; carries_gas: whether that carries free gas; bored: whether flows around take the gaps of both cells, as
@@ -41,6 +44,8 @@ END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
 # gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
 # of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces that it flows
 # between, and shear: see Section; parameters: of its law, of a centred journal at 1 rad/s.
+# Its openings hold the oil fraction `fraction`; of a supply that gives a flow at the most: given, line and lowest of
+# supply_line.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),
@@ -60,11 +65,15 @@ FILM = record(
     ("bored", "?"),
     ("roughness", "f8"),
     ("shear", "f8"),
+    ("fraction", "f8"),
+    ("given", "f8"),
+    ("line", "f8"),
+    ("lowest", "f8"),
     ("parameters", "f8", (LARGEST_PARAMETERS,)),
 )
 # Rows around the ring: sine and cosine, gap of the centred journal in the middle of each cell and at the face after it;
-# length of the cell; what a unit of pressure on it pushes the journal by.
-SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, RING_ROWS = range(10)
+# length of the cell; what a unit of pressure on it pushes the journal by; its share whose free ends lie in a bath.
+SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, BATHED, RING_ROWS = range(11)
 # Layers of cells: area in the balance; share of the cell that is film, and by how much the area exceeds it over the
 # cell's length; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where the
 # pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in
@@ -158,6 +167,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
         own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
     own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
     own.parameters[:] = given_parameters(law)
+    own.fraction, (own.given, own.line, own.lowest) = 1.0, supply_line(film)
 
 
 def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
@@ -171,6 +181,7 @@ def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
     ring[FACE_SIN], ring[FACE_COS], ring[FACE_GAP] = np.sin(face), np.cos(face), gap_height(section, centred, face)
     ring[LENGTH] = np.diff(grid.phi)
     ring[PUSH_X], ring[PUSH_Y] = -np.diff(np.cos(grid.phi)), -np.diff(np.sin(grid.phi))
+    ring[BATHED] = bathed(section, grid.phi)
     width[0] = np.diff(grid.z)
     cells[AREA], cells[SHARE], cells[EXCESS] = grid.area, grid.share, grid.excess
     cells[SHEARED] = (1.0 - grid.cover) * grid.size

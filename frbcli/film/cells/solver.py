@@ -86,7 +86,6 @@ class FilmSolver:
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
         self._states, self._stencil = np.zeros((STATES, m, k)), np.zeros((ENTRIES, m, k))
         self._before, self._paths = np.full((m, k), UPWIND), np.zeros((PATHS, m, k))
-        self._fraction = 1.0  # in the openings
         self._blocks, self._fields, self._flows = np.zeros((m, k, k)), np.zeros((m, k, k + SIDES)), np.zeros(FLOWS)
 
     def steady(self, motion: Motion, start: Array | None = None, upwind: bool = False) -> VolumeSolution:
@@ -105,7 +104,7 @@ class FilmSolver:
         def solve(filling: float, near: VolumeSolution | None) -> VolumeSolution:
             return self.filled(filling, motion, start if near is None else near.w, upwind)
 
-        return limited(self.film, motion, solve)
+        return limited(self.film, solve)
 
     def filled(self, filling: float, motion: Motion, start: Array | None, upwind: bool = False) -> VolumeSolution:
         """The steady film with its openings at a filling, see feed.py. Raises FilmUnsolved."""
@@ -113,8 +112,8 @@ class FilmSolver:
         return replace(self._steady(motion, start, upwind), filling=filling)
 
     def _fill(self, filling: float) -> None:
-        share, self._fraction = feed_at(self.film, filling)
         own, _, _, cells = self._parts
+        share, own.fraction = feed_at(self.film, filling)
         far = self.film.section.far_pressure / self.film.section.pressure_scale
         own.far.pressure = share * far if self.film.section.far == "groove" else 0.0
         cells[GIVEN_PRESSURE] = share * self.film.grid.fixed_pressure
@@ -254,8 +253,6 @@ class FilmSolver:
     def _set_states(self, w: Array) -> None:
         """The states of the cells and openings with the unknown w."""
         cell_states(self._parts[0], self._parts[-1], self._law, 0.0, w, self._states)
-        if self._fraction < 1.0:
-            self._states[FRACTION][self.film.grid.fixed] = self._fraction
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""

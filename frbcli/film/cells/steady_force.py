@@ -9,7 +9,7 @@ import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
-from frbcli.film.cells.balance.feed import ALL, taken
+from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, TURNOVER
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
@@ -88,7 +88,7 @@ def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution)
         filling, (x, y), (v_x, v_y) = solution.filling + float(moved[0]), motion.d + moved[1:3], motion.v + moved[3:]
         there = replace(motion, d=(float(x), float(y)), v=(float(v_x), float(v_y)))
         found = solver.filled(filling, there, solution.w)
-        return np.array([*force(film, film.mean_pressure(found.state)), taken(film, there, found)])
+        return np.array([*force(film, film.mean_pressure(found.state)), found.flows.supply])
 
     by_filling, *by_motion = (
         (at(number, size) - at(number, -size)) / (2.0 * size) for number, size in enumerate(sizes)

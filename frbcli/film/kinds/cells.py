@@ -11,7 +11,8 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.balances import ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.feed import ALL, supply_line, supply_pressure
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, VolumeFilms
@@ -28,7 +29,7 @@ from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.section_faults import is_unfed
-from frbcli.film.state import GAS, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
+from frbcli.film.state import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 AROUND = 360  # angles at which the gap of lobes is looked at
@@ -116,6 +117,10 @@ class CellFilms(Films):
         """See Films.first_state. The oil does not change at first: the journals stand still."""
         layers = WET_WITH_GAS if any(film.law.carries_gas for film in self.own) else WET
         wet = np.zeros((layers, self.count, *self.own[0].grid.shape))
+        flows = np.zeros((2, self.count, FLOWS))
+        flows[PASSED, :, FILLING] = ALL
+        lines = [supply_line(film) for film in self.own]  # nothing flows at first: lines take up what is given
+        flows[NOW, :, FILLING] = [line.given / line.line if line.given > 0.0 else 0.0 for line in lines]
         for i, film in enumerate(self.own):
             at = places[i] / self.clearances[i]
             motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(totals[i]))
@@ -124,11 +129,12 @@ class CellFilms(Films):
                 with contextlib.suppress(NotConverged):
                     solution = steady_solution(film, motion)
                     w, gas = solution.w, solution.gas
+                    flows[PASSED, i, FILLING] = solution.filling
             wet[W, i] = wet[W_BEFORE, i] = w
             wet[OIL, i] = film.content(motion, w, None if gas is None else gas.carried)
             if film.law.carries_gas:
                 wet[GAS, i] = wet[OIL, i] * (film.law.free_gas(film.cells(w), film.scales) if gas is None else gas.free)
-        return wet, np.zeros((2, self.count, FLOWS))
+        return wet, flows
 
     def refill(
         self, i: int, before: Films, d: tuple[float, float], wet: Array, flows: Array
@@ -143,7 +149,7 @@ class CellFilms(Films):
         wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w, gas)
         if gas is not None:
             wet[GAS, i] = wet[OIL, i] * gas.gas
-        flows[:, i] *= old.section.clearance / film.section.clearance
+        flows[:, i, :FILLING] *= old.section.clearance / film.section.clearance
         spilled = float((film.grid.area * (oil - wet[OIL, i]))[~film.grid.fixed].sum())
         for flow in (OUTFLOW, ENDS_NET):
             flows[PASSED, i, flow] += spilled
@@ -199,6 +205,7 @@ class CellFilms(Films):
             resistance=self.data.channels["resistance"] / self.viscosity,
             exponents=self.exponents,
             groove_pressure=self.data.channels["groove_pressure"].copy(),
+            supplies=np.array([supply_pressure(film.section) / film.section.pressure_scale for film in self.own]),
         )
 
     @property

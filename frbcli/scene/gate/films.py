@@ -10,7 +10,7 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.gap import ends_at_ambient
+from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import coupled
 from frbcli.scene.coupling import coupling_of
@@ -20,14 +20,14 @@ from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, SHEETS
+from frbcli.scene.gate.analysis import FILMS, HEAT, ROTATION, RUN, SHEETS
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
-AT_FLOW = (*SHEETS, FILMS, HEAT, ROTATION)  # analyses of films whose supply gives a flow at the most
+AT_FLOW = (RUN, *SHEETS, FILMS, HEAT, ROTATION)  # analyses of films whose supply gives a flow at the most
 SMOOTH = 'Write contact.model = "spring"'
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
 
@@ -73,8 +73,30 @@ def limited_supply_faults(case: Case) -> Iterator[Fault]:
 def unmodelled_flow_faults(case: Case) -> Iterator[Fault]:
     """Analyses that take the pressure of a supply as given."""
     for at, place in _limited_films(case):
-        problem = "is given, which only rotation and bearing sheets follow."
+        problem = "is given, which only runs, rotation and bearing sheets follow."
         yield Fault(at, display(place.geometry.supply.largest_flow, "m^3/s"), None, problem, "Leave it out.")
+
+
+def bath_faults(case: Case) -> Iterator[Fault]:
+    """Films with ends that lie in a bath in part, which are not solved so."""
+    for key, place in zip(film_keys(case), film_places(case), strict=True):
+        film, oil = place.geometry, case.oil
+        if film.bath <= NO_BATH:
+            continue
+        law, form = law_named(case.cavitation(film)), form_of(case)
+        remedy = 'Write ends = "oil-bath" or "free-to-air".'
+        if not (form.by_cells and form.follows_supply and law.keeps_oil) or law.carries_gas:
+            problem = "parts the ends, which films on cells that keep their oil follow alone."
+            remedy = f'Write film.cavitation = "peeken"; or {remedy[0].lower()}{remedy[1:]}'
+        elif tilts(case) or any(True for _ in misaligned(case)):
+            problem = "parts the ends, which is not modelled with a tilt."
+        elif place.grid_body != HOUSING or place.feed_holes is not None:
+            problem = "parts the ends, and the openings of the film turn against the bath."
+        elif law.empties and oil.cavitation_pressure >= oil.ambient_pressure:
+            problem = "has no effect: the pressure is nowhere below that of the bath, so that no oil comes in."
+        else:
+            continue
+        yield Fault(f"{key}.ends.bath_level", f"{film.bath:.3g} radii", None, problem, remedy)
 
 
 def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:

@@ -10,7 +10,7 @@ import pytest
 from frbcli import bearing_sheet, load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.cells.balance.feed import ALL, feed_at, supply_pressure, taken
+from frbcli.film.cells.balance.feed import ALL, feed_at, supply_pressure
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import FilmLoads, loads
@@ -18,7 +18,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.gate.analysis import ROTATION, RUN, STABILITY, STILL
+from frbcli.scene.gate.analysis import ROTATION, STABILITY, STILL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -48,10 +48,10 @@ def steady(film: VolumeFilm, motion: Motion = MOTION) -> tuple[VolumeSolution, F
     return solution, loads(film, motion, solution)
 
 
-def supplied(film: VolumeFilm, solution: VolumeSolution, motion: Motion = MOTION) -> float:
+def supplied(film: VolumeFilm, solution: VolumeSolution) -> float:
     """What the openings of the whole bearing give, m^3/s."""
     section = film.section
-    return section.copies * section.radius * section.width * section.clearance * taken(film, motion, solution)
+    return section.copies * section.radius * section.width * section.clearance * solution.flows.supply
 
 
 def at_pressure(supply: str, law: str = "elrod") -> float:
@@ -150,8 +150,7 @@ def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None
         (("film.cavitation=two-phase", "film.two-phase.form=published"), ROTATION, "films on cells"),
         (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without a tilt"),
         (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
-        (("film.cavitation=elrod",), STABILITY, "only rotation and bearing sheets follow"),
-        (("film.cavitation=elrod",), RUN, "only rotation and bearing sheets follow"),
+        (("film.cavitation=elrod",), STABILITY, "only runs, rotation and bearing sheets follow"),
     ],
 )
 def test_what_does_not_follow_a_flow_refuses_it(settings: tuple[str, ...], analysis: str, told: str) -> None:

@@ -28,6 +28,7 @@ from frbcli.film.cells.data import (
     ALONG,
     AREA,
     AROUND,
+    BATHED,
     CLOSED,
     COS,
     EDGE,
@@ -38,6 +39,7 @@ from frbcli.film.cells.data import (
     FACE_COS,
     FACE_GAP,
     FACE_SIN,
+    FED,
     FREE,
     GAP,
     LENGTH,
@@ -49,9 +51,10 @@ from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BE
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
-# supply by given cells; what channels of a ring bring net; free gas that comes in and leaves with the oil, and what
-# leaves the solution net, see gas/carry.py.
-INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, FLOWS = range(9)
+# supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
+# and what leaves the solution net, see gas/carry.py; and the rate of the filling of openings whose supply gives a flow
+# at the most, see feed.py.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, FILLING, FLOWS = range(10)
 BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
 
 
@@ -115,16 +118,21 @@ def falls_to_air(
 @compiled(inline=True)
 def end_flow(
     kind: int, last: float, beyond: float, conductance: float, bend: float, groove: float, steepness: float,
-    fall: float,
+    fall: float, bathed: float,
 ) -> tuple[float, float, float, float]:  # fmt: skip
     """(outflow, its derivatives by the pressures of the last cell and of the one beyond it, and by the conductance).
 
-    fall: at a free end, see falls_to_air."""
+    fall: at a free end, see falls_to_air; bathed: share of it that lies in a bath."""
     felt, by_last, by_beyond = felt_at_end(last, beyond, bend, groove)
-    if kind == FREE:
+    if kind == FREE and bathed < 1.0:
         slope = conductance * fall / (1.0 + fall)
         by_conductance = fall * fall / (steepness * (1.0 + fall))
-        return conductance / steepness * fall, slope * by_last, slope * by_beyond, by_conductance
+        out = conductance / steepness * fall
+        if bathed > 0.0:
+            free = 1.0 - bathed
+            slope = free * slope + bathed * conductance
+            out, by_conductance = free * out + bathed * conductance * felt, free * by_conductance + bathed * felt
+        return out, slope * by_last, slope * by_beyond, by_conductance
     return conductance * felt, conductance * by_last, conductance * by_beyond, felt
 
 
@@ -208,7 +216,7 @@ def _flow_around(
 
 @compiled()
 def take(taken: float, flows: Array) -> None:
-    """Openings take oil out of cells that are film in part, or give it to them where it is less than 0."""
+    """Openings take oil out of a film, or give it to it where it is less than 0."""
     flows[SUPPLY_NET] -= taken
     if taken > 0.0:
         flows[OUTFLOW] += taken
@@ -326,6 +334,7 @@ def _flow_through_ends(
                 groove,
                 steepness,
                 falls[i],
+                ring[BATHED, i],
             )
             by_gap = g * by_conductance * square * unit
             right[i, j, k + BY_ITSELF] -= flow
@@ -336,13 +345,16 @@ def _flow_through_ends(
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
             elif b < j:
                 stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            leave(flow, flows)
+            leave(kind, flow, flows)
 
 
 @compiled()
-def leave(flow: float, flows: Array) -> None:
-    """Oil leaves through an end, or comes in where the flow is less than 0."""
-    flows[ENDS_NET] += flow
+def leave(kind: int, flow: float, flows: Array) -> None:
+    """Oil leaves through an end of a kind, or comes in where the flow is less than 0."""
+    if kind == FED:
+        flows[SUPPLY_NET] -= flow
+    else:
+        flows[ENDS_NET] += flow
     if flow > 0.0:
         flows[OUTFLOW] += flow
     else:
@@ -398,3 +410,5 @@ def balances(
     _store(ring, cells, states, motion, past, stencil, right)
     _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
     hold_given(cells, stencil, right, flows, SIDES)
+    if film.given > 0.0:
+        flows[FILLING] = (film.given - flows[SUPPLY_NET]) / film.line

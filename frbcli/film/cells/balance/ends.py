@@ -41,12 +41,13 @@ def end_slopes(z: Array, seals: tuple[float, float] = NO_SEALS) -> tuple[EndSlop
 
 
 def end_outflow(
-    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float
+    kind: Edge, pressure: Array, conductance: Array, length: Array, groove: float, ambient: float, bathed: Array
 ) -> tuple[Array, Array]:
     """Outflow of the last cells (n,) through an end and its derivative by their pressure.
 
     pressure: of the cells; conductance: from their middle to the end; length: of their share of the end, each (n,);
-    groove: pressure in a groove at this end; ambient: absolute ambient pressure. Pressures are scaled (1/s), and all
+    groove: pressure in a groove at this end; ambient: absolute ambient pressure; bathed: (n,) share of a free end that
+    lies in a bath. Pressures are scaled (1/s), and all
     but the last are over the ambient pressure.
     """
     if kind == "symmetry":
@@ -55,7 +56,8 @@ def end_outflow(
         return conductance * pressure, conductance
     if kind == "groove":
         return conductance * (pressure - groove), conductance
-    return _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
+    out, slope = _free_to_air(pressure, conductance, length, STEEPNESS / ambient)
+    return (1.0 - bathed) * out + bathed * conductance * pressure, (1.0 - bathed) * slope + bathed * conductance
 
 
 def _free_to_air(pressure: Array, conductance: Array, length: Array, steepness: float) -> tuple[Array, Array]:

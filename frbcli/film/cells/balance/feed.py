@@ -10,19 +10,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.gap import Section
 
 if TYPE_CHECKING:
     from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-    from frbcli.film.cells.motion import Motion
 
+RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at the most
+EAGER = 2.5  # what a film with an eccentric journal takes, over what a concentric one takes
 ALL = 1.0  # filling of openings at the pressure of the supply
 ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be told any closer
 MOST = 80  # fillings that are tried
@@ -53,26 +52,15 @@ def feed_at(film: VolumeFilm, filling: float) -> Feed:
     return Feed(float(state.pressure[0]) / supply, min(max(float(state.fraction[0]), 0.0), 1.0))
 
 
-def taken(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
-    """What a film takes from its openings net, in its units, by one section."""
-    if film.section.far != "groove":
-        return solution.flows.supply
-    share, _ = feed_at(film, solution.filling)
-    section = replace(film.section, far_pressure=share * film.section.far_pressure)
-    fluxes, _, _ = CellBalances(section, film.grid, motion).fluxes(solution.state.pressure, solution.state.fraction)
-    return solution.flows.supply - float(fluxes.far.sum())
-
-
-def limited(film: VolumeFilm, motion: Motion, solve: Solve) -> VolumeSolution:
+def limited(film: VolumeFilm, solve: Solve) -> VolumeSolution:
     """The film with openings that are filled so that it takes no more than what its supply gives.
 
     solve: the film with a filling, begun from another solution. Raises FilmUnsolved.
     """
-    section = film.section
-    given = section.largest_flow / (section.radius * section.width * section.clearance)
+    section, given = film.section, given_flow(film.section)
 
     def over(found: VolumeSolution) -> float:
-        return taken(film, motion, found) / given - 1.0
+        return found.flows.supply / given - 1.0
 
     solution = solve(ALL, None)
     if (excess := over(solution)) <= 0.0:
@@ -119,6 +107,33 @@ def _lowest(film: VolumeFilm) -> float:
     """Filling at which openings hold neither oil nor, where the law lets it fall, pressure."""
     scales = film.scales
     return -1.0 if film.law.empties else -1.0 - (scales.cavitation + scales.ambient) / scales.reference
+
+
+def given_flow(section: Section) -> float:
+    """The flow that the supply of a section gives at the most, in the units of its film, 1/s."""
+    return section.largest_flow / (section.radius * section.width * section.clearance)
+
+
+class SupplyLine(NamedTuple):
+    """The line between a supply and its openings in the time loop: given, the flow in 1/s, 0 where the supply holds its
+    pressure; line, what the line takes up for a filling of 1; lowest: filling."""
+
+    given: float
+    line: float
+    lowest: float
+
+
+def supply_line(film: VolumeFilm) -> SupplyLine:
+    """The line of the supply of a film, of which the oil is the state: filling' = (given - taken) / line.
+
+    It holds what the film may take in RESPONSE at the most, so that steps as short as that are stable."""
+    section, scales = film.section, film.scales
+    if not is_limited(section):
+        return SupplyLine(0.0, 0.0, 0.0)
+    given, rise = given_flow(section), supply_pressure(section) / section.pressure_scale - scales.cavitation
+    openings = len(section.grooves) + len(section.holes)
+    taken = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
+    return SupplyLine(given, RESPONSE * max(given, EAGER * taken), _lowest(film))
 
 
 def is_limited(section: Section) -> bool:

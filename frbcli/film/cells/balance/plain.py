@@ -14,6 +14,7 @@ from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.carried import UPWIND, limited
 from frbcli.film.cells.balance.ends import BEND, EndSlope, end_outflow, end_slopes
 from frbcli.film.cells.mesh.grid import VolumeGrid
+from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
@@ -155,7 +156,9 @@ class CellBalances:
         smooth = np.abs(bend) <= BEND * np.abs(rise)
         side = BEND * np.sign(bend) * np.sign(rise)
         felt = last + np.where(smooth, bend, side * rise)
-        out, by_felt = end_outflow(kind, felt, conductance, np.diff(self.grid.phi), groove, ambient)
+        out, by_felt = end_outflow(
+            kind, felt, conductance, np.diff(self.grid.phi), groove, ambient, bathed(self.section, self.grid.phi)
+        )
         by_felt = np.where(fixed[:, 0], 0.0, by_felt)  # a groove or hole that reaches the end feeds the film only
         by_last = by_felt * np.where(smooth, 1.0 + slope.bend, 1.0 + side)
         by_next = by_felt * np.where(smooth, -slope.bend, 0.0)

@@ -9,6 +9,7 @@ from frbcli.film.cells.balance.balances import end_flow, falls_to_air, section_e
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import (
+    BATHED,
     CLOSED,
     COS,
     FREE,
@@ -42,8 +43,9 @@ def side_flow(
             cube, _ = flowing_cube(h, film.roughness)
             conductance = cube * film.aspect * ring[LENGTH, i] * rise
             flow, _, _, _ = end_flow(
-                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, falls[i]
-            )
+                kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, 0.0, steepness, falls[i],
+                ring[BATHED, i],
+            )  # fmt: skip
             total += max(flow, 0.0)
     return total
 

@@ -65,7 +65,7 @@ def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array
             if cells[UNKNOWN, i, j] == 0.0:
                 states[PRESSURE, i, j], states[FRACTION, i, j], states[SOURCE, i, j] = (
                     cells[GIVEN_PRESSURE, i, j] - drop,
-                    1.0,
+                    film.fraction,
                     0.0,
                 )
                 for layer in range(PRESSURE_SLOPE, CARRIED_GAS):

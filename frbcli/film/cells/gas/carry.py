@@ -36,6 +36,7 @@ from frbcli.film.cells.data import (
     ALONG,
     AREA,
     AROUND,
+    BATHED,
     CLOSED,
     COS,
     EDGE,
@@ -162,8 +163,9 @@ def _through_ends(
                 conductance = cube * film.aspect * ring[LENGTH, i] * rise
                 groove = film.far.pressure if far else 0.0
                 flow, _, _, _ = end_flow(
-                    kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness, falls[i]
-                )
+                    kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness,
+                    falls[i], ring[BATHED, i],
+                )  # fmt: skip
                 _outside(flow, i, j, paths)
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.gap import AxialGroove, Hole, Section
+from frbcli.film.gap import NO_BATH, AxialGroove, Hole, Section
 from frbcli.film.grid import Array
 
 NO_HOLE = 1e-3  # of the cells at its middle: a hole smaller than this supplies nothing
@@ -52,6 +52,13 @@ def hole_opening(section: Section, hole: Hole, phi: Array, z: Array) -> Opening:
     if not inside.any() and cover.max() > 0.0:
         inside = _at_middle(np.hypot(u, v), cover, np.diff(phi)[:, None] * np.diff(z))
     return Opening(inside, across - hole.half_angle * reach_u, along - half * reach_v, cover)
+
+
+def bathed(section: Section, phi: Array) -> Array:
+    """(m,) share of each cell with the boundaries phi (m + 1,) whose free ends lie in the bath at the bottom."""
+    if section.bath <= NO_BATH:
+        return np.zeros(len(phi) - 1)
+    return _interval_cover(phi, math.pi, math.pi - math.acos(section.bath))
 
 
 def hole_area(section: Section, hole: Hole) -> float:

@@ -13,6 +13,7 @@ from frbcli.film.cells.balance.balances import (
     BY_ITSELF,
     CHANNELS_NET,
     ENDS_NET,
+    FILLING,
     INFLOW,
     OUTFLOW,
     SUPPLY_NET,
@@ -44,7 +45,9 @@ def tilted_balances(
     taken = np.array([((share - np.roll(share, -1, axis=0)) * fluxes.carried).sum(), fluxes.excess.sum()])
     leaving, entering = np.concatenate([ends, -fed, taken]), np.concatenate([-ends, fed, -taken])
     flows[INFLOW], flows[OUTFLOW] = np.maximum(entering, 0.0).sum(), np.maximum(leaving, 0.0).sum()
-    flows[ENDS_NET], flows[SUPPLY_NET], flows[CHANNELS_NET] = ends.sum(), fed.sum() - taken.sum(), 0.0
+    groove = float(fluxes.far.sum()) if film.section.far == "groove" else 0.0
+    flows[ENDS_NET], flows[SUPPLY_NET] = ends.sum() - groove, fed.sum() - taken.sum() - groove
+    flows[CHANNELS_NET] = flows[FILLING] = 0.0
 
 
 def tilted_outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:

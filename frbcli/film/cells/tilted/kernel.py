@@ -35,6 +35,7 @@ from frbcli.film.cells.data import (
     ALONG,
     AREA,
     AROUND,
+    BATHED,
     CLOSED,
     COS,
     EDGE,
@@ -269,6 +270,7 @@ def _flow_through_ends(
                 groove,
                 steepness,
                 falls[i],
+                ring[BATHED, i],
             )
             by_gap = 3.0 * g * by_conductance * h * h * unit
             right[i, j, k + BY_ITSELF] -= flow
@@ -278,7 +280,7 @@ def _flow_through_ends(
                 stencil[ABOVE, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
             elif b < j:
                 stencil[BELOW, i, j] += by_beyond * states[PRESSURE_SLOPE, i, b]
-            leave(flow, flows)
+            leave(kind, flow, flows)
 
 
 @compiled()

@@ -1,0 +1,109 @@
+"""Runs with films whose supply gives a flow at the most: its balance, where they settle, and films at a pressure."""
+
+from __future__ import annotations
+
+import math
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli import load_case, read_run, runup
+from frbcli.case.reading.load import load_case_text
+from frbcli.case.schema import Case
+from frbcli.equilibrium.resting import resting_position
+from frbcli.film.cells.balance.balances import FILLING, SUPPLY_NET
+from frbcli.film.cells.balance.feed import supply_line
+from frbcli.film.state import PASSED
+from frbcli.results.store import Run
+from frbcli.runs import march
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+
+GROOVE = 'kind = "circumferential-groove", pressure = "3 bar"'
+AXIAL = 'kind = "axial-grooves", opening_angle = "20 deg", pressure = "3 bar"'
+FLOW = {GROOVE: 4e-7, AXIAL: 5e-7}  # m^3/s, about a third of what the films take at 3 bar
+each_supply = pytest.mark.parametrize("supply", [GROOVE, AXIAL], ids=["groove", "axial"])
+DURATION = 0.15
+
+
+def case_of(supply: str, flow: float | None, *settings: str) -> Case:
+    limit = "" if flow is None else f", flow = {flow!r}"
+    common = ["film.cavitation=elrod", "accuracy.mesh=[6, 32]", "rotor.unbalance=0"]
+    speed = ["speed.from=50", "speed.to=50", f"speed.duration={DURATION}"]
+    return load_case("rigid", [*common, *speed, f"bearing.supply={{ {supply}{limit} }}", *settings])
+
+
+def flows_of(run: Run) -> np.ndarray:
+    """What has passed through the film so far, see balances.py."""
+    checkpoint = read_run(run.path).checkpoint
+    assert checkpoint is not None
+    return np.asarray(checkpoint["flows"][PASSED, 0])
+
+
+@each_supply
+def test_what_was_given_has_passed_or_fills_the_line(supply: str, tmp_path: Path) -> None:
+    """An unbalance shakes a journal that rests; the line is never full, so that no oil is left over."""
+    case = case_of(supply, FLOW[supply], "start.position=resting", "rotor.unbalance=20 g*mm")
+    system, run = make_system(case, make_plan(case)), runup(case, tmp_path / "run.h5")
+    place = system.rotor.journals @ resting_position(system, 2.0 * math.pi * 50.0).displacements
+    _, first = system.films.first_state(place, np.array([2.0 * math.pi * 50.0]))
+    flows, line = flows_of(run), supply_line(system.films.with_fields[0])
+    emptied = line.line * (first[PASSED, 0, FILLING] - flows[FILLING])
+    assert 1e-6 * flows[SUPPLY_NET] < abs(emptied) < 0.3 * flows[SUPPLY_NET]
+    assert flows[SUPPLY_NET] == pytest.approx(line.given * DURATION + emptied, rel=1e-10)
+    assert run.error["oil_balance_relative"] < 1e-5  # type: ignore[operator]
+
+
+@each_supply
+def test_a_journal_comes_to_rest_where_a_film_with_this_flow_carries_it(supply: str, tmp_path: Path) -> None:
+    case = case_of(supply, FLOW[supply])
+    system = make_system(case, make_plan(case))
+    place = system.rotor.journals[0] @ resting_position(system, 2.0 * math.pi * 50.0).displacements
+    run, full = (
+        runup(case_of(supply, flow, "speed.duration=0.5"), tmp_path / f"{flow}.h5") for flow in (FLOW[supply], None)
+    )
+    rest = math.hypot(*place) / system.clearances[0]
+    assert run["eccentricity"][-1] == pytest.approx(rest, abs=5e-4)  # the cells of the run turn, those at rest do not
+    assert abs(full["eccentricity"][-1] - rest) > 5e-3
+
+
+def test_more_than_the_film_takes_is_a_run_at_the_pressure_of_the_supply(tmp_path: Path) -> None:
+    """Bit for bit."""
+    ample, plain = (runup(case_of(GROOVE, flow), tmp_path / f"{flow}.h5") for flow in (1e-4, None))
+    for name in plain.signals:
+        np.testing.assert_array_equal(ample[name], plain[name], strict=True)
+
+
+def test_a_run_resumed_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(march, "BUDGET", 20)
+    case, left = case_of(AXIAL, FLOW[AXIAL]), iter(range(3, -1, -1))
+    whole = runup(case, tmp_path / "whole.h5")
+
+    def stop(_: object) -> None:
+        if next(left, None) == 0:
+            signal.raise_signal(signal.SIGINT)
+
+    stopped = runup(case, tmp_path / "broken.h5", observe=stop)
+    assert stopped.status == "interrupted"
+    resumed = runup(load_case_text(stopped.case_text, name=case.name), tmp_path / "broken.h5", resume=True)
+    for name in whole.signals:
+        np.testing.assert_array_equal(resumed[name], whole[name], strict=True)
+
+
+def test_a_film_that_was_emptied_fills_again(tmp_path: Path) -> None:
+    """Its supply falls to the pressure of the air and comes back: so do oil, place of the journal and balance."""
+    speed = "speed.from=15", "speed.to=15", "speed.duration=1.5", "start.position=resting"
+    rows = '[["0 s", "3 bar"], ["0.02 s", "1 bar"], ["0.12 s", "1 bar"], ["0.14 s", "3 bar"], ["2 s", "3 bar"]]'
+    run, plain = (
+        runup(case_of(GROOVE.replace('"3 bar"', given), None, *speed), tmp_path / name)
+        for name, given in (("run.h5", rows), ("plain.h5", '"3 bar"'))
+    )
+    oil, full = run["oil_fraction"], plain["oil_fraction"]
+    assert oil.min() < 0.8 * full[-1]
+    assert run["eccentricity"].max() > plain["eccentricity"].max() + 0.05
+    assert oil[-1] == pytest.approx(full[-1], abs=1e-4)
+    for name in ("journal_x_m", "journal_y_m"):
+        assert run[name][-1] == pytest.approx(plain[name][-1], abs=1e-4 * 40e-6)
+    assert run.error["oil_balance_relative"] < 1e-5  # type: ignore[operator]
