@@ -54,7 +54,7 @@ def limited_supply_faults(case: Case) -> Iterator[Fault]:
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
         least = max(oil.ambient_pressure, oil.cavitation_pressure)
         if not (form.by_cells and form.follows_supply) or tilts(case) or any(True for _ in misaligned(case)):
-            problem = "is given, which films on cells without a tilt follow alone."
+            problem = "is given, which only films on cells without a tilt follow."
             remedy = 'Write film.cavitation = "elrod" and no tilt; or leave it out.'
         elif not law.keeps_oil or law.carries_gas:
             problem = f"is given, and {law.name} does not conserve the oil, or has its gas to follow."
@@ -86,7 +86,7 @@ def bath_faults(case: Case) -> Iterator[Fault]:
         law, form = law_named(case.cavitation(film)), form_of(case)
         remedy = 'Write ends = "oil-bath" or "free-to-air".'
         if not (form.by_cells and form.follows_supply and law.keeps_oil) or law.carries_gas:
-            problem = "parts the ends, which films on cells that keep their oil follow alone."
+            problem = "parts the ends, which only films on cells that keep their oil follow."
             remedy = f'Write film.cavitation = "peeken"; or {remedy[0].lower()}{remedy[1:]}'
         elif tilts(case) or any(True for _ in misaligned(case)):
             problem = "parts the ends, which is not modelled with a tilt."
