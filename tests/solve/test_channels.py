@@ -18,6 +18,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.balances import CHANNELS_NET
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels.channel import Channel, channel_resistance
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import UNKNOWN, volume_films
@@ -126,7 +127,14 @@ def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
         replace(grid, fixed_pressure=np.where(grid.fixed, feed_holes / scale, 0.0)),
         film.law, film.scales.reference,
     )  # fmt: skip
-    flow = FilmSolver(there).steady(Motion((0.0, 0.0), (0.0, 0.0), 0.0)).flows.supply
+    motion = Motion((0.0, 0.0), (0.0, 0.0), 0.0)
+    solution = FilmSolver(there).steady(motion)
+    flow = solution.flows.supply
+    if section.far == "groove":  # which supplies oil as well
+        fluxes, _, _ = CellBalances(there.section, there.grid, motion).fluxes(
+            solution.state.pressure, solution.state.fraction
+        )
+        flow += float(fluxes.far.sum())
     return flow * section.copies * section.radius * section.width * section.clearance
 
 
