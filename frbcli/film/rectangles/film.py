@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from frbcli.film.gap import Section, groove_pressure
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kept import kept_beside
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
-from frbcli.film.rectangles.fields import FieldsFilm, field_grid, field_table
+from frbcli.film.rectangles.fields import LINES, FieldsFilm, field_grid, field_table
 from frbcli.film.rectangles.film_force import FilmData, film_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_share
 from frbcli.film.rectangles.table import TableFilm, force_table, table_force
@@ -42,6 +42,7 @@ def make_film(section: Section, theory: str, cavitation: str, mesh: Mesh) -> Fil
         return SuppliedShortFilm(scale, slenderness, sigma, level)
     if equal:
         return TableFilm(scale, _force_table(mesh, radius_to_width, clipped, seals))
+    mesh = replace(mesh, circumferential=max(mesh.circumferential, mesh.lines * LINES))  # the grid also holds its lines
     return FieldsFilm(scale, sigma, level, _field_table(mesh, radius_to_width, seals), field_grid(mesh, seals))
 
 

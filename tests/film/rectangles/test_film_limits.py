@@ -12,7 +12,7 @@ from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles import short
-from frbcli.film.rectangles.film import evaluate
+from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.plain import solve_plain
 from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
@@ -251,3 +251,14 @@ def test_field_table_is_the_direct_solve(bearing: Section) -> None:
     errors = table_errors(bearing, "half-sommerfeld")
     assert np.median(errors) < 4e-4
     assert errors.max() < 3e-3
+
+
+def test_a_film_under_pressure_on_fewer_elements_around_than_it_has_lines_is_that_of_as_many() -> None:
+    """A groove under 1 bar: the fields stand on eight lines along the axis, beside the elements around."""
+    fed = replace(GROOVED, far_pressure=1e5)
+    at, v = np.array([1e-5, -5e-6]), np.array([1e-3, 2e-3])
+    few, enough = (
+        evaluate(make_film(fed, "finite", "half-sommerfeld", Mesh(32, around)), fed.clearance, at, v, OMEGA).force
+        for around in (4, 8)
+    )
+    np.testing.assert_array_equal(few, enough)
