@@ -119,7 +119,8 @@ def test_a_rough_journal_carries_more_oil_and_a_rough_shell_less(share: float) -
 def test_forces_have_their_derivatives() -> None:
     section, motion, step = rough(0.5, 0.1), Motion((0.3, -0.6), (4.0, 2.0), OMEGA), 1e-6
     film = film_of(section, Sommerfeld(), motion.d)
-    found = settled_force(film, motion, FilmSolver(film).steady(motion))
+    solver = FilmSolver(film)
+    found = settled_force(solver, motion, solver.steady(motion))
 
     def force(x: float, y: float) -> np.ndarray:
         moved = replace(motion, d=(x, y))
