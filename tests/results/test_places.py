@@ -145,7 +145,7 @@ def heads() -> dict[str, str]:
         for name, columns in column_tables.TABLES.items()
     }
     # columns that are added to those of another table
-    parts = ("moment of the force", "tilting films", "mixed friction", "collar", "gas of the oil")
+    parts = ("moment of the force", "moment over time", "tilting films", "mixed friction", "collar", "gas of the oil")
     return {name: ",".join(names) for name, names in flat.items() if names and name not in parts}
 
 
