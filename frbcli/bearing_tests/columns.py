@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from operator import attrgetter, itemgetter
 from typing import Any
 
 from frbcli.columns import Column, Columns, Shown, named
 
 FORCES, OIL, GASES = "forces", "oil", "gas"  # tables of the terminal
+NO_TORQUE = 1e-15  # N m
 
 
 def _loads(path: str) -> Callable[[Any], Any]:
@@ -40,11 +42,16 @@ def force_size(result: Any) -> float:
     return math.hypot(*(_force(result) or (0.0, 0.0)))
 
 
-def _alike(force: Sequence[float]) -> list[str]:
-    """Both components and the size, with the decimals that suit it."""
-    size = math.hypot(*force)
-    decimals = max(0, 2 - math.floor(math.log10(size))) if size > 0.0 else 0
-    return [f"{value:.{min(decimals, 6)}f}" for value in (*force, size)]
+def _fixed(vector: Sequence[float], digits: int) -> list[str]:
+    """Both components and the size, with decimals that give so many digits to the size: round-off beside it is 0."""
+    size = math.hypot(*vector)
+    decimals = max(0, digits - 1 - math.floor(math.log10(size))) if size > 0.0 else 0
+    return [f"{value:.{decimals}f}" for value in (*vector, size)]
+
+
+def _torque(value: float) -> str:
+    """The torque of a journal that does not turn is round-off."""
+    return f"{value:.3g}" if abs(value) > NO_TORQUE else "0"
 
 
 def _angle(result: Any) -> float:
@@ -67,14 +74,14 @@ RESULT = (
     Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
            shown=(Shown("eps", ".3f", table=FORCES),), key=""),
     Column("force", "N", "force of the whole bearing on the journal", _force, shape=(2,),
-           shown=(Shown(("Fx", "Fy", "|F|"), _alike, table=FORCES),)),
+           shown=(Shown(("Fx", "Fy", "|F|"), partial(_fixed, digits=3), table=FORCES),)),
     Column("sommerfeld_number", "", "Sommerfeld number (3.14)", shown=(Shown("So", ".3g", table=FORCES),), key=""),
     Column("force_angle", "deg", "angle of the force from the x-axis", _angle,
            shown=(Shown("angle", "{:.0f}°".format, table=FORCES),), key=""),
     Column("p_max", "Pa", "largest absolute pressure", _loads("p_max"), shown=(Shown("p_max", ".4g", "bar", FORCES),)),
     Column("p_min", "Pa", "smallest absolute pressure", _loads("p_min"), shown=(Shown("p_min", ".4g", "bar", OIL),)),
     Column("torque_journal", "N m", "torque on the journal", _loads("torque.journal"),
-           shown=(Shown("torque", ".3g", table=OIL),)),
+           shown=(Shown("torque", _torque, table=OIL),)),
     Column("torque_shell", "N m", "torque on the shell", _loads("torque.shell")),
     Column("oil_fraction", "", "mean oil fraction (4.46)", _loads("oil_fraction"),
            shown=(Shown("oil", ".3f", table=OIL),)),
@@ -98,7 +105,7 @@ RESULT = (
 # Of a KinematicResult whose journal tilts, or of a rotation whose velocity is given
 MOMENT = (
     Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
-           shape=(2,), shown=(Shown(("Mx", "My"), ".4g", table=FORCES),)),
+           shape=(2,), shown=(Shown(("Mx", "My"), lambda moment: _fixed(moment, 4)[:2], table=FORCES),)),
     Column("moment_error_relative", "", "error of the moment, from half the cells, over its size",
            attrgetter("moment_error"), key="error.moment_relative"),
 )  # fmt: skip

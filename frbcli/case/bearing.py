@@ -110,6 +110,18 @@ class Ring(Model):
         return replace(SOLIDS[self.material], **{name: value for name, value in own.items() if value is not None})
 
 
+CentrifugalPressure = Annotated[
+    bool, Field(description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")
+]
+Channels = Annotated[
+    Literal["pressure", "coupled"],
+    Field(
+        description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
+        "oil that leaves one film enters the other"
+    ),
+]
+
+
 class FloatingRingBearing(BearingWalls):
     """A ring that floats between an inner film around the journal and an outer film in the shell."""
 
@@ -119,14 +131,8 @@ class FloatingRingBearing(BearingWalls):
     ring: Ring = Field(description="mass and inertia of the ring, or what they follow from")
     inner: RingFilm = Field(description="film between journal and ring")
     outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer one of the ring")
-    centrifugal_pressure: bool = Field(
-        default=True, description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)"
-    )
-    channels: Literal["pressure", "coupled"] = Field(
-        default="pressure",
-        description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
-        "oil that leaves one film enters the other",
-    )
+    centrifugal_pressure: CentrifugalPressure = True
+    channels: Channels = "pressure"
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
 
@@ -192,12 +198,8 @@ class CartridgeBearing(BearingWalls):
     ring: Ring = Field(description="its body: mass, inertia and tilt_inertia must be given")
     inner: _Films = Field(description="films between journals and ring: one table for both ends, or a list of two")
     outer: _Films = Field(description="films between ring and shells, as inner; diameter: the outer one of the ring")
-    centrifugal_pressure: bool = Field(
-        default=True, description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)"
-    )
-    channels: Literal["pressure", "coupled"] = Field(
-        default="pressure", description="feed holes of the inner films in the ring, as of a floating ring"
-    )
+    centrifugal_pressure: CentrifugalPressure = True
+    channels: Channels = "pressure"
     damper: ClassVar[None] = None
     support: ClassVar[None] = None
 

@@ -209,8 +209,7 @@ def response(
     rotors = [without_spins(system.rotor, 2.0 * math.pi * np.array(point.ring_speeds_Hz)) for point in resting]
     found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
     motions, forces, journals = zip(*found, strict=True)
-    systems = (system if point.warm is None else point.warm.system for point in resting)
-    clearances = np.array([each.clearances for each in systems])
+    clearances = np.array([(point.warm.system if point.warm else system).clearances for point in resting])
     motion = np.array(motions)
     speeds = np.array([point.speed_Hz for point in resting])
     peaks, others = peak_speeds(speeds, motion), _on_others(rotors, resting, excitation)

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from films import ROUGH
 
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.load import load_case
@@ -16,13 +17,6 @@ from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.scene.machine.system import rough_surfaces
 
-ROUGH = (
-    "contact.model=asperities",
-    "contact.roughness=0.4 um",
-    "contact.summit_radius=20 um",
-    "contact.summit_density=5e9 1/m^2",
-    "contact.friction=0.12",
-)
 GROOVE = "bearing.supply={ kind = 'circumferential-groove', pressure = '1 bar' }"
 R, C = 12.5e-3, 40e-6
 CLOSE = 0.97  # 3 roughnesses are left

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 from cycle_machines import machine_of
+from films import ROUGH
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
@@ -17,13 +18,6 @@ from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
-ROUGH = (
-    "contact.model=asperities",
-    "contact.roughness=0.4 um",
-    "contact.summit_radius=20 um",
-    "contact.summit_density=5e9 1/m^2",
-    "contact.friction=0.12",
-)
 OMEGA = 2.0 * math.pi * 1.5
 PLACE, RATE = np.array([[0.11, -0.958]]), np.array([[3.0, -1.0]])
 

@@ -19,6 +19,14 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 CLEARANCE, RADIUS, VISCOSITY, AMBIENT = 40e-6, 12.5e-3, 10e-3, 1e5
+# Settings of a case with rough surfaces
+ROUGH = (
+    "contact.model=asperities",
+    "contact.roughness=0.4 um",
+    "contact.summit_radius=20 um",
+    "contact.summit_density=5e9 1/m^2",
+    "contact.friction=0.12",
+)
 
 
 def rectangular(

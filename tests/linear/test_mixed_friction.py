@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from films import ROUGH
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
@@ -22,13 +23,6 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
-ROUGH = (
-    "contact.model=asperities",
-    "contact.roughness=0.4 um",
-    "contact.summit_radius=20 um",
-    "contact.summit_density=5e9 1/m^2",
-    "contact.friction=0.12",
-)
 LOAD = 6.1 * 9.81 / 2.0
 
 

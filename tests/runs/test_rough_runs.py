@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from films import ROUGH
 from scipy.integrate import quad
 from scipy.interpolate import CubicSpline
 from scipy.linalg import expm
@@ -25,13 +26,6 @@ from frbcli.runs.run import rundown, runup
 from frbcli.scene.machine.system import make_system, rough_surfaces
 from frbcli.scene.planning.plan import make_plan
 
-ROUGH = (
-    "contact.model=asperities",
-    "contact.roughness=0.4 um",
-    "contact.summit_radius=20 um",
-    "contact.summit_density=5e9 1/m^2",
-    "contact.friction=0.12",
-)
 WEAR = "contact.wear=1e-7", "contact.hardness=2 GPa"
 STARTS = ("start.position=resting", "rotor.unbalance=0 g*mm", 'output.signals=["torque","power"]')
 

@@ -26,6 +26,10 @@ def history_figure(found: KinematicTest) -> Figure:
         words = f"{found.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
             words += f", journal turns with {motion.speed:g} Hz"
+        if motion.tilt is not None:
+            words += ", tilted"
+        if len(found.results) == 1:  # else the legend names the models
+            words += f", {found.results[0].plan.label}"
         figure = new_figure(found.case.heading, words, height=HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
         for number, result in enumerate(found.results):

@@ -92,7 +92,7 @@ def cell_response(
     w, past, states, fields = work.w[f], work.past[f], work.states[f], work.fields[f]
     stencil, grid, slopes, flows = work.stencil, work.grids[f], work.slopes[f], work.stage_flows[s, f]
     d_x, d_y, v_x, v_y, omega = motion
-    turn, spin, remembers = grid.turn, grid.speed, film.remembers
+    turn, spin, remembers, (m, k) = grid.turn, grid.speed, film.remembers, w.shape
     cosine, sine = math.cos(turn), math.sin(turn)
     x, y = cosine * d_x + sine * d_y, cosine * d_y - sine * d_x
     grid.stage, grid.x, grid.y = s, x, y
@@ -119,7 +119,6 @@ def cell_response(
         store_stage(film, ring, cells, work, f, g, flows)
     if balanced and iteration > 0 and grid.ratio < SLOW:
         grid.balance = HELD
-        m, k = w.shape
         for i in range(m):  # the journal takes the film along as it did before
             for j in range(k):
                 fields[i, j, k + BY_ITSELF] = 0.0
@@ -136,7 +135,6 @@ def cell_response(
             ask_of_channels(cells, fields)
         solve_ring_at(film.solver_at, stencil, work.blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(film, ring, cells, states, fields)
-        m, k = w.shape
         for i in range(m):
             for j in range(k):
                 fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
