@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.errors import NotConverged
+from frbcli.film.cells.balance.feed import ALL, RESPONSE, supply_line
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.motion import Motion, Path
@@ -70,9 +71,10 @@ def march(
 
     A law that keeps its oil stores it as implicit Euler steps do, but lets it flow through the gap of the middle of the
     step, which makes the pressure of a full film second order; moments are then of that time. Else the film follows
-    from the motion of the moment.
+    from the motion of the moment. Openings whose supply gives a flow at the most are full at first; their filling stays
+    during a step, as in runs.
     """
-    steps = _Steps(film, path, film.full() if start is None else start, float(times[0]), film_at)
+    steps = _Steps(film, path, film.full() if start is None else start, times, film_at)
     for time in times[1:]:
         yield steps.to(float(time), MOST_HALVINGS)
 
@@ -80,7 +82,8 @@ def march(
 class _Steps:
     """The past that the next step needs."""
 
-    def __init__(self, film: VolumeFilm, path: Path, w: Array, time: float, film_at: FilmAt | None) -> None:
+    def __init__(self, film: VolumeFilm, path: Path, w: Array, times: Array, film_at: FilmAt | None) -> None:
+        time = float(times[0])
         self._film_at, self._path, self._solver = film_at, path, FilmSolver(film)
         self._w, self._time, self._content = w, time, film.content(path(time), w)
         self._gas: KeptGas | None = None  # H theta c, and what was carried last
@@ -89,6 +92,7 @@ class _Steps:
             self._gas = KeptGas(self._content * free, Carried(free, np.full(w.shape, FAST)))
         self._drift: Array | None = None  # how fast w changed in the step before, and the gas that cells were given
         self._gas_drift: Array | float = 0.0
+        self._line, self._filling = supply_line(film, max(RESPONSE, float(np.diff(times).max(initial=0.0)))), ALL
 
     def to(self, time: float, halvings: int) -> Moment:
         """One step to the time, or two of half its size."""
@@ -114,7 +118,12 @@ class _Steps:
         if gas is not None:
             carried, turnover = gas.guess
             kept = KeptGas(gas.past / dt, Carried(carried + dt * self._gas_drift, turnover))
+        if self._line.given > 0.0:
+            solver.fill(self._filling)
         solution, content = solver.keep(end, flowing, begin, 1.0 / dt, self._content / dt, kept)
+        if self._line.given > 0.0:
+            solution = replace(solution, filling=self._filling)
+            self._filling = self._line.filled(self._filling, solution.flows.supply, dt)
         if gas is not None and solution.gas is not None:
             self._gas = KeptGas(content * solution.gas.free, solution.gas.carried)
             self._gas_drift = (solution.gas.carried.gas - gas.guess.gas) / dt

@@ -108,10 +108,11 @@ class FilmSolver:
 
     def filled(self, filling: float, motion: Motion, start: Array | None, upwind: bool = False) -> VolumeSolution:
         """The steady film with its openings at a filling, see feed.py. Raises FilmUnsolved."""
-        self._fill(filling)
+        self.fill(filling)
         return replace(self._steady(motion, start, upwind), filling=filling)
 
-    def _fill(self, filling: float) -> None:
+    def fill(self, filling: float) -> None:
+        """Fill the openings for what is solved from here on, see feed.py."""
         own, _, _, cells = self._parts
         share, own.fraction = feed_at(self.film, filling)
         far = self.film.section.far_pressure / self.film.section.pressure_scale

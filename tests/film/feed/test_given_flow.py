@@ -150,7 +150,7 @@ def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None
         (("film.cavitation=two-phase", "film.two-phase.form=published"), ROTATION, "films on cells"),
         (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without a tilt"),
         (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
-        (("film.cavitation=elrod",), STABILITY, "only runs, rotation and bearing sheets follow"),
+        (("film.cavitation=elrod",), STABILITY, "only runs, kinematic tests and bearing sheets follow"),
     ],
 )
 def test_what_does_not_follow_a_flow_refuses_it(settings: tuple[str, ...], analysis: str, told: str) -> None:

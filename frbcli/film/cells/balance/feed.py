@@ -122,18 +122,22 @@ class SupplyLine(NamedTuple):
     line: float
     lowest: float
 
+    def filled(self, filling: float, taken: float, dt: float) -> float:
+        """The filling after a step of dt in s in which the openings took a flow, 1/s."""
+        return min(max(filling + dt * (self.given - taken) / self.line, self.lowest), ALL)
 
-def supply_line(film: VolumeFilm) -> SupplyLine:
+
+def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
     """The line of the supply of a film, of which the oil is the state: filling' = (given - taken) / line.
 
-    It holds what the film may take in RESPONSE at the most, so that steps as short as that are stable."""
+    response: s; the line holds what the film may take in it at the most, so that steps as short as that are stable."""
     section, scales = film.section, film.scales
     if not is_limited(section):
         return SupplyLine(0.0, 0.0, 0.0)
     given, rise = given_flow(section), supply_pressure(section) / section.pressure_scale - scales.cavitation
     openings = len(section.grooves) + len(section.holes)
     taken = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
-    return SupplyLine(given, RESPONSE * max(given, EAGER * taken), _lowest(film))
+    return SupplyLine(given, response * max(given, EAGER * taken), _lowest(film))
 
 
 def is_limited(section: Section) -> bool:
