@@ -127,6 +127,8 @@ MIXED_FRICTION = (
     Column("contact_torque", "N m", "part of the torque that is friction of asperities", _mixed("torque")),
     Column("contact_power", "W", "part of the power that is friction of asperities", _mixed("power"),
            shown=(Shown("contact", ".3g", table=MIXED),)),
+    Column("asperity_share_error", "", "expected error of the share of the load", _mixed("share_error"),
+           more="by that of the displacement", key="error.asperity_share"),
 )  # fmt: skip
 
 

@@ -34,19 +34,28 @@ SAMPLES = 720  # angles at which the smallest gap is looked for
 @dataclass(frozen=True)
 class MixedFriction:
     """What the summits of rough surfaces do in a film. share: of the load that they carry; torque: on the journal, N m;
-    power: W; film_parameter: smallest gap over the roughness."""
+    power: W; film_parameter: smallest gap over the roughness; share_error, power_error: expected ones by the error of
+    the place."""
 
     share: float
     torque: float
     power: float
     film_parameter: float
+    share_error: float = math.nan
+    power_error: float = math.nan
 
     @classmethod
     def of(cls, system: System, i: int, at_rest: RestingFilm, slip: float, shell: float) -> MixedFriction | None:
         """That of film i at rest, slip and speed of the shell in rad/s; None between smooth surfaces."""
-        rough, c = system.asperities, system.clearances[i]
-        if rough is None:
+        if system.asperities is None:
             return None
+        own, out = (cls._at(system, i, each, slip, shell) for each in (at_rest, _further_out(at_rest)))
+        return replace(own, share_error=abs(out.share - own.share), power_error=abs(out.power - own.power))
+
+    @classmethod
+    def _at(cls, system: System, i: int, at_rest: RestingFilm, slip: float, shell: float) -> MixedFriction:
+        rough, c = system.asperities, system.clearances[i]
+        assert rough is not None
         (e_x, e_y), load = (c * at_rest.displacement).tolist(), np.array(at_rest.load)
         found = rub(rough, i, c, e_x, e_y, 0.0, 0.0, slip, shell)
         size = float(load @ load)
@@ -168,14 +177,19 @@ class Fields:
         return cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow)
 
 
+def _further_out(at_rest: RestingFilm) -> RestingFilm:
+    """The film as if its journal were further out by the error of its place, or not if that is unknown."""
+    d, e = at_rest.displacement, at_rest.eccentricity
+    off = 0.0 if math.isnan(at_rest.place_error) else min(at_rest.place_error, 0.5 * (1.0 - e))
+    return replace(at_rest, displacement=d + off * (d / e if e > 0.0 else np.array([0.0, -1.0])))
+
+
 def _field_errors(
     film: FieldFilms, found: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
 ) -> Fields:
     """Expected errors by the mesh: of the fields in this place, and by the error of the place, as if it were further
     out; NaN if the film is not solved on fewer cells."""
-    d, e = at_rest.displacement, at_rest.eccentricity
-    off = 0.0 if math.isnan(at_rest.place_error) else min(at_rest.place_error, 0.5 * (1.0 - e))
-    out = d + off * (d / e if e > 0.0 else np.array([0.0, -1.0]))
+    d, out = at_rest.displacement, _further_out(at_rest).displacement
     try:
         here, there = (astuple(Fields.of(film.coarser, at_rest.seen(place), speeds, factor)) for place in (d, out))
     except NotConverged:
@@ -239,9 +253,10 @@ def _with_fields(
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
     found = Fields.of(volume.own, at_rest.seen(state.displacement), speeds, factor)
     errors = _field_errors(volume, found, at_rest, speeds, factor)
-    torque, power, flow = found.torque, found.power, found.side_flow
+    torque, power, flow, power_error = found.torque, found.power, found.side_flow, errors.power
     if state.mixed is not None:
         torque, power = torque + state.mixed.torque, power + state.mixed.power
+        power_error += state.mixed.power_error
     friction = friction_coefficient(torque, math.hypot(*state.load), radius)
     return replace(
         state,
@@ -253,7 +268,7 @@ def _with_fields(
         p_max=found.p_max,
         temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         p_max_error=errors.p_max,
-        power_error=errors.power,
+        power_error=power_error,
         side_flow_error=errors.side_flow,
     )
 

@@ -42,7 +42,7 @@ def pressed(eccentricity: float) -> tuple[float, float]:
 @pytest.mark.parametrize("theory", ["short", "finite"])
 def test_rotation_has_pressure_and_friction_of_the_summits_beside_the_film(theory: str) -> None:
     motion = f"eccentricity={CLOSE}, angle='-90 deg', speed='0.5 Hz'"
-    rough, smooth = both(rotation, motion, f"film.theory={theory}", "accuracy.mesh=[48, 8]")
+    rough, smooth = both(rotation, motion, f"film.theory={theory}", "accuracy.mesh=[8, 48]")
     assert rough.loads is not None
     assert smooth.loads is not None
     normal, radial = pressed(CLOSE)

@@ -78,7 +78,7 @@ def test_stribeck_curve_has_its_minimum_between_boundary_friction_and_the_film_a
 def test_flow_factors_carry_more_and_resist_more_until_the_gap_is_wide() -> None:
     """Rough surfaces hold their oil back: the journal rides higher, with less of its load on the summits. Against the
     same films on cells between surfaces that are smooth for the flow."""
-    plain = "film.solution=cells", 'accuracy.mesh=[64, 12]'
+    plain = ("film.solution=cells",)
     rough, smooth = (
         bearing_sheet(rigid(*plain, *settings), [0.1, 0.4, 60.0]).points
         for settings in (("contact.flow_factors=true",), ())

@@ -42,7 +42,7 @@ def test_a_law_says_what_it_makes_of_the_oil() -> None:
 def test_a_mesh_below_the_fewest_cells_is_not_said_to_be_set() -> None:
     film = decided("jeffcott-two-phase", "accuracy.mesh=[2, 8]")["film"]
     assert film.value == "12 x 3 cells"
-    assert "2 x 8 are set in the case, fewer than a film needs" in film.reason
+    assert "[2, 8] is set in the case, fewer than a film needs" in film.reason
     assert "; set in the case; " in decided("jeffcott-two-phase", "accuracy.mesh=[4, 24]")["film"].reason
     bearing = kinematic_plan(load_case("bearing", ["accuracy.mesh=[2, 8]"]))
     (cells,) = (one for one in bearing.decisions if one.choice == "cells")

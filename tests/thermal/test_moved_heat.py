@@ -15,7 +15,7 @@ SUPPLIED = 50.0 + 273.15
 WARM = [
     "bearing.supply={ kind = 'circumferential-groove', pressure = '2 bar' }", "oil.heat_capacity=2100 J/(kg*K)",
     'oil.viscosity={ grade = "SAE 10W-40" }', "thermal.model=lumped", "thermal.supply_temperature=50 degC",
-    "accuracy.mesh=[32, 8]",
+    "accuracy.mesh=[8, 32]",
 ]  # fmt: skip
 
 

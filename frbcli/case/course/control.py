@@ -36,7 +36,7 @@ class Accuracy(Model):
         default=None, description="CPU time of a run-up: the most exact within it, if the target needs more"
     )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
-        default=None, description="elements along the axis and around the circumference"
+        default=None, description="elements along the axis, then around the circumference, where there are no fewer"
     )
     tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
         default=None, description="of the time integration, relative to the clearance"

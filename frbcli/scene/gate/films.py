@@ -172,6 +172,15 @@ def _told(film: FilmGeometry) -> str:
     return f"sealed = {film.sealed:g}"
 
 
+def mesh_faults(case: Case) -> Iterator[Fault]:
+    """A mesh with more elements along than around has its two numbers the wrong way round."""
+    along, around = case.accuracy.mesh or (0, 0)
+    if along > around:
+        problem = "has more elements along the axis than around, where the gap changes."
+        remedy = f"Write [{around}, {along}], along first, or at least as many around as along."
+        yield Fault("accuracy.mesh", f"[{along}, {around}]", None, problem, remedy)
+
+
 def rough_faults(case: Case) -> Iterator[Fault]:
     """The gap between rough surfaces is that of plain cylinders."""
     contact = case.contact

@@ -68,6 +68,7 @@ RULES = (
     Rule(films.unmodelled_flow_faults, tuple(each for each in ALL if each not in films.AT_FLOW), moving=True),
     Rule(films.bath_faults, ALL),
     Rule(films.sealed_faults, ALL),
+    Rule(films.mesh_faults, ALL),
     Rule(films.rough_faults, ALL),
     Rule(films.rough_tilt_faults, KINEMATIC),
     Rule(films.rough_coupling_faults, (RUN,)),

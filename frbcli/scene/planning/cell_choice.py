@@ -134,7 +134,7 @@ def given_cells(mesh: tuple[int, int], fewest: tuple[int, int]) -> tuple[tuple[i
     found = max(around, fewest[0]), max(along, fewest[1])
     if found == (around, along):
         return found, "set in the case"
-    return found, f"{along} x {around} are set in the case, fewer than a film needs"
+    return found, f"[{along}, {around}] is set in the case, fewer than a film needs"
 
 
 def cells_time(around: int, along: int) -> float:

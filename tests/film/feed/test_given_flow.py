@@ -135,7 +135,7 @@ def test_stiffness_and_damping_are_of_films_at_the_same_flow(law: str) -> None:
 
 def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None:
     flow = 0.4 * at_pressure(GROOVE)
-    case = case_of(GROOVE, flow, "elrod", "accuracy.mesh=[48, 8]")
+    case = case_of(GROOVE, flow, "elrod", "accuracy.mesh=[8, 48]")
     films = make_system(case, make_plan(case, STILL)).films
     place = np.array([0.3, -0.5]) * films.clearances[0]
     assert films.power_and_flow(0, place, 300.0, 300.0, 1.0)[1] == pytest.approx(flow, rel=1e-9)
