@@ -183,6 +183,10 @@ class Table:
         """The heads of a table of the terminal."""
         return heads(self.columns, table)
 
+    def spans(self, table: str = "") -> tuple[int, ...]:
+        """Numbers of columns of a table of the terminal that belong together as those of a vector, in their order."""
+        return tuple(len(shown.heads) for column in self.columns for shown in _in(column, table))
+
     def legend(self, table: str = "") -> str:
         """The heads of a table of the terminal with meaning and unit."""
         return legend(self.columns, table)

@@ -12,6 +12,7 @@ and returns its exit code (None is 0). Errors are raised as FrbError; `frbcli.cl
 
 from __future__ import annotations
 
+import itertools
 import json
 import logging
 import math
@@ -20,6 +21,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath
+from shutil import get_terminal_size
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
@@ -42,6 +44,7 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 RUN_SUFFIX = ".h5"
 DEFAULT_LOOK = Look()
 WIDTH = 80  # columns of sentences
+LONGEST_LINE = 120  # columns of errors on a wide terminal
 PIPE_WIDTH = 80  # columns of a table in a pipe or a file
 BETWEEN = 3  # blanks between its columns; one more at both edges together
 
@@ -83,11 +86,14 @@ class Terminal:
 
     def show(self, title: str, table: declared.Table, name: str = "") -> None:
         """Print the columns of a result that are declared for the table of the terminal with this name."""
-        self.table(title, table.heads(name), table.cells(name))
+        self.table(title, table.heads(name), table.cells(name), table.spans(name))
 
-    def table(self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    def table(
+        self, title: str, columns: Sequence[str], rows: Iterable[Sequence[object]], spans: Sequence[int] = ()
+    ) -> None:
         """Print a table, a part of the results, without a head where no column has a name; several, which repeat the
-        first column, where one would be too wide for its words. rows: as many cells as columns each, shown by str()."""
+        first column, where one would be too wide for its words. rows: as many cells as columns each, shown by str();
+        spans: numbers of columns, one after another, that stay in one table."""
         if self.quiet:
             return
         from rich import box
@@ -96,7 +102,7 @@ class Terminal:
 
         cells = [[printable(str(cell)) for cell in row] for row in rows]
         console = _console(self._results)
-        for kept in _parts(columns, cells, console.width):
+        for kept in _parts(columns, cells, console.width, spans or (1,) * len(columns)):
             named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
             table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
             table.show_header = any(named)
@@ -134,15 +140,34 @@ def wrapped(text: str) -> str:
     return fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
-def _parts(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[list[int]]:
-    """The columns of each of the tables, by their numbers, in which no word is broken; each begins with the first."""
+def within_terminal(line: str) -> str:
+    """A line as lines that fit the terminal, without a word cut; those behind the first are indented by two more."""
+    indent = line[: len(line) - len(line.lstrip(" "))]
+    width = min(get_terminal_size().columns, LONGEST_LINE)
+    return fill(line, width, subsequent_indent=f"{indent}  ", break_long_words=False, break_on_hyphens=False)
+
+
+def _parts(
+    columns: Sequence[str], rows: Sequence[Sequence[str]], width: int, spans: Sequence[int]
+) -> list[list[int]]:
+    """The columns of each of the tables, by their numbers, in which no word is broken; each begins with the first.
+
+    Columns of one of the spans stay in one table if they fit into one.
+    """
     words = [_longest_word(column) for column in zip(columns, *rows, strict=True)]
+
+    def fit(kept: Sequence[int]) -> bool:
+        return sum(words[k] for k in kept) <= width - BETWEEN * len(kept) - 1
+
     parts: list[list[int]] = [[0]]
-    for number in range(1, len(columns)):
-        room = width - BETWEEN * (len(parts[-1]) + 1) - 1
-        if len(parts[-1]) > 1 and sum(words[k] for k in parts[-1]) + words[number] > room:
+    for last, span in zip(itertools.accumulate(spans), spans, strict=True):
+        together = [k for k in range(last - span, last) if k > 0]
+        if len(parts[-1]) > 1 and not fit([*parts[-1], *together]) and fit([0, *together]):
             parts.append([0])
-        parts[-1].append(number)
+        for number in together:
+            if len(parts[-1]) > 1 and not fit([*parts[-1], number]):
+                parts.append([0])
+            parts[-1].append(number)
     return parts
 
 
@@ -151,19 +176,35 @@ def _longest_word(column: Sequence[str]) -> int:
 
 
 def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int | None]:
-    """Widths of the columns of a table wider than `width`: at least their longest words; the rest of the room
-    goes to those first that need little more. None where all fits, or where not even the words do."""
-    cells = list(zip(columns, *rows, strict=True))
-    whole = [max(len(line) for cell in column for line in cell.split("\n")) for column in cells]
-    found = [_longest_word(column) for column in cells]
+    """Widths of the columns of a table wider than `width`: at least their longest words; the rest of the room goes to
+    the cells, then to the heads. None where all fits, or where not even the words do."""
+    cells = list(zip(*rows, strict=True)) or [()] * len(columns)
+    found = [_longest_word((head, *column)) for head, column in zip(columns, cells, strict=True)]
+    rows_need = [max((_length(cell) for cell in column), default=0) for column in cells]
+    whole = [max(_length(head), most) for head, most in zip(columns, rows_need, strict=True)]
     room = width - BETWEEN * len(columns) - 1
     if sum(whole) <= room or sum(found) > room:
         return [None] * len(columns)
-    room -= sum(found)
-    for number in sorted(range(len(found)), key=lambda number: whole[number] - found[number]):
-        more = min(whole[number] - found[number], room)
-        found[number], room = found[number] + more, room - more
+    for wanted in (rows_need, whole):
+        found = _widened(found, wanted, room - sum(found))
     return list(found)
+
+
+def _length(cell: str) -> int:
+    return max(map(len, cell.split("\n")))
+
+
+def _widened(widths: Sequence[int], wanted: Sequence[int], room: int) -> list[int]:
+    """Widths with more room: those first get all they need that need no more than an equal share, the others in
+    proportion to what they need."""
+    needs, found = [max(most - least, 0) for most, least in zip(wanted, widths, strict=True)], list(widths)
+    order = sorted(range(len(needs)), key=needs.__getitem__)
+    for place, number in enumerate(order):
+        more, left = needs[number], sum(needs[k] for k in order[place:])
+        if more * (len(order) - place) > room:
+            more = room * more // left
+        found[number], room = found[number] + more, room - more
+    return found
 
 
 def _write(stream: TextIO, text: str) -> None:

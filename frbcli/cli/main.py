@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import importlib
 import io
+import sys
 from collections.abc import Sequence
 
 import click
@@ -212,7 +213,7 @@ def run(arguments: Sequence[str]) -> int:
     except click.ClickException as wrong_usage:
         told = io.StringIO()
         wrong_usage.show(told)
-        click.echo(printable(told.getvalue()), nl=False, err=True)
+        _tell(told.getvalue().rstrip("\n"))
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
@@ -229,8 +230,18 @@ def run(arguments: Sequence[str]) -> int:
     return code if isinstance(code, int) else 0
 
 
+def _tell(text: str) -> None:
+    """Write an error; on a terminal in lines that fit it, elsewhere a line for each fault."""
+    lines = printable(text).split("\n")
+    if sys.stderr.isatty():
+        from frbcli.cli.common import within_terminal
+
+        lines = [within_terminal(line) for line in lines]
+    click.echo("\n".join(lines), err=True)
+
+
 def _tell_error(arguments: Sequence[str], error: FrbError) -> int:
-    click.echo(printable(f"frb: {error}"), err=True)
+    _tell(f"frb: {error}")
     _emit_error(arguments, error)
     return error.exit_code
 

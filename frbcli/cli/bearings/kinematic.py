@@ -92,7 +92,7 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
         rows[FORCES].append(forces if solved else (forces[0], "none", *[""] * (len(forces) - 2)))
         rows[OIL].append(oil if solved else (oil[0], *[""] * (len(oil) - 2), oil[-1]))
     for name, heading in ((FORCES, f"{found.case.heading}: {found.test}"), (OIL, "")):
-        terminal.table(heading, table.heads(name), rows[name])
+        terminal.table(heading, table.heads(name), rows[name], table.spans(name))
     terminal.sentence(f"{table.legend(FORCES)}; {table.legend(OIL)}.")
     if found.carries_gas:
         terminal.show("", table, GASES)

@@ -18,6 +18,7 @@ from frbcli.film.rectangles.short import sealed_shape
 from frbcli.film.rectangles.table import ring_contraction
 
 LINES = 24  # Gauss points over the width
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(LINES)
 MODES_AT_ONCE = 64  # solved between two looks at Ctrl-C, and held in memory
 
 
@@ -82,15 +83,14 @@ def section_pressure(
     eigenvalues, loads, *shapes = _modes(mesh.axial, section.seals)
     vertices = ring_vertices(mesh.circumferential, ring_contraction(eccentricity))
     decays = (section.radius / section.width) ** 2 * eigenvalues
-    points, weights = np.polynomial.legendre.leggauss(LINES)
-    z = 0.5 * (points + 1.0)
+    z = 0.5 * (POINTS + 1.0)
     sigma, (a, b) = section.far_pressure / section.pressure_scale, sealed_shape(section.seals)
     values, along = np.zeros((2 * len(vertices), LINES)) + sigma * (a + b * z), np.column_stack(shapes)
     for first in range(0, len(decays), MODES_AT_ONCE):
         some = slice(first, first + MODES_AT_ONCE)
         fields = unit_fields(vertices, eccentricity, decays[some], loads[some])
         values += (w_r * fields[0] + w_t * fields[1]).T @ along[some]
-    return SectionPressure(vertices, z, 0.5 * weights, values)
+    return SectionPressure(vertices, z, 0.5 * WEIGHTS, values)
 
 
 @kept_beside(clipped_line)
@@ -98,8 +98,8 @@ def _modes(elements: int, seals: tuple[float, float]) -> Array:
     """(2 + LINES, k) eigenvalues, loads and values at the Gauss points of the modes of a section with so many elements
     along. They are kept on disk: on fine meshes they take longer than all else, and on any the solver of the
     eigenproblem takes long to import."""
-    modes, points = axial_modes(axial_vertices(elements), seals), np.polynomial.legendre.leggauss(LINES)[0]
-    return np.vstack([modes.eigenvalues, modes.loads, modes.at(0.5 * (points + 1.0)).T])
+    modes = axial_modes(axial_vertices(elements), seals)
+    return np.vstack([modes.eigenvalues, modes.loads, modes.at(0.5 * (POINTS + 1.0)).T])
 
 
 def largest_pressure(
