@@ -225,14 +225,14 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
 
 
 def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over: Over = "time") -> Axes:
-    """Draw a film signal that a run has recorded by `output.signals`.
+    """Draw a signal of the films that a run has recorded, most of them by `output.signals`.
 
     Parameters
     ----------
     run : Run
         A run, see `read_run`, `runup` and `measured_run`.
     kind : str
-        "force", "film-thickness", "power", "torque", "oil-flow" or "tilt".
+        "force", "film-thickness", "power", "torque", "oil-flow", "tilt" or "supply-pressure".
     ax : matplotlib.axes.Axes, optional
         Axes to draw on; without it those of a new figure, `ax.figure`.
     part : int

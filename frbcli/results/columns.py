@@ -85,7 +85,7 @@ PART_SIGNALS = (
     Column("temperature", "K", "temperature of a film, a ring or a wall"),
     Column("viscosity", "Pa*s", "viscosity of the oil of a film"),
     Column("clearance", "m", "clearance of a film"),
-    Column("supply_pressure", "Pa", "absolute pressure of the supply of a film, where it changes over time"),
+    Column("supply_pressure", "Pa", "absolute pressure in the openings of a film, where it changes over time"),
     Column("supply_temperature", "K", "temperature of the oil that feeds a film, where it changes over time"),
     Column("flow", "m^3/s", "oil that leaves a warm film at its open ends"),
     Column("film_force", "N", "force of a film on its journal", shape=(2,)),

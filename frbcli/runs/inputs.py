@@ -11,6 +11,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
 from frbcli.case.surroundings.time_tables import inputs_of
+from frbcli.film.cells.balance.feed import opening_pressures
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System
@@ -25,15 +26,15 @@ PRESSURE, TEMPERATURE = ("supply_pressure_{}_Pa", "Pa"), ("supply_temperature_{}
 class MachineInputs:
     """What changes over time in a run, in SI: temperatures of the supplies of films, and of nodes of the heat; absolute
     pressures of the supplies of films, each with the number of the film or node. ambient: Pa; largest: (films,) gauge
-    pressures of all supplies, of those that change the largest one, 1 where nothing supplies; limited: whether a supply
-    gives a flow at the most, so that the pressure of its openings changes."""
+    pressures of all supplies, of those that change the largest one, 1 where nothing supplies; limited: films whose
+    supplies give a flow at the most, so that the pressure of their openings changes."""
 
     supplies: tuple[tuple[int, OverTime], ...]
     walls: tuple[tuple[int, OverTime], ...]
     pressures: tuple[tuple[int, OverTime], ...]
     ambient: float
     largest: Array
-    limited: bool
+    limited: tuple[int, ...]
 
     def shares(self, times: Array) -> Array | None:
         """(k, films) shares of the largest gauge pressure at times (k,) in s; None where no pressure changes."""
@@ -48,7 +49,7 @@ class MachineInputs:
 def machine_inputs(case: Case) -> MachineInputs | None:
     """The inputs of a case that change over time, None without any."""
     supplies = [place.geometry.supply for place in film_places(case)]
-    limited = any(math.isfinite(supply.largest_flow) for supply in supplies)
+    limited = tuple(film for film, supply in enumerate(supplies) if math.isfinite(supply.largest_flow))
     if not (limited or any(True for _ in inputs_of(case))):
         return None
     ambient, heat = case.oil.ambient_pressure, None if case.heat is None else heat_of(case)
@@ -90,7 +91,7 @@ class RunInputs:
     @property
     def change_films(self) -> bool:
         """Whether they change the films, beside the heat."""
-        return self.machine is not None and (self.machine.limited or bool(self.machine.pressures))
+        return self.machine is not None and bool(self.machine.limited or self.machine.pressures)
 
     def at_start(self, system: System) -> System:
         """The machine as it is at the start of a run."""
@@ -127,16 +128,36 @@ class RunInputs:
             np.ones(films),
             np.ones(films),
             system.films.heat_ends() if machine.pressures or machine.limited else (),
-            machine.limited,
+            bool(machine.limited),
         )
 
     def units(self) -> dict[str, str]:
         """The signals of inputs and their units."""
-        return {name: unit for name, unit, _ in self._told()}
+        known = {name: unit for name, unit, _ in self._told()}
+        return known | {name: PRESSURE[1] for _, name in self._limited()}
 
-    def signals(self, times: Array) -> dict[str, Array]:
-        """The signals of inputs at times (k,) in s."""
-        return {name: np.interp(times, table.time, table.x) for name, _, table in self._told()}
+    def signals(self, system: System, times: Array, fillings: Array) -> dict[str, Array]:
+        """The signals of inputs at times (k,) in s; fillings (k, films): see opening_pressures. The pressure of a
+        supply that gives a flow at the most is that in its openings."""
+        found = {name: np.interp(times, table.time, table.x) for name, _, table in self._told()}
+        if self.machine is None:
+            return found
+        shares = self.machine.shares(times)
+        for film, name in self._limited():
+            supplies = self.machine.largest[film] * (np.ones(len(times)) if shares is None else shares[:, film])
+            openings = opening_pressures(system.films.with_fields[film], fillings[:, film], supplies)
+            found[name] = self.machine.ambient + openings
+        return found
+
+    @property
+    def limited(self) -> bool:
+        """Whether a supply gives a flow at the most."""
+        return self.machine is not None and bool(self.machine.limited)
+
+    def _limited(self) -> Sequence[tuple[int, str]]:
+        """The films whose supplies give a flow at the most, and the names of their signals."""
+        films = () if self.machine is None else self.machine.limited
+        return tuple((film, signal_of(PRESSURE[0], self.names[film])) for film in films)
 
     def _told(self) -> Sequence[tuple[str, str, OverTime]]:
         """Names, units and tables of the signals: of the films whose supplies change."""

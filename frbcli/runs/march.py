@@ -21,7 +21,7 @@ from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, su
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
-from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, film_signals, tilt_signals
+from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, fillings, film_signals, tilt_signals
 from frbcli.runs.record.header import FLOW, named, recorded, ring_names
 from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
@@ -113,7 +113,7 @@ class March:
         self._oil = np.zeros((rows, len(system.remembering)))
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
-        self._watches = any(kind in OF_THE_STEPS for kind in recorded(case))
+        self._watches = self._inputs.limited or any(kind in OF_THE_STEPS for kind in recorded(case))
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
@@ -261,7 +261,7 @@ class March:
         samples = Samples(times, q, v, self._out_noted[: len(times)])
         kinds, warm = recorded(self._case), self._numbers(times)
         self._wear.add(system, warm, self._profile, samples)
-        signals |= self._inputs.signals(times)
+        signals |= self._inputs.signals(system, times, fillings(system, samples))
         signals |= {} if self._axis is None else self._axis.signals(times, q)
         return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
 

@@ -11,16 +11,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import compiled
+from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.published.data import LEFT
-from frbcli.film.state import NOW
+from frbcli.film.state import NOW, PASSED
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, LoopOutput, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
 
-DRAG, LEAVES, NOTES = range(3)  # rows that are noted of each film: drag_integral, and the oil that leaves it
+# Rows that are noted of each film: drag_integral, the oil that leaves it, and the filling of its openings, see feed.py.
+DRAG, LEAVES, FILLED, NOTES = range(4)
 
 
 class Notes(NamedTuple):
@@ -49,6 +51,16 @@ def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) ->
     raise NotImplementedError
 
 
+def filling(films: Any, flows: Array, f: int) -> float:
+    """The filling of the openings of film f, whose supply may give a flow at the most; of other films 1."""
+    raise NotImplementedError
+
+
+by_kind(
+    filling,
+    others=lambda films, flows, f: 1.0,
+    cells=lambda films, flows, f: flows[PASSED, f, FILLING],
+)
 by_kind(
     oil_leaving,
     others=lambda films, work, flows, f, far_open: 0.0,
@@ -74,6 +86,7 @@ def _note(
             d_y += rotor.journals[f, 1, i] * q[i] / rotor.clearances[f]
         noted[n + DRAG * count + f] = drag_integral(films, work, f, d_x, d_y, rotor.torque_terms[1])
         noted[n + LEAVES * count + f] = oil_leaving(films, work, flows, f, far_open)
+        noted[n + FILLED * count + f] = filling(films, flows, f)
 
 
 @compiled(makes_arrays=True)

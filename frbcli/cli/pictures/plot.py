@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
 
 LAW = "law"  # of a case, the others of runs
-FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow", "tilt")
+FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow", "tilt", "supply-pressure")
 CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", *FILM_SIGNALS)
 SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
 

@@ -1,4 +1,5 @@
-"""Film signals that not every run records: forces, film thickness, power, torque, oil flow, tilt of the journals."""
+"""Film signals that not every run records: forces, film thickness, power, torque, oil flow, tilt of the journals,
+pressure of supplies that change."""
 
 from __future__ import annotations
 
@@ -19,6 +20,7 @@ from frbcli.runs.record.header import (
     FRICTION,
     POWER,
     SHARE,
+    SUPPLY,
     THICKNESS,
     TILT,
     TORQUE,
@@ -36,6 +38,11 @@ AXES = {
     SHARE: ("share of the load on asperities", 1.0),
     FRICTION: ("friction power of the contact in W", 1.0),
     TILT: ("tilt about {} in mrad", 1e3),
+    SUPPLY: ("pressure of the supply in bar", 1e-5),
+}
+REMEDIES = {
+    TILT: "Run the case with --set film.tilt=follows.",
+    SUPPLY: "Its supplies keep their pressure; give one a flow, or a pressure over time.",
 }
 
 
@@ -56,12 +63,11 @@ def draw_film_signal(
     axes: Axes, runs: Sequence[Run], kind: str, part: int = 0, over: Over = "time", span: Span = (None, None)
 ) -> None:
     """The curves on axes of a figure; part: 0 and 1 are x and y of a force or a tilt. Raises as film_signal_figure."""
-    names = list(films(runs[0].signals)) or [""]
+    known = list(films(runs[0].signals)) or [""]
+    names = [name for name in known if any(signal_names(kind, name)[0] in run.signals for run in runs)]
     for run in runs:
-        if any(signal not in run.signals for name in names for signal in signal_names(kind, name)):
-            remedy = f"Run the case with --set 'output.signals=[\"{kind}\"]'."
-            if kind == TILT:
-                remedy = "Run the case with --set film.tilt=follows."
+        if not names or any(signal not in run.signals for name in names for signal in signal_names(kind, name)):
+            remedy = REMEDIES.get(kind, f"Run the case with --set 'output.signals=[\"{kind}\"]'.")
             raise refuse(run.path, f"has not recorded {FILM_SIGNALS[kind][0].replace('_', ' ')}.", remedy)
     words, factor = AXES[kind]
     curves = [

@@ -33,7 +33,7 @@ from frbcli.runs.record.header import (
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.contact import felt_motion, touches
 from frbcli.solve.state import SLIP, SUM, Array, Control
-from frbcli.solve.watched import DRAG, LEAVES, NOTES
+from frbcli.solve.watched import DRAG, FILLED, LEAVES
 
 OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW, SHARE)  # they ask for what is known at the ends of the steps alone
 
@@ -195,8 +195,14 @@ def _flows_of_motions(
 def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
     """(k, films) m^3/s of oil that leaves, as it is noted."""
     n, count = system.rotor.size, len(system.names)
-    leaves: Array = samples.noted[:, n + LEAVES * count : n + NOTES * count]
+    leaves: Array = samples.noted[:, n + LEAVES * count : n + (LEAVES + 1) * count]
     return np.asarray(leaves * system.films.flow_units(films.clearances), dtype=np.float64)
+
+
+def fillings(system: System, samples: Samples) -> Array:
+    """(k, films) fillings of the openings as they are noted, see feed.py."""
+    n, count = system.rotor.size, len(system.names)
+    return samples.noted[:, n + FILLED * count : n + (FILLED + 1) * count]
 
 
 def _thickness(system: System, films: FilmNumbers, control: Control, i: int, q: Array) -> Array:

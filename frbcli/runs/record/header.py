@@ -23,6 +23,7 @@ PROGRAM = "frbcli"
 THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
 SHARE, FRICTION = "asperity-share", "contact-power"  # of rough surfaces, always
 TILT = "tilt"  # of every film whose journal tilts
+SUPPLY = "supply-pressure"  # of every film whose supply changes, see runs/inputs.py
 FILM_SIGNALS = {
     FORCE: ("film_force", "N", "N"),
     THICKNESS: ("film_thickness", "m", "m"),
@@ -32,6 +33,7 @@ FILM_SIGNALS = {
     SHARE: ("asperity_share", "", ""),
     FRICTION: ("contact_power", "W", "W"),
     TILT: ("tilt", "rad", "rad"),
+    SUPPLY: ("supply_pressure", "Pa", "Pa"),
 }
 
 

@@ -13,9 +13,13 @@ from frbcli import load_case, read_run, runup
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
+from frbcli.errors import RunFileError
 from frbcli.film.cells.balance.balances import FILLING, SUPPLY_NET
-from frbcli.film.cells.balance.feed import supply_line
+from frbcli.film.cells.balance.feed import feed_at, supply_line
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.steady_force import steady_solution
 from frbcli.film.state import PASSED
+from frbcli.plot.run.film_signals import film_signal_figure
 from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
@@ -56,6 +60,22 @@ def test_what_was_given_has_passed_or_fills_the_line(supply: str, tmp_path: Path
     assert run.error["oil_balance_relative"] < 1e-5  # type: ignore[operator]
 
 
+def test_the_pressure_of_the_supply_times_the_conductance_is_the_flow(tmp_path: Path) -> None:
+    """A journal in the centre: two lands of the length b let out Q = 2 (2 pi R) C^3 p / (12 eta b). The openings begin
+    at the pressure of the supply."""
+    flow = FLOW[GROOVE]
+    case = case_of(GROOVE, flow, "rotor.gravity=0", "speed.duration=0.4")
+    run, section = runup(case, tmp_path / "run.h5"), make_system(case, make_plan(case)).films.with_fields[0].section
+    conductance = math.pi * section.radius * section.clearance**3 / (3.0 * section.viscosity * section.width)
+    pressure = run["supply_pressure_Pa"]
+    assert conductance * (pressure[-1] - 1e5) == pytest.approx(flow, rel=1e-8)
+    assert pressure[0] == pytest.approx(3e5, rel=1e-2)
+    assert pressure.min() > 0.999 * pressure[-1]
+    assert run.signals["supply_pressure_Pa"].unit == "Pa"
+    axes = film_signal_figure([run], "supply-pressure").axes[0]
+    assert axes.lines[0].get_ydata()[-1] == pytest.approx(1e-5 * pressure[-1])  # type: ignore[index]
+
+
 @each_supply
 def test_a_journal_comes_to_rest_where_a_film_with_this_flow_carries_it(supply: str, tmp_path: Path) -> None:
     case = case_of(supply, FLOW[supply])
@@ -67,6 +87,11 @@ def test_a_journal_comes_to_rest_where_a_film_with_this_flow_carries_it(supply: 
     rest = math.hypot(*place) / system.clearances[0]
     assert run["eccentricity"][-1] == pytest.approx(rest, abs=5e-4)  # the cells of the run turn, those at rest do not
     assert abs(full["eccentricity"][-1] - rest) > 5e-3
+    film, motion = system.films.with_fields[0], Motion(tuple(place / system.clearances[0]), (0.0, 0.0), 100.0 * math.pi)
+    share = feed_at(film, steady_solution(film, motion).filling).share
+    assert run["supply_pressure_Pa"][-1] == pytest.approx(1e5 + 2e5 * share, rel=1e-3)
+    with pytest.raises(RunFileError, match="has not recorded supply pressure"):
+        film_signal_figure([full], "supply-pressure")
 
 
 def test_more_than_the_film_takes_is_a_run_at_the_pressure_of_the_supply(tmp_path: Path) -> None:
@@ -74,6 +99,8 @@ def test_more_than_the_film_takes_is_a_run_at_the_pressure_of_the_supply(tmp_pat
     ample, plain = (runup(case_of(GROOVE, flow), tmp_path / f"{flow}.h5") for flow in (1e-4, None))
     for name in plain.signals:
         np.testing.assert_array_equal(ample[name], plain[name], strict=True)
+    assert set(ample.signals) - set(plain.signals) == {"supply_pressure_Pa"}
+    np.testing.assert_allclose(ample["supply_pressure_Pa"], 3e5, rtol=1e-12)
 
 
 def test_a_run_resumed_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

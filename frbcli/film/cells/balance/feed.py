@@ -16,6 +16,7 @@ import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.gap import Section
+from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
     from frbcli.film.cells.film import VolumeFilm, VolumeSolution
@@ -50,6 +51,14 @@ def feed_at(film: VolumeFilm, filling: float) -> Feed:
         return Feed((cavity + filling * (supply - cavity)) / supply if filling < ALL else 1.0, 1.0)
     state = film.law.cells(np.array([filling]), film.scales)
     return Feed(float(state.pressure[0]) / supply, min(max(float(state.fraction[0]), 0.0), 1.0))
+
+
+def opening_pressures(film: VolumeFilm, fillings: Array, supplies: Array) -> Array:
+    """(k,) gauge pressures in Pa in the openings at fillings (k,), with gauge pressures (k,) of their supply in Pa."""
+    scale, held = film.section.pressure_scale, np.clip(fillings, _lowest(film), ALL)
+    cavity = scale * film.scales.cavitation
+    emptied = scale * film.law.cells(np.minimum(held, 0.0), film.scales).pressure
+    return np.where(held > 0.0, cavity + held * (supplies - cavity), emptied)
 
 
 def limited(film: VolumeFilm, solve: Solve) -> VolumeSolution:
