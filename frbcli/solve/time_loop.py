@@ -7,6 +7,7 @@ in state.py, the methods in tableau.py.
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -168,6 +169,12 @@ def _solve_stage(
                     past[HISTORY + s - 1, 1 + i] = journal[U, i]
                 return True, speed
     return False, speed
+
+
+def some_are_kept() -> bool:
+    """Whether the time loop has been compiled for a machine before, and is on disk with the kernels that it calls."""
+    cache: Any = _advance._cache  # type: ignore[attr-defined]  # numba tells no types of it
+    return any(Path(cache.cache_path).glob("*_advance*.nbi"))
 
 
 @compiled()

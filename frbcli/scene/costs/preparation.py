@@ -28,6 +28,7 @@ SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how ma
 # How often all samples are in memory: in the run, and in the file that it is about to write; or in the run and in a
 # second one, of which one signal at a time is joined.
 KEPT, KEPT_OF_BOTH = 2.1, 2.2
+RINGS, HEAT_s = 1.3, 9.0  # by what and by how much compiling takes longer where rings turn, and with heat
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 
@@ -43,7 +44,8 @@ def compile_B(case: Case) -> float:
 
 def _compilation(case: Case) -> tuple[float, float]:
     """CPU time in s and memory in bytes."""
-    return form_of(case).compiling
+    spent, memory = form_of(case).compiling
+    return (RINGS if rings(case) else 1.0) * spent + (0.0 if case.heat is None else HEAT_s), memory
 
 
 def before_s(case: Case, plan: Plan) -> float:
