@@ -88,7 +88,9 @@ class Ring(Model):
         description="about the axis of rotation; m (D_i^2 + D_o^2) / 8 of its mass and diameters if not given",
     )
     tilt_inertia: RingInertia | None = Field(
-        default=None, description="of a cartridge: about a diameter through its centre of mass; must be given there"
+        default=None,
+        description="about a diameter through the centre of mass, for film.tilt = follows: half of inertia and "
+        "m B^2/12 if not given; of a cartridge, which always tilts, it must be given",
     )
     width: Length | None = Field(
         default=None, description="axial, for a mass that is not given; that of the wider film if not given"
@@ -170,6 +172,13 @@ class FloatingRingBearing(BearingWalls):
         if self.ring.given_inertia is not None:
             return self.ring.given_inertia
         return 0.125 * self.ring_mass * (self.inner.diameter**2 + self.outer.diameter**2)
+
+    @property
+    def ring_tilt_inertia(self) -> float:
+        """Inertia of the ring about a diameter in kg m^2: as given, or I / 2 + m B^2 / 12 of a hollow cylinder."""
+        if self.ring.tilt_inertia is not None:
+            return self.ring.tilt_inertia
+        return 0.5 * self.ring_inertia + self.ring_mass * self.ring_width**2 / 12.0
 
     @property
     def ring_width(self) -> float:

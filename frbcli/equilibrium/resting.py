@@ -2,8 +2,9 @@
 
 The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
-rings turn with the speeds at which the torques on them balance (ring_speeds), which follow from the places of the
-journals: they are no unknowns of their own.
+rings turn with the speeds at which the torques on them balance (ring_speed.py), which follow from the places of the
+journals: they are no unknowns of their own. Films that see tilts have the rotor in all its degrees of freedom, and its
+load does not tell the force of each; there the speeds of the rings are unknowns in place of their angles.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
+from frbcli.equilibrium.ring_speed import NUDGE, SUM, by_total, drags, ring_speeds, ring_torques
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
@@ -25,8 +27,8 @@ Array = NDArray[np.float64]
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
+ARM = 100.0  # clearances: torques on rings over it count beside forces, and not too much before the speeds are near
 OUTER_START = 0.9  # eccentricity of the last start that is tried
-NUDGE = 1e-6  # of the clearance: of the differences by which the rings' speeds follow a journal
 
 
 @dataclass(frozen=True)
@@ -70,14 +72,17 @@ def resting_position(
     if system.films.coordinates > 2:
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
-    ends = partial(_ends, system, held)
+        starts = [_with_rings(system, held, omega, each) for each in starts]
+    ends, balance = partial(_ends, system, held), partial(_balance, system, held, omega)
+    if held.journals is not None:
+        balance = partial(_whole_balance, system, held, held.journals, omega)
     if start is not None:
-        near = system.rotor.journals @ start if held.journals is None else start
+        near = system.rotor.journals @ start if held.journals is None else _with_rings(system, held, omega, start)
         if np.linalg.norm(ends(near), axis=1).max() < LARGEST_ECCENTRICITY:
             starts.insert(0, near)
     left = np.inf
-    for first in starts:
-        found = search_rest(partial(_balance, system, held, omega), first, ends, search)
+    for first in (each for each in starts if np.linalg.norm(ends(each), axis=1).max() < 1.0):
+        found = search_rest(balance, first, ends, search)
         within = np.linalg.norm(ends(found.position), axis=1).max() < LARGEST_ECCENTRICITY
         if found.settled and within:
             displacements = held.shape + held.following @ found.position.ravel()
@@ -95,65 +100,86 @@ def resting_position(
 def _position(
     system: System, held: HeldRotor, omega: float, displacements: Array, films: tuple[FilmForce, ...]
 ) -> RestingPosition:
+    speeds: Array | None = None
+    if held.journals is not None:
+        if not films:
+            displacements = _with_rings(system, held, omega, displacements)
+        displacements, speeds = _parted(system, omega, displacements)
     journals = system.rotor.journals @ displacements + system.films.standing
-    return RestingPosition(displacements, journals, ring_speeds(system, held, omega, journals), films)
+    speeds = ring_speeds(system, held, omega, journals) if speeds is None else speeds
+    return RestingPosition(displacements, journals, speeds, films)
 
 
-def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
-    """(rings,) speeds in rad/s at which the torques (4.17) on the rings balance, films full of oil, at rest in
-    `position` (films, 2) in m.
+def _ring_unit(system: System, omega: float) -> float:
+    """Speed of a ring in rad/s that an unknown of 1 m stands for: a film's clearance for the speed of the rotor."""
+    return max(abs(omega), 1.0) / system.clearances[0]
 
-    Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
-    """
-    if not system.ring_count:
-        return np.zeros(0)
-    eccentricity = np.linalg.norm(position, axis=1) / np.array(system.clearances)
-    sheared = system.films.sheared * np.array(system.drags)
-    drag = sheared * 2.0 * np.pi / np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6))
-    carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
-    moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
-    if system.torque != "all":
-        moment = np.zeros_like(moment)
-    speeds = np.zeros(system.ring_count)
-    for ring in range(system.ring_count):
+
+def _parted(system: System, omega: float, unknowns: Array) -> tuple[Array, Array]:
+    """(n,) displacements and (rings,) speeds in rad/s out of the unknowns of a whole rotor."""
+    spins, displacements = list(system.spins), unknowns.copy()
+    displacements[spins] = 0.0
+    return displacements, unknowns[spins] * _ring_unit(system, omega)
+
+
+def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Array) -> Array:
+    """(n,) unknowns of a whole rotor at displacements (n,), its rings turning as the drag of their films has it."""
+    drag, unknowns = drags(system, _places(system, held, displacements)), displacements.copy()
+    for ring, spin in enumerate(system.spins):
         outer, inner = (system.bodies == ring).T
-        driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
-        speeds[ring] = np.sum(driving) / np.sum(drag[inner] + drag[outer])
-    return speeds
+        unknowns[spin] = omega * drag[inner].sum() / drag[inner | outer].sum() / _ring_unit(system, omega)
+    return unknowns
+
+
+def _forces(
+    system: System, omegas: Array, places: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
+) -> tuple[FilmForce, ...]:
+    """The films with journals at rest at places (films, c); before: near by, from whose fields films on cells are
+    sought."""
+    return tuple(
+        system.force(i, place, np.zeros_like(place), float(omegas[i]), before.films[i] if before else None)
+        for i, place in enumerate(places)
+    )
 
 
 def _balance(
     system: System, held: HeldRotor, omega: float, position: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
 ) -> ForceBalance[tuple[FilmForce, ...]]:
-    """What rotor and films put on the journals; before: at a place near by, from whose fields films on cells are
-    sought.
-
-    The derivative by the speed of a film is that of the motion of its gap, as if its journal moved across: a law that
-    follows the speed itself makes Newton's method a little slower, and the position no other one.
-    """
+    """What rotor and films put on the journals; before: see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
-    places = _places(system, held, position)
     omegas = system.omegas(omega, ring_speeds(system, held, omega, position))
-    following = _following_omegas(system, held, omega, places)
-    on_films, by_places = surplus, slope
-    if held.journals is not None:
-        on_films, by_places = np.zeros(places.size), np.zeros((places.size, places.size))
-    forces = []
-    for i, many in enumerate(system.rotor.multiplicity):
-        near = before.films[i] if before else None
-        place = places[i]
-        force = system.force(i, place, np.zeros_like(place), float(omegas[i]), near)
-        own = slice(len(place) * i, len(place) * (i + 1))
-        on_films[own] += many * force.force
-        by_places[own, own] += many * force.by_displacement
-        by_omega = 0.5 * force.by_velocity @ _across(place)
-        by_places[own] += many * np.outer(by_omega, following[i])
-        forces.append(force)
-    if held.journals is not None:
-        surplus += held.journals.T @ on_films
-        slope += held.journals.T @ by_places @ held.journals
-    return ForceBalance(surplus, slope, tuple(forces))
+    following = _following_omegas(system, held, omega, position)
+    films = _forces(system, omegas, position, before)
+    for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
+        own = slice(2 * i, 2 * i + 2)
+        surplus[own] += many * force.force
+        slope[own, own] += many * force.by_displacement
+        slope[own] += many * np.outer(by_total(force, position[i]), following[i])
+    return ForceBalance(surplus, slope, films)
+
+
+def _whole_balance(
+    system: System, held: HeldRotor, journals: Array, omega: float, unknowns: Array,
+    before: ForceBalance[tuple[FilmForce, ...]] | None,
+) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
+    """What acts on a whole rotor, and the torques on its rings over an arm; before: see _forces."""
+    spins, unit = list(system.spins), _ring_unit(system, omega)
+    displacements, speeds = _parted(system, omega, unknowns)
+    places = _places(system, held, displacements)
+    films = _forces(system, system.omegas(omega, speeds), places, before)
+    surplus, slope = held.load - held.stiffness @ displacements, -held.stiffness.copy()
+    for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
+        own = many * system.rotor.journals[i].T
+        surplus += own @ force.force
+        slope += own @ force.by_displacement @ system.rotor.journals[i]
+        slope[:, spins] += unit * np.outer(own @ by_total(force, places[i]), system.turning[i, SUM, 1:])
+    if spins:
+        torques, by_speeds, by_places = ring_torques(system, np.append(omega, speeds), places, films)
+        arm = ARM * system.clearances[0]
+        slope[spins], surplus[spins] = by_places @ journals / arm, torques / arm
+        slope[np.ix_(spins, spins)] = by_speeds * unit / arm
+    return ForceBalance(surplus, slope, films)
 
 
 def _places(system: System, held: HeldRotor, position: Array) -> Array:
@@ -165,11 +191,6 @@ def _places(system: System, held: HeldRotor, position: Array) -> Array:
 def _ends(system: System, held: HeldRotor, position: Array) -> Array:
     """See Films.ends; position: the unknowns of the rotor."""
     return system.films.ends(_places(system, held, position))
-
-
-def _across(place: Array) -> Array:
-    """(c,) how a gap that turns backwards with 1 rad/s moves, of a journal at `place` (c,)."""
-    return np.column_stack([place[1::2], -place[::2]]).ravel()
 
 
 def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:

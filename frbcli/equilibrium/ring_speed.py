@@ -1,10 +1,23 @@
-"""How fast a floating ring turns."""
+"""How fast a floating ring turns, by the torques (4.17) on it: of films full of oil, with everything at rest.
+
+Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
+"""
 
 from __future__ import annotations
 
+import numpy as np
+from numpy.typing import NDArray
+
 from frbcli.case.schema import Case
+from frbcli.film.rectangles.film import FilmForce
+from frbcli.rotor.held import HeldRotor
 from frbcli.scene.films import turning_rings
-from frbcli.scene.machine.system import film_drag
+from frbcli.scene.machine.system import System, film_drag
+
+Array = NDArray[np.float64]
+
+NUDGE = 1e-6  # of the clearance: of the differences by which the drag follows a journal
+SUM, SLIP = range(2)  # of the speeds of journal and shell in System.turning
 
 
 def concentric_ratios(case: Case) -> dict[str, float]:
@@ -17,3 +30,72 @@ def concentric_ratios(case: Case) -> dict[str, float]:
         outer = sum(film_drag(case, bearing.outer) for bearing in around)
         ratios |= {bearing.name: inner / (inner + outer) for bearing in around}
     return ratios
+
+
+def drags(system: System, places: Array) -> Array:
+    """(films,) Couette's torque per slip in N m s, with the journals at places (films, coordinates)."""
+    sheared = system.films.sheared * np.array(system.drags)
+    return np.asarray(sheared * 2.0 * np.pi / system.films.harmonic_gaps(places))
+
+
+def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
+    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in
+    m, where the rotor's load tells the forces of the films."""
+    if not system.ring_count:
+        return np.zeros(0)
+    drag = drags(system, position)
+    carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
+    moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
+    if system.torque != "all":
+        moment = np.zeros_like(moment)
+    speeds = np.zeros(system.ring_count)
+    for ring in range(system.ring_count):
+        outer, inner = (system.bodies == ring).T
+        driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
+        speeds[ring] = np.sum(driving) / np.sum(drag[inner] + drag[outer])
+    return speeds
+
+
+def across(place: Array) -> Array:
+    """(c,) how a gap that turns backwards with 1 rad/s moves, of a journal at `place` (c,). The moment of a force (c,)
+    about the middle of the shell is place @ across(force)."""
+    return np.column_stack([place[1::2], -place[::2]]).ravel()
+
+
+def by_total(force: FilmForce, place: Array) -> Array:
+    """(c,) derivative of a film's force by omega_J + omega_S: that of the motion of its gap, as if its journal moved
+    across. A law that follows the speed itself makes Newton's method a little slower, and the rest no other one."""
+    return np.asarray(0.5 * force.by_velocity @ across(place))
+
+
+def _drag_slopes(system: System, places: Array) -> Array:
+    """(films, c) derivatives of the drags by the coordinates of the journals."""
+    found = np.zeros_like(places)
+    for k, unit in enumerate(np.eye(places.shape[1])):
+        ahead = np.tile(unit, (len(places), 1))
+        reach = np.abs(system.films.ends(ahead)).reshape(len(places), -1).max(axis=1)
+        step = NUDGE / reach[:, None] * ahead
+        found[:, k] = (drags(system, places + step) - drags(system, places - step)) / (2.0 * step[:, k])
+    return found
+
+
+def ring_torques(
+    system: System, bodies: Array, places: Array, films: tuple[FilmForce, ...]
+) -> tuple[Array, Array, Array]:
+    """(rings,) torques on the rings in N m, with films at places (films, c), and their derivatives by the speeds of the
+    rings (rings, rings) and by the places (rings, c films). bodies: (1 + rings,) speeds of the rotor and the rings in
+    rad/s."""
+    rings = np.arange(system.ring_count)
+    around, inside = (system.bodies[:, side, None] == rings for side in (1, 0))
+    pulled, touched = around.astype(float) - inside, (around | inside).astype(float)
+    drag, slips = drags(system, places), system.turning[:, SLIP]
+    torque = pulled.T @ (drag * (slips @ bodies))
+    by_speeds = (pulled.T * drag) @ slips[:, 1:]
+    slopes, c = _drag_slopes(system, places) * (slips @ bodies)[:, None], places.shape[1]
+    by_places = np.asarray(np.repeat(pulled.T, c, axis=1) * slopes.ravel())
+    for i, (place, film) in enumerate(zip(places, films, strict=True) if system.torque == "all" else ()):
+        turned, pull = across(place), across(film.force)
+        torque -= 0.5 * touched[i] * (place @ pull)
+        by_places[:, c * i : c * (i + 1)] -= 0.5 * np.outer(touched[i], pull - film.by_displacement.T @ turned)
+        by_speeds += 0.5 * np.outer(touched[i], (turned @ by_total(film, place)) * system.turning[i, SUM, 1:])
+    return torque, by_speeds, by_places

@@ -18,7 +18,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Table, table_of
 from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, place_error, resting_film
-from frbcli.equilibrium.resting import ring_speeds
+from frbcli.equilibrium.ring_speed import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged

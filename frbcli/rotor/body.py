@@ -57,6 +57,23 @@ def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, e
     )
 
 
+def tilting_ring(node: str, mass: float, tilt_inertia: float, gravity: float) -> Body:
+    """A ring that moves and tilts about its centre of mass, its only node. mass in kg, tilt_inertia about a diameter in
+    kg m^2, gravity in m/s^2. q = the COORDINATES."""
+    nothing = np.zeros((4, 4))
+    return Body(
+        mass=np.diag([mass, mass, tilt_inertia, tilt_inertia]),
+        damping=nothing,
+        gyroscopic=nothing,
+        stiffness=nothing,
+        static_load=np.array([0.0, -mass * gravity, 0.0, 0.0]),
+        unbalance_cos=np.zeros(4),
+        unbalance_sin=np.zeros(4),
+        nodes=((node, np.eye(4)),),
+        inertia=mass * np.eye(2, 4),
+    )
+
+
 def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, length: float, gravity: float) -> Body:
     """A rigid body with its nodes at both ends of a length in m and its centre of mass in the middle: the body of a
     cartridge. mass in kg; tilt_inertia about a diameter through its centre, kg m^2. q = [x, y, x, y] of both nodes; its
@@ -65,7 +82,7 @@ def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, lengt
     own, other = together + against, together - against
     plane = np.eye(2)
     first, second = np.hstack([plane, 0.0 * plane]), np.hstack([0.0 * plane, plane])
-    nothing = np.zeros((4, 4))
+    (x, y), nothing = (second - first) / length, np.zeros((4, 4))  # its slopes
     return Body(
         mass=np.kron(np.array([[own, other], [other, own]]), plane),
         damping=nothing,
@@ -74,7 +91,7 @@ def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, lengt
         static_load=np.array([0.0, -0.5 * mass * gravity] * 2),
         unbalance_cos=np.zeros(4),
         unbalance_sin=np.zeros(4),
-        nodes=((nodes[0], first), (nodes[1], second)),
+        nodes=tuple((name, np.vstack([place, -y, x])) for name, place in zip(nodes, (first, second), strict=True)),
         inertia=0.5 * mass * (first + second),
     )
 

@@ -31,8 +31,10 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
     """The system, its speed and its inputs over time as the time loop takes them."""
     rotor = system.rotor
     # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
-    observed = np.concatenate([points / system.length for _, points in rotor.points])
     table, stations = rotor.over_speed or no_part(rotor.size), system.films.stations
+    observed = [points / system.length for _, points in rotor.points]
+    if stations > 1:
+        observed += _half_tilts(system)
     standing = system.films.seen(system.films.standing)
     return RotorData(
         mass=rotor.mass,
@@ -45,7 +47,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         journals=system.films.seen(rotor.journals),
         multiplicity=np.repeat(rotor.multiplicity, stations),
         clearances=np.repeat(system.clearances, stations),
-        observed=observed,
+        observed=np.concatenate(observed),
         has_gyroscopic=bool(np.any(rotor.gyroscopic)),
         profile_times=profile.times,
         profile_speeds=profile.speeds,
@@ -65,6 +67,12 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         standing=standing if stations > 1 else (),
         cones=make_cones(rotor.cones, rotor.size - system.ring_count),
     )
+
+
+def _half_tilts(system: System) -> list[Array]:
+    """(2, n) of each film: by how much its ends move against each other, over twice the clearance."""
+    ends = system.films.seen(system.rotor.journals).reshape(len(system.names), -1, len(PLANE), system.rotor.size)
+    return [0.5 * (far - near) / c for (near, far), c in zip(ends, system.clearances, strict=True)]
 
 
 def _factor(system: System) -> int:

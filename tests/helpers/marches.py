@@ -103,7 +103,7 @@ def march(
     state = start(system, profile) if state is None else state
     data, tableau = rotor_data(system, profile), METHODS[method].tableau
     rows = int(profile.end / limits.output_step) + 10
-    output = make_output(rows, system.rotor.size)
+    output = make_output(rows, system.rotor.size, len(system.names))
     written, status = 0, RUNNING
     while status == RUNNING:
         status, fresh = advance(

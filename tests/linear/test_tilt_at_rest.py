@@ -170,7 +170,7 @@ def test_shells_of_a_housing_tilt_with_it() -> None:
 
 SUPPLIED = "thermal.supply_temperature=60 degC"
 REFUSED = {
-    "rings": ("turbocharger-car", (), "bearing.0.kind"),
+    "channels": ("turbocharger-car", ("bearing.0.channels=coupled",), "bearing.0.channels"),
     "a rotor in its plane": ("jeffcott", (), "rotor.kind"),
     "oil": ("", ("film.cavitation=elrod",), "film.cavitation"),
     "a law that follows": ("", ("film.cavitation=penalty",), "film.cavitation"),

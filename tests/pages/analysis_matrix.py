@@ -114,6 +114,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "forces over time": ("jeffcott", (TABLE,)),
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, "film.tilt=follows")),
+    "floating rings that tilt": ("turbocharger-car", ("film.tilt=follows",)),
+    "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", ("film.tilt=follows",)),
     "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
     "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearing under an axial load": (

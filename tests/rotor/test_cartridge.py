@@ -280,17 +280,18 @@ def test_faults_of_a_cartridge(setting: str, key: str, problem: str, remedy: str
         cartridge(setting, remedy)
 
 
-def test_symmetric_rotors_and_rings_of_their_own_do_not_tilt() -> None:
+def test_symmetric_rotors_do_not_tilt() -> None:
     with pytest.raises(InputError, match="does not tilt around a rigid rotor"):
         cartridge('rotor = {kind = "rigid", mass = "1 kg"}', "shaft=[]", "disk=[]")
-    with pytest.raises(InputError, match="a ring of its own does not tilt"):
-        two_rings(ring=RING)
 
 
 def test_what_is_not_modelled_is_refused_once() -> None:
-    for setting, key in (("film.coupling=co-simulation", "film.coupling"), ("film.tilt=follows", "bearing.kind")):
+    coupled = 'bearing.inner.supply={kind="bores", count=4, diameter="1 mm", pressure="2 bar"}', "film.tilt=follows"
+    for settings, key in (
+        (["film.coupling=co-simulation"], "film.coupling"), (["bearing.channels=coupled", *coupled], "bearing.channels")
+    ):  # fmt: skip
         with pytest.raises(InputError) as refused:
-            make_plan(cartridge(setting))
+            make_plan(cartridge(*settings))
         assert [fault.key for fault in refused.value.faults] == [key]
     with pytest.raises(InputError, match="gyroscopic moments"):
         frbcli.limit_cycles(cartridge("film.cavitation=half-sommerfeld"))

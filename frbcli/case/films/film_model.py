@@ -40,8 +40,8 @@ class FilmModel(Model):
     )
     tilt: Literal["none", "follows"] = Field(
         default="none",
-        description="the gap is even along the axis, or follows the tilt of the shaft in it; in runs, bearing sheets, "
-        "stability, damped modes and response. In kinematic tests the motion gives the tilt",
+        description="the gap is even along the axis, or follows the tilt of journals and rings in it; in runs, bearing "
+        "sheets, stability, damped modes and response. In kinematic tests the motion gives the tilt",
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare

@@ -1,4 +1,4 @@
-"""Rules of a cartridge: its two places and its body. See checks.py."""
+"""Rules of a cartridge, its two places and its body, and of the inertias of rings. See checks.py."""
 
 from __future__ import annotations
 
@@ -21,14 +21,20 @@ def cartridge_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breac
             yield Breach((*path, "ring", key), problem, f'Add e.g. {key} = "{example}".')
     if "width" in ring:
         yield Breach((*path, "ring", "width"), "has no effect: the mass of a cartridge is given.", "Remove it.")
-    polar, tilt = number(ring, "inertia", "kg*m^2"), number(ring, "tilt_inertia", "kg*m^2")
-    if polar and tilt and tilt < 0.5 * polar * (1.0 - 1e-9):
-        problem = f"is less than half of ring.inertia, {display(polar, 'kg*m^2')}, which is not possible."
-        yield Breach((*path, "ring", "tilt_inertia"), problem, "Exchange or correct the two.")
+    yield from tilt_breaches(path, bearing)
     places = [place for _, place in positions(path, bearing)]
     if len(places) == 2 and None not in places and not places[0] < places[1]:  # type: ignore[operator]
         problem = "are equal: the ring has two places." if places[0] == places[1] else "descend."
         yield Breach((*path, "positions"), problem, 'Write them from left to right, e.g. ["20 mm", "60 mm"].')
+
+
+def tilt_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    """A ring whose inertias no body has."""
+    ring = table(bearing, "ring")
+    polar, tilt = number(ring, "inertia", "kg*m^2"), number(ring, "tilt_inertia", "kg*m^2")
+    if polar and tilt and tilt < 0.5 * polar * (1.0 - 1e-9):
+        problem = f"is less than half of ring.inertia, {display(polar, 'kg*m^2')}, which is not possible."
+        yield Breach((*path, "ring", "tilt_inertia"), problem, "Exchange or correct the two.")
 
 
 def positions(path: Path, bearing: Mapping[str, Any]) -> list[tuple[Path, float | None]]:

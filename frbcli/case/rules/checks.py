@@ -16,7 +16,7 @@ from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
-from frbcli.case.rules.cartridge_checks import cartridge_breaches, positions
+from frbcli.case.rules.cartridge_checks import cartridge_breaches, positions, tilt_breaches
 from frbcli.case.rules.contact_checks import contact_breaches
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
@@ -95,9 +95,7 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if bearing.get("kind") == "cartridge":
         yield from cartridge_breaches(path, bearing)
         return
-    if isinstance(ring, dict) and "tilt_inertia" in ring:
-        problem = "has no effect: a ring of its own does not tilt."
-        yield Breach((*path, "ring", "tilt_inertia"), problem, 'Remove it, or take kind = "cartridge".')
+    yield from tilt_breaches(path, bearing)
     if isinstance(ring, dict) and not {"mass", "material"} & ring.keys():
         remedy = 'Add e.g. mass = "30 g", or material = "brass", from which it follows.'
         yield Breach((*path, "ring", "mass"), "is missing.", remedy)
@@ -145,6 +143,9 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
                 problem = f"does not tilt around a {kind} rotor, which moves in its plane."
                 remedy = 'Take kind = "floating-ring" with half of its mass and inertia, or a turbocharger rotor.'
                 yield Breach((*path, "kind"), problem, remedy)
+            elif "tilt_inertia" in table(bearing, "ring"):
+                problem = f"has no effect: a ring around a {kind} rotor moves in its plane."
+                yield Breach((*path, "ring", "tilt_inertia"), problem, 'Remove it, or take kind = "turbocharger".')
 
 
 def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]]) -> Iterator[Breach]:

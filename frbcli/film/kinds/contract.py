@@ -85,6 +85,12 @@ class Films(ABC):
         """(films,) share of each gap in which oil is sheared: all but its feed holes and grooves."""
         return np.ones(self.count)
 
+    def harmonic_gaps(self, places: Array) -> Array:
+        """(films,) harmonic means of H, by Sommerfeld's integral of 1 / H, of journals at places (films, coordinates)
+        in m."""
+        eccentricity = np.linalg.norm(places, axis=1) / np.array(self.clearances)
+        return np.asarray(np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6)))
+
     def compared(self) -> Compared | None:
         """The force beside that of a better film, None where there is no better one to be had."""
         return None

@@ -6,12 +6,14 @@ import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
 
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
+from frbcli.film.cells.data import SHEARED
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.tilted.balances import tilted_outflow
@@ -34,18 +36,22 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
 from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
 
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a film, and their shares of it
+
 
 @dataclass(frozen=True)
 class TiltedFilms(Films):
-    """own: the films; misalignments: (films, 2) tilts of the shells about x and y, rad; cells:
-    (around, along) over the whole width; settled: see FILM; states: at which forces are compared, of a run. Derivatives
-    are those of films that keep no oil."""
+    """own: the films; misalignments: (films, 2) tilts of the shells about x and y, rad; cells: (around, along) over the
+    whole width, of one that no groove divides; settled, centrifugal (films,): see FILM; states: at which forces are
+    compared, of a run. Derivatives are those of films that keep no oil."""
 
     own: tuple[TiltedFilm, ...]
     misalignments: Array
     cells: tuple[int, int]
     settled: float
     states: int
+    centrifugal: tuple[float, ...] = ()
 
     coordinates: ClassVar[int] = COORDINATES
     stations: ClassVar[int] = 2
@@ -56,7 +62,7 @@ class TiltedFilms(Films):
     @cached_property
     def data(self) -> TiltedVolumes:
         """The films as arrays."""
-        return tilted_volumes(self.own, self.settled)
+        return tilted_volumes(self.own, self.settled, self.centrifugal)
 
     @property
     def loop(self) -> Any:
@@ -75,6 +81,18 @@ class TiltedFilms(Films):
     def seen(self, journals: Array) -> Array:
         """See Films.seen."""
         return np.concatenate([film.at_ends(journal) for film, journal in zip(self.own, journals, strict=True)])
+
+    def harmonic_gaps(self, places: Array) -> Array:
+        """See Films.harmonic_gaps: of 1 / H along the axis, too."""
+        first, last = np.moveaxis(self.ends(places).reshape(-1, self.stations, 2), 1, 0)[:, :, None]
+        at = first + ALONG * (last - first)
+        return np.asarray(1.0 / (SHARES / np.sqrt(np.maximum(1.0 - (at**2).sum(axis=2), 1e-6))).sum(axis=1))
+
+    @property
+    def sheared(self) -> Array:
+        """See Films.sheared."""
+        shares = self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * np.pi)
+        return np.asarray([shares[one:end].mean() for one, end in pairwise(self.data.first.tolist())])
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
         """See Films.first_state."""
@@ -135,8 +153,7 @@ class TiltedFilms(Films):
 
     def compared(self) -> Compared:
         """See Films.compared: on twice the cells each way, forces at both ends (4,) that do the same work."""
-        cells = FINER * self.cells[0], FINER * self.cells[1]
-        fine = [film.finer(cells) for film in self.own]
+        fine = [film.finer((FINER * self.cells[0], FINER * film.along)) for film in self.own]
 
         def forces(i: int, place: Array, rate: Array, total: float) -> tuple[Array, Array]:
             to_ends = np.linalg.inv(self.own[i].at_ends(np.eye(COORDINATES)).reshape(COORDINATES, COORDINATES)).T

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.reduction import DENSE, MOST
@@ -95,7 +96,9 @@ def signal_count(case: Case) -> int:
 def rotor_size(case: Case) -> int:
     """Degrees of freedom of the rotor with its rings and elements, as reduced."""
     elements = sum(body.size for body in element_parts(case).bodies)
-    return shaft_of(case).freedoms + 2 * len(rings(case)) + elements + len(turning_rings(case))
+    alone = sum(isinstance(given, FloatingRingBearing) for given in case.given_bearings)
+    tilts = 2 * alone if case.film.tilt == "follows" else 0
+    return shaft_of(case).freedoms + 2 * len(rings(case)) + tilts + elements + len(turning_rings(case))
 
 
 def _reduction_s(case: Case) -> float:

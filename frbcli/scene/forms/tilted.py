@@ -13,6 +13,7 @@ from frbcli.elements.damper import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
+from frbcli.scene.channels import coupled
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
@@ -38,16 +39,17 @@ def _analysis_faults(_: Case) -> Faults:
 
 
 def _machine_faults(case: Case) -> Iterator[Fault]:
-    """Bodies that do not tilt."""
+    """Bodies that do not tilt, and channels whose oil does not pass between films that do."""
     if case.given_rotor is None:
         yield Fault(KEY, ASKED, None, "needs a shaft that tilts, and there is no [rotor].", WITHOUT)
     elif not shaft_of(case).tilts:
         problem = "moves in its plane: its journals do not tilt."
         yield Fault("rotor.kind", case.rotor.kind, None, problem, f'Take kind = "turbocharger". {WITHOUT}')
     for key, given in zip(case.given_keys, case.given_bearings, strict=True):
-        if isinstance(given.parts[0], FloatingRingBearing):
-            problem = "has a ring, whose tilt its films do not follow."
-            yield Fault(f"{key}.kind", given.kind, None, problem, WITHOUT)
+        ring = given.parts[0]
+        if isinstance(ring, FloatingRingBearing) and coupled(ring):
+            problem = "passes oil between the films of a ring, which those that tilt do not follow."
+            yield Fault(f"{key}.channels", "coupled", None, problem, f'Write channels = "pressure". {WITHOUT}')
     for damper in DamperElement.of(case):
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
 

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film
+from frbcli.film.cells.tilted.force import tilted_film
 from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
@@ -126,23 +126,24 @@ def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
 
 
 def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> TiltedFilms:
-    places = film_places(case)
+    places, cells = film_places(case), cells_of(plan)
     misalignments = np.array([getattr(place.geometry, "misalignment", None) or (0.0, 0.0) for place in places])
-    own = tuple(_tilted_film(case, place, cells_of(plan), top_Hz) for place in places)
-    cells = cells_of(plan)
+    flat = [volume_film(case, place, COARSEST, top_Hz) for place in places]
+    sections = [whole_width(film.section) for film in flat]
+    lands = min((section.copies for section in sections), default=1)  # lands of all films have equal numbers of cells
+    own = tuple(
+        tilted_film(section, film.law, (cells[0], cells[1] * section.copies // lands), film.scales.reference,
+                    place.geometry.supply.mirrored)
+        for place, film, section in zip(places, flat, sections, strict=True)
+    )  # fmt: skip
+    drops = centrifugal_pressures(case, flat)
     return TiltedFilms(
-        _clearances(case), own, misalignments, cells, settled_share(plan.tolerance), compared_states(cells)
+        _clearances(case), own, misalignments, cells, settled_share(plan.tolerance), compared_states(cells), drops
     )
 
 
 def _inclined(case: Case, plan: Plan, top_Hz: float | None) -> Films:
     return InclinedFilms(_clearances(case), _tilted(case, plan, top_Hz))
-
-
-def _tilted_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None) -> TiltedFilm:
-    flat = volume_film(case, place, COARSEST, top_Hz)
-    section, reference = whole_width(flat.section), flat.scales.reference
-    return tilted_film(section, flat.law, cells, reference, place.geometry.supply.mirrored)
 
 
 def _models(case: Case, _: Plan, __: float | None) -> Films:

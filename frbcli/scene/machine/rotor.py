@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
@@ -12,7 +12,7 @@ from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Parts
 from frbcli.elements.thrust import COLLAR
 from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass
+from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
 from frbcli.rotor.held import preset
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.scene.films import turning_rings
@@ -28,7 +28,7 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
     """
     bodies, films, elements, centred = _bodies_and_links(case, sees)
     rotor = preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
-    return replace(rotor, cones=tuple(_cones(case, rotor)))
+    return replace(rotor, cones=tuple(_cones(case, bodies)))
 
 
 def collar_tilt(case: Case) -> Array | None:
@@ -43,7 +43,7 @@ def _bodies_and_links(case: Case, sees: tuple[str, ...]) -> tuple[list[Body], li
     site, count = site_of(case), float(shaft_of(case).equal_bearings)
     bodies, films = [shaft_of(case).body()], []
     for given in case.given_bearings:
-        bodies += _rings(given, count, case.rotor.gravity)
+        bodies += _rings(given, count, case)
     for bearing in case.bearings:
         journal, shell = site.journal(bearing.name), site.shell(bearing.name)
         if isinstance(bearing, FloatingRingBearing):
@@ -64,21 +64,26 @@ def _ring_node(bearing: FloatingRingBearing) -> str:
     return f"ring_{bearing.name}".rstrip("_")
 
 
-def _rings(bearing: GivenBearing, count: float, gravity: float) -> Iterator[Body]:
-    """The bodies of the ring of a bearing: the rings of equal bearings move as one, with the mass of all."""
+def _rings(bearing: GivenBearing, count: float, case: Case) -> Iterator[Body]:
+    """The bodies of the ring of a bearing: the rings of equal bearings move as one, with the mass of all. A ring of its
+    own tilts where its films follow that."""
+    gravity = case.rotor.gravity
     if isinstance(bearing, CartridgeBearing):
         (mass, _, tilt_inertia), (left, right), (start, end) = bearing.body, bearing.parts, bearing.positions
         yield tilting_mass((_ring_node(left), _ring_node(right)), mass, tilt_inertia, end - start, gravity)
     if isinstance(bearing, FloatingRingBearing):
-        yield point_mass(_ring_node(bearing), count * bearing.ring_mass, gravity)
+        node, mass = _ring_node(bearing), count * bearing.ring_mass
+        tilts, inertia = case.film.tilt == "follows", count * bearing.ring_tilt_inertia
+        yield tilting_ring(node, mass, inertia, gravity) if tilts else point_mass(node, mass, gravity)
 
 
-def _cones(case: Case, rotor: LinearRotor) -> Iterator[tuple[int, Array]]:
-    """See LinearRotor: the slopes of the rings that turn and have two places."""
-    nodes, around = dict(rotor.points), turning_rings(case)
-    for number, ends in enumerate(around, start=rotor.size - len(around)):
-        if len(ends) > 1:
-            left, right = ends
-            inertia, length = left.ring_inertia + right.ring_inertia, (right.position or 0.0) - (left.position or 0.0)
-            slope = (nodes[_ring_node(right)] - nodes[_ring_node(left)]) / length
-            yield number, math.sqrt(inertia) * slope
+def _cones(case: Case, bodies: Sequence[Body]) -> Iterator[tuple[int, Array]]:
+    """See LinearRotor: the slopes of the rings that turn and tilt."""
+    around = turning_rings(case)
+    if not around:
+        return
+    slopes = assembled(bodies, [Link(_ring_node(ends[0]), sees=("tilt_y", "tilt_x")) for ends in around]).journals
+    for number, (ends, slope) in enumerate(zip(around, slopes, strict=True), start=slopes.shape[2] - len(around)):
+        if slope.any():  # in y it is that about x against it
+            inertia = sum(end.ring_inertia for end in ends)
+            yield number, math.sqrt(inertia) * slope * [[1.0], [-1.0]]

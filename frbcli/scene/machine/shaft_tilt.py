@@ -18,7 +18,7 @@ from frbcli.errors import NotConverged
 from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.films import film_places
+from frbcli.scene.films import ROTOR, film_places
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.rotor import make_rotor
 
@@ -102,7 +102,7 @@ def film_tilts(case: Case) -> tuple[FilmTilt, ...]:
             0.5 * place.geometry.width / place.geometry.clearance,
         )
         for place, tilts, at_rest, turning in films
-        if np.abs(tilts).max() > FLAT
+        if place.inside == ROTOR and np.abs(tilts).max() > FLAT
     )
 
 

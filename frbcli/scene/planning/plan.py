@@ -213,12 +213,14 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for decided in element_decisions(case):
         decide(*decided)
     if rings(case):
-        decide("films", len(places), "each ring lies between an inner and an outer film, and moves and turns")
+        moves = "moves, tilts and turns" if case.film.tilt == "follows" else "moves and turns"
+        decide("films", len(places), f"each ring lies between an inner and an outer film, and {moves}")
     for given in case.given_bearings:
         if isinstance(given, CartridgeBearing):
-            decide(f"{given.name} cartridge".strip(), *_body(given))
+            decide(f"{given.name} cartridge".strip(), *_body(given, case.film.tilt == "follows"))
     for bearing in rings(case):
-        if computed := _computed(bearing):
+        alone = bearing in case.given_bearings  # and not an end of a cartridge
+        if computed := _computed(bearing, alone and case.film.tilt == "follows"):
             decide(f"{bearing.name} ring".strip(), *computed)
         if coupled(bearing):
             decide("channels", f"{bearing.name} coupled".strip(), _coupling_of_films(case, bearing))
@@ -236,17 +238,17 @@ def _decide_scene(case: Case, decide: Decide) -> None:
         decide("heat", "lumped", f"set in the case; viscosity follows the temperature of each film, the gap {gap}")
 
 
-def _body(bearing: CartridgeBearing) -> tuple[str, str]:
+def _body(bearing: CartridgeBearing, follows: bool) -> tuple[str, str]:
     """The body of a cartridge, and how it moves."""
     (mass, _, tilt_inertia), (start, end) = bearing.body, bearing.positions
     value = f"{1e3 * mass:.4g} g, tilt {1e6 * tilt_inertia:.4g} kg*mm^2"
     spins = "turns" if bearing.ring.spin == "free" else "is kept from turning by a pin"
     why = f"one rigid body from {display(start, 'm')} to {display(end, 'm')}, which moves, tilts and {spins}"
-    return value, f"{why}; the gap of each film is even along its width"
+    return value, f"{why}; the gap of each film {'follows its tilt' if follows else 'is even along its width'}"
 
 
-def _computed(bearing: FloatingRingBearing) -> tuple[str, str] | None:
-    """Mass and inertia of a ring that the case does not give, with what they follow from; None where it gives both."""
+def _computed(bearing: FloatingRingBearing, tilts: bool) -> tuple[str, str] | None:
+    """Mass and inertias of a ring that the case does not give, with what they follow from; None where it gives all."""
     ring, found, reasons = bearing.ring, [], []
     if ring.given_mass is None:
         found.append(f"mass {1e3 * bearing.ring_mass:.4g} g")
@@ -255,6 +257,10 @@ def _computed(bearing: FloatingRingBearing) -> tuple[str, str] | None:
     if ring.given_inertia is None:
         found.append(f"inertia {1e6 * bearing.ring_inertia:.4g} kg*mm^2")
         reasons.append("of a hollow cylinder of its mass, m (D_i^2 + D_o^2) / 8")
+    if tilts and ring.tilt_inertia is None:
+        found.append(f"tilt {1e6 * bearing.ring_tilt_inertia:.4g} kg*mm^2")
+        width = display(bearing.ring_width, "m")
+        reasons.append(f"about a diameter, of a hollow cylinder {width} wide: I / 2 + m B^2 / 12")
     return (", ".join(found), "; ".join(reasons)) if found else None
 
 

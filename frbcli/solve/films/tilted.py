@@ -163,7 +163,7 @@ def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s:
     grid.stage = s
     if iteration == 0:
         _follow(film, d, v, work.omega[f], grid.speed, grid.law)
-    cell_states(film, cells, grid.law, 0.0, w, states)
+    cell_states(film, cells, grid.law, film.centrifugal * grid.speed * grid.speed, w, states)
     if iteration == 0:
         hold(states, omega)
     motion = EndsMotion(d, v, omega, g, 1.0 / g if remembers else 0.0)

@@ -34,10 +34,13 @@ class TiltedVolumes(NamedTuple):
     first: Indices
 
 
-def tilted_volumes(films: Sequence[TiltedFilm], settled: float = TIGHTLY) -> TiltedVolumes:
-    """The films as arrays; all lands have grids of the same shape. settled: see FILM."""
+def tilted_volumes(
+    films: Sequence[TiltedFilm], settled: float = TIGHTLY, centrifugal: Sequence[float] = ()
+) -> TiltedVolumes:
+    """The films as arrays; all lands have grids of the same shape. settled, centrifugal (films,): see FILM."""
     lands = [land for film in films for land in film.lands]
-    data = volume_films([land.film for land in lands], (), settled)
+    drops = [drop for film, drop in zip(films, centrifugal, strict=False) for _ in film.lands]
+    data = volume_films([land.film for land in lands], drops, settled)
     k = lands[0].film.grid.shape[1]
     places = np.zeros((len(lands), PLACES, k + 1))
     for of, land in zip(places, lands, strict=True):

@@ -65,6 +65,11 @@ class TiltedFilm:
     section: Section
     lands: tuple[TiltedLand, ...]
 
+    @property
+    def along(self) -> int:
+        """Cells along the whole width."""
+        return sum(land.film.grid.shape[1] for land in self.lands)
+
     def at_ends(self, journal: Array) -> Array:
         """(2, 2, ...) displacement at both ends of the bearing, of a journal (4, ...)."""
         x, y, tilt_x, tilt_y = journal
