@@ -162,6 +162,17 @@ def moment_columns(moment: bool) -> Columns:
     return (*named(HEAD, "", itemgetter(0)), *map(_at_moment, history_columns(moment)))
 
 
+# Of a StribeckCurve, whole in JSON
+STRIBECK = tuple(
+    replace(column, key=f"stribeck.{column.quantity}" + ("_Hz" if column.unit else ""), flat=False)
+    for column in (
+        Column("speed", "Hz", "speed of the journal"),
+        Column("friction_coefficient", "", "coefficient of friction of film and asperities, `mu = |T| / (R F)`"),
+        Column("asperity_share", "", "share of the load that asperities carry"),
+    )
+)
+
+
 def error_column(largest: float) -> Column:
     """The error of a force over the largest one of a table in N: one that nearly vanishes has a large error of its own,
     which is of no meaning beside the others."""

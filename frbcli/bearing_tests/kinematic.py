@@ -13,6 +13,7 @@ from frbcli.bearing_tests.columns import moment_columns, result_columns
 from frbcli.bearing_tests.history import History
 from frbcli.bearing_tests.march import squeeze_path, whirl_path
 from frbcli.bearing_tests.steady_film import FilmField
+from frbcli.bearing_tests.stribeck import StribeckCurve, stribeck_curve
 from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film
 from frbcli.case.schema import Case
@@ -45,7 +46,7 @@ class KinematicResult:
     a rotation. Of a squeeze or a whirl, displacement, loads and field are those of the moment of the largest force, and
     so is the error; with a law that keeps oil it is the worst of the largest forces of the periods. heat: of a case
     with heat, in a squeeze or whirl of the mean over the last period; all else is that of its viscosity and clearance,
-    as in `plan`.
+    as in `plan`. stribeck: of a rotation under a load between rough surfaces.
     """
 
     cavitation: str
@@ -63,6 +64,7 @@ class KinematicResult:
     problem: str = ""
     heat: SteadyHeat | None = None
     moment_error: float = math.nan
+    stribeck: StribeckCurve | None = None
 
     @property
     def theory(self) -> str:
@@ -243,6 +245,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         displacement = lasting.d
         with advised(with_model(case, plan.cavitation)):
             moment = tested_film(plan).moment(case, plan, lasting, start)
+            stribeck = stribeck_curve(case, plan)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
     if tell is not None:
@@ -262,6 +265,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         plan=plan,
         heat=None if warm is None else warm.steady,
         moment_error=moment.moment_error,
+        stribeck=stribeck,
     )
 
 

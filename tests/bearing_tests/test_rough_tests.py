@@ -75,6 +75,40 @@ def test_a_loaded_journal_rests_where_the_sheet_has_it() -> None:
     np.testing.assert_allclose(result.loads.force, [0.0, 40.0], atol=1e-3)
 
 
+@pytest.mark.parametrize("flow", [(), ("contact.flow_factors=true",)], ids=["smooth flow", "rough flow"])
+def test_stribeck_curve_is_that_of_the_sheet(flow: tuple[str, ...]) -> None:
+    """From boundary friction over a least one to the film alone, whose journals do not know of the roughness."""
+    motion, common = "load='40 N', speed='3 Hz'", ("film.cavitation=half-sommerfeld", "film.theory=finite")
+    (rough,) = rotation(case(motion, *ROUGH, *flow, *common)).results
+    curve = rough.stribeck
+    assert curve is not None
+    friction, share = curve.friction_coefficient, curve.asperity_share
+    least = int(np.argmin(friction))
+    assert np.all(np.diff(curve.speed) > 0.0)
+    assert 0 < least < len(friction) - 2
+    assert np.all(np.diff(friction[least:]) > 0.0)
+    assert share[0] > 0.9
+    assert 0.5 * 0.12 < friction[0] < 1.1 * 0.12  # boundary friction has its own coefficient
+    assert np.all(np.diff(share) <= 0.0)
+    assert share[-1] == share[-2] == 0.0
+    assert curve.least == (friction[least], curve.speed[least])
+    some = [least - 2, least, len(friction) - 1]
+    states = bearing_sheet(case(motion, *ROUGH, *flow, *common), curve.speed[some].tolist()).points
+    for k, state in zip(some, states, strict=True):
+        assert friction[k] == pytest.approx(state.friction_coefficient, rel=0.02)
+    if not flow:
+        (smooth,) = rotation(case(f"load='40 N', speed='{curve.speed[-1]} Hz'", *common)).results
+        assert smooth.stribeck is None
+        assert smooth.loads is not None
+        assert friction[-1] == pytest.approx(abs(smooth.loads.torque.journal) / (R * 40.0), rel=2e-3)
+
+
+def test_a_rotation_at_a_displacement_has_no_stribeck_curve() -> None:
+    """Its load changes with the speed."""
+    (result,) = rotation(case(f"eccentricity={CLOSE}, speed='1 Hz'", *ROUGH), ["half-sommerfeld"]).results
+    assert result.stribeck is None
+
+
 def test_a_squeeze_presses_the_summits_as_a_spring() -> None:
     """Without rotation they do not slide."""
     rough, smooth = both(squeeze, f"eccentricity={CLOSE}, frequency='2 Hz', periods=1, speed='0 Hz'")

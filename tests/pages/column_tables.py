@@ -11,7 +11,7 @@ from pathlib import Path
 
 from paths import DOCS
 
-from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, moment_columns
+from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     cycle_columns,
@@ -77,6 +77,7 @@ TABLES: dict[str, Columns] = {
     "kinematic tests": RESULT,
     "moment of the force": MOMENT,
     "gas of the oil": GAS,
+    "stribeck curve": STRIBECK,
     "moments": moment_columns(False),
     "moment over time": MOMENT_HISTORY,
     "accuracy": LADDER,

@@ -100,6 +100,10 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
     for result in found.results:
         if result.heat is not None:
             tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
+        if result.stribeck is not None:
+            coefficient, speed = result.stribeck.least
+            told = f"the least coefficient of friction is {coefficient:.3g}, at {speed:.3g} Hz."
+            terminal.sentence(f"{result.name}: {told}")
     if found.test != "rotation":
         terminal.result(LARGEST)
     for result in found.results:
@@ -111,11 +115,12 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
 
 def _document(test: KinematicTest, result: KinematicResult) -> dict[str, Any]:
     """A result in JSON; null where there is no solution."""
-    from frbcli.bearing_tests.columns import history_columns, result_columns
+    from frbcli.bearing_tests.columns import STRIBECK, history_columns, result_columns
     from frbcli.columns import document, named
     from frbcli.scene.tilt import states_moment
 
     moment = states_moment(test.case)
     history = () if result.plan.test == "rotation" else named(history_columns(moment), "", attrgetter("history"))
-    found = document((*result_columns(moment, test.carries_gas), *history), result)
+    stribeck = () if result.stribeck is None else named(STRIBECK, "", attrgetter("stribeck"))
+    found = document((*result_columns(moment, test.carries_gas), *history, *stribeck), result)
     return found if result.heat is None else found | {"thermal": film_document(result.heat)}

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
 from frbcli.bearing_tests.steady_film import FilmField
 from frbcli.film.cavitation.table import label_of
-from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, styled
+from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, plain_numbers, styled
 
 Array = NDArray[np.float64]
 
@@ -21,6 +21,7 @@ DEGREES = 180.0 / np.pi
 LINES: tuple[Any, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 NARROWEST, WIDER = 1.0, 0.45  # lines of the last model and by how much each before it is wider, so that it stays seen
 MAP_HEIGHT = 1.15  # inches of the maps of a model
+FRICTION_HEIGHT = 2.4  # inches of the Stribeck curve
 
 
 def film_figure(found: KinematicTest) -> Figure:
@@ -32,12 +33,15 @@ def film_figure(found: KinematicTest) -> Figure:
         words = f"rotation with {speed:g} Hz"
         if len(solved) == 1 or motion is None or motion.load is None:
             words += f", eccentricity {float(np.hypot(*solved[0].displacement)):.4g}"
-        height = 5.6 + MAP_HEIGHT * len(solved)
-        figure = new_figure(found.case.heading, words, height=height)
-        parts: Any = figure.subfigures(2, 1, height_ratios=(5.2, MAP_HEIGHT * len(solved) + 0.4))
-        above, below = parts
-        _draw_lines(above, solved)
-        _draw_maps(below, solved)
+        heights = [5.2, MAP_HEIGHT * len(solved) + 0.4]
+        if any(result.stribeck for result in solved):
+            heights.append(FRICTION_HEIGHT)
+        figure = new_figure(found.case.heading, words, height=sum(heights))
+        parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights)
+        _draw_lines(parts[0], solved)
+        _draw_maps(parts[1], solved)
+        for part in parts[2:]:
+            _draw_friction(part, solved, abs(speed))
     return figure
 
 
@@ -95,6 +99,23 @@ def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
         rows[-1][column].set_xlim(0.0, 360.0)
         rows[-1][column].set_xticks(range(0, 361, 90))
         rows[-1][column].set_xlabel("φ in °; z from 0 to 1 along the section")
+
+
+def _draw_friction(figure: Any, solved: list[KinematicResult], speed: float) -> None:
+    """Stribeck curve and share of the asperities, with a line at the speed of the test in Hz."""
+    panels = figure.subplots(1, 2, sharex=True)
+    for number, curve in enumerate(result.stribeck for result in solved):
+        if curve is not None:
+            for axes, values in zip(panels, (curve.friction_coefficient, curve.asperity_share), strict=True):
+                axes.plot(curve.speed, values, **_look(number, len(solved)))
+    panels[0].set_yscale("log")
+    plain_numbers(panels[0].yaxis)
+    for axes, label in zip(panels, ("coefficient of friction", "share of asperities"), strict=True):
+        axes.axvline(speed, color=GREY, linewidth=0.8)
+        axes.set_xscale("log")
+        plain_numbers(axes.xaxis)
+        axes.set_xlabel("speed in Hz (line: of this test)")
+        axes.set_ylabel(label)
 
 
 def _look(number: int, count: int) -> dict[str, Any]:
