@@ -103,6 +103,7 @@ def whirl_columns(films: Sequence[str]) -> tuple[Column, ...]:
         _largest(films),
         RINGS,
         STABLE,
+        Column("kind", "", "`fold` where whirls of two frequencies turn back in speed", lambda w: w.kind or None),
     )
 
 
@@ -235,8 +236,8 @@ def diagram_columns(
             SPEED_COLUMN,
             replace(FREQUENCY, value=lambda point: getattr(point, "frequency_Hz", math.nan)),
             STABLE,
-            Column("kind", "", "kind of a special point, or `asked`; `locked` or `two frequencies` of a whirl with "
-                   "unbalance", _kind),
+            Column("kind", "", "kind of a special point, or `asked`; `locked`, `two frequencies` or `fold` of a "
+                   "whirl with unbalance", _kind),
         ),
         *(column for film, name in enumerate(films)
           for column in of_point(Column("eccentricity_max", "", "largest eccentricity", _eccentricity(film)),
@@ -266,7 +267,7 @@ def diagram_columns(
 
 def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
     if isinstance(point, UnbalancedWhirl):
-        return "locked" if point.locked else "two frequencies"
+        return point.kind or ("locked" if point.locked else "two frequencies")
     return point.kind if isinstance(point, CyclePoint) else ""
 
 

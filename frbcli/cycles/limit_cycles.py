@@ -21,8 +21,8 @@ from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
+from frbcli.cycles.unbalance.branches import whirls_with_unbalance
 from frbcli.cycles.unbalance.synchronous import synchronous_response
-from frbcli.cycles.unbalance.whirls import whirls_with_unbalance
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at

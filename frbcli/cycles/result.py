@@ -92,7 +92,8 @@ class UnbalancedWhirl:
     """A whirl with the unbalance beside it. speed_Hz: of the rotor; frequency_Hz: of the whirl; locked: whether it has
     locked in at half the speed, else the motion has two frequencies; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean;
     lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if
-    that could not be seen of a motion of two frequencies."""
+    that could not be seen of a motion of two frequencies, and at a fold; kind: "fold" where motions of two frequencies
+    turn back in speed, else ""."""
 
     speed_Hz: float
     frequency_Hz: float
@@ -101,13 +102,14 @@ class UnbalancedWhirl:
     ring_speeds_Hz: Array
     lines: tuple[SpectralLine, ...]
     stable: bool | None
+    kind: str = ""
 
 
 @dataclass(frozen=True)
 class CycleBranch:
     """Cycles in their order from a Hopf point on. start: its number among the special points,
     None where the Hopf point lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones
-    become with the unbalance, if asked for."""
+    become with the unbalance, and what these motions lead to behind folds, if asked for."""
 
     start: int | None
     points: tuple[CyclePoint, ...]

@@ -250,7 +250,7 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
         return
     terminal.show("With unbalance", table_of(WHIRLS, whirls))
     for stable, told in ((False, "Unstable"), (None, "Whether it is stable could not be seen")):
-        speeds = [f"{whirl.speed_Hz:.4g}" for _, whirl in whirls if whirl.stable is stable]
+        speeds = [f"{whirl.speed_Hz:.4g}" for _, whirl in whirls if whirl.stable is stable and not whirl.kind]
         if speeds:
             terminal.result(f"{told}: the whirl at {', '.join(speeds)} Hz.")
 

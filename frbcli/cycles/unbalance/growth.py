@@ -26,8 +26,10 @@ SEEN = 3.0  # natural logarithm of a growth beyond what a motion that comes and 
 DRIFT = 0.3  # logarithm of what the integration may make of the disturbance that neither grows nor decays
 
 
-def is_stable(machine: Machine, space: StateSpace, torus: Torus, cycle: Array) -> bool | None:
-    """Whether all disturbances of a motion decay; None where that is not seen in a million intervals. cycle: y of the
+def is_stable(
+    machine: Machine, space: StateSpace, torus: Torus, cycle: Array, most: int = MOST_INTERVALS
+) -> bool | None:
+    """Whether all disturbances of a motion decay; None where that is not seen in the most intervals. cycle: y of the
     cycle that the motion is next to, see balance.py, whose multipliers tell how short the intervals have to be."""
     beat = abs(2.0 * torus.nu - torus.omega)
     fewest = PERIODS if beat == 0.0 else max(PERIODS, math.ceil(torus.nu / beat))
@@ -36,7 +38,7 @@ def is_stable(machine: Machine, space: StateSpace, torus: Torus, cycle: Array) -
     motion, rate = _along(torus, within / torus.nu)
     vectors = np.linalg.qr(np.random.default_rng(0).standard_normal((len(space.still), 2)))[0]
     grown, asked = np.zeros(2), AT_ONCE + fewest
-    for first in range(0, MOST_INTERVALS // count, AT_ONCE):
+    for first in range(0, most // count, AT_ONCE):
         if first == AT_ONCE:  # whatever disturbance one begins with turns into those that last
             grown[:] = 0.0
         turned = np.exp(2j * np.pi * np.outer(np.arange(first, first + AT_ONCE), torus.frequencies / torus.nu))

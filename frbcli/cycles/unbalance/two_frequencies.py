@@ -74,7 +74,7 @@ def solved(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
     """The motion next to a guess, with its harmonics. share: of the unbalance. Raises Unreachable."""
     torus, driven = guess, [(order, share * moved) for order, moved in driven_motions(machine, guess.omega)]
     for _ in range(ITERATIONS):
-        balance = _Linearised(machine, torus, guess.motion)
+        balance = Linearised(machine, torus, guess.motion)
         residual = balance.residual(driven)
         size = float(np.abs(residual).max())
         if size < CLOSE:
@@ -95,7 +95,7 @@ def fitted(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
         whirl = torus.motion[(torus.orders == [1, 0]).all(axis=1), : 2 * machine.film_count]
         if np.abs(whirl).max() < WHIRLS:
             break
-        wanted = _left_out(machine, torus)
+        wanted = left_out(machine, torus)
         if not len(wanted):
             return torus
         orders = np.concatenate([torus.orders, wanted])
@@ -144,8 +144,8 @@ def grid_of(orders: Orders) -> tuple[int, int]:
 
 
 @dataclass(frozen=True)
-class _Linearised:
-    """The equations about a motion; reference: (m, c) whose phase it has. Raises OutOfGap."""
+class Linearised:
+    """The equations about a motion; reference: (m, c) whose phase it has. Its methods raise OutOfGap."""
 
     machine: Machine
     torus: Torus
@@ -253,7 +253,7 @@ class _Linearised:
 class _ByMean:
     """The same with the films' derivatives replaced by their mean over b: harmonics of different k are decoupled."""
 
-    def __init__(self, balance: _Linearised) -> None:
+    def __init__(self, balance: Linearised) -> None:
         from scipy.linalg import lu_factor
 
         self.balance, (j, k), c = balance, balance.torus.orders.T, balance.machine.size
@@ -309,13 +309,13 @@ def _with_conjugate(values: NDArray[Any], sign: float | None = None) -> NDArray[
     return np.concatenate([values, behind])
 
 
-def _left_out(machine: Machine, torus: Torus) -> Orders:
+def left_out(machine: Machine, torus: Torus) -> Orders:
     """(l, 2): the orders beyond those of a motion that would have more than TAIL."""
     known = {tuple(order) for order in torus.orders.tolist()}
     far = np.abs(torus.orders).max(axis=0) + MARGIN
     box = np.array([(j, k) for k in range(far[1] + 1) for j in range(-far[0], far[0] + 1) if k > 0 or j > 0])
     beyond = np.array([order for order in box.tolist() if tuple(order) not in known])
-    balance = _Linearised(machine, torus, torus.motion)
+    balance = Linearised(machine, torus, torus.motion)
     loads = harmonics(balance.loads.values.reshape(*balance.counts, -1), beyond)
     passing = transfer(machine, beyond @ np.array([torus.nu, torus.omega]), torus.omega)
     return np.asarray(beyond[np.abs(through(passing.values, loads)).max(axis=1) > TAIL])

@@ -1,22 +1,21 @@
-"""The whirl of each branch of stable cycles with the unbalance beside it: a motion of two frequencies, or one that has
-locked in at half the speed."""
+"""What a stable cycle becomes with the unbalance beside it: a motion of two frequencies, or one that has locked in at
+half the speed."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.cycles.method.balance import motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.cycle import ASKED, MOMENTS, Cycle, largest_of
-from frbcli.cycles.method.equilibria import EquilibriumCourse
+from frbcli.cycles.method.cycle import MOMENTS, Cycle, largest_of
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
-from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, SpectralLine, UnbalancedWhirl, hertz
+from frbcli.cycles.result import CyclePoint, SpectralLine, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.beats import beating
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
@@ -24,69 +23,38 @@ from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, sam
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
-Observer = Callable[[int, float, float], None]
 
-APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
 PHASES = (256, 128)  # at which eccentricities are taken
 LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
 
 
-def whirls_with_unbalance(
-    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None
-) -> LimitCycles:
-    """A diagram over the speed with the motions that its stable cycles become with the unbalance.
+@dataclass(frozen=True)
+class WhirlFound:
+    """What a cycle becomes. torus: of two frequencies, None if it has locked in; cycle: y of the cycle, see
+    balance.py."""
 
-    course: of the machine over the speed; observe: called with the number of motions so far, the speed in Hz and the
-    largest eccentricity of the latest one.
-    """
-    speeds = [point.speed_Hz for point in found.equilibria]
-    apart = APART * (max(speeds) - min(speeds))
-    branches, notes, count = [], list(found.notes), 0
-    for number, branch in enumerate(found.branches):
-        chain, whirls, missing = _Chain(), [], []
-        for point in _taken(branch, apart):
-            whirl = chain.next(course.machine(2.0 * math.pi * point.speed_Hz), point)
-            if whirl is None:
-                missing.append(point.speed_Hz)
-                continue
-            whirls.append(whirl)
-            count += 1
-            if observe is not None:
-                observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
-        if missing:
-            where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
-            between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
-            notes.append(f"Branch {number + 1} with unbalance: no motion was found {between} {where}.")
-        branches.append(replace(branch, with_unbalance=tuple(whirls)))
-    return replace(found, branches=tuple(branches), notes=tuple(notes))
+    whirl: UnbalancedWhirl
+    torus: Torus | None
+    cycle: Array
 
 
-def _taken(branch: CycleBranch, apart: float) -> list[CyclePoint]:
-    """Stable cycles of a branch at some distance from each other, with those that were asked for."""
-    taken: list[CyclePoint] = []
-    for point in branch.points:
-        far = not taken or abs(point.speed_Hz - taken[-1].speed_Hz) >= apart
-        if point.stable and (far or point.kind == ASKED):
-            taken.append(point)
-    return taken
-
-
-class _Chain:
+class Chain:
     """Motions along a branch, each from the one before it where that leads to it."""
 
     def __init__(self) -> None:
         self.locked: Cycle | None = None
         self.last: tuple[Torus, Torus] | None = None  # without and with the unbalance
 
-    def next(self, machine: Machine, point: CyclePoint) -> UnbalancedWhirl | None:
+    def next(self, machine: Machine, point: CyclePoint) -> WhirlFound | None:
         """The motion that a cycle of a machine becomes; None if it is not found."""
         motion = motion_of(machine, point)
         nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
+        cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
         self.locked = self._locked(machine, motion, nu, omega)
         if self.locked is not None:
             self.last = None
-            return _locked_whirl(machine, self.locked)
+            return WhirlFound(_locked_whirl(machine, self.locked), None, cycle)
         before = of_cycle(motion, nu, omega, machine.orders)
         try:
             torus = self._torus(machine, before)
@@ -94,8 +62,8 @@ class _Chain:
             self.last = None
             return None
         self.last = before, torus
-        cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
-        return _free_whirl(machine, torus, is_stable(machine, reduced_space(machine), torus, cycle))
+        stable = is_stable(machine, reduced_space(machine), torus, cycle)
+        return WhirlFound(free_whirl(machine, torus, stable), torus, cycle)
 
     def _locked(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
         if not _nearly_half(nu, omega):
@@ -151,7 +119,7 @@ def motion_of(machine: Machine, point: CyclePoint) -> Complex:
     return motion
 
 
-def _free_whirl(machine: Machine, torus: Torus, stable: bool | None) -> UnbalancedWhirl:
+def free_whirl(machine: Machine, torus: Torus, stable: bool | None, kind: str = "") -> UnbalancedWhirl:
     """Results of a motion of two frequencies."""
     films = 2 * machine.film_count
     displacements = samples(torus.orders, torus.motion[:, :films], PHASES)
@@ -168,6 +136,7 @@ def _free_whirl(machine: Machine, torus: Torus, stable: bool | None) -> Unbalanc
         ring_speeds_Hz=hertz(machine.pace) * torus.motion[0, films:].real,
         lines=_main(lines, ("nu", "Omega")),
         stable=stable,
+        kind=kind,
     )
 
 

@@ -1,0 +1,169 @@
+"""The whirls of each branch with the unbalance: what its stable cycles become, and what a motion of two frequencies
+leads to where no other one follows it: through folds, to unstable motions."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.cycles.method.cycle import ASKED, FOLD
+from frbcli.cycles.method.equilibria import EquilibriumCourse
+from frbcli.cycles.parts.machine import Machine
+from frbcli.cycles.parts.reduced_states import reduced_space
+from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, UnbalancedWhirl, hertz
+from frbcli.cycles.unbalance.growth import is_stable
+from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, follow_torus
+from frbcli.cycles.unbalance.two_frequencies import Torus
+from frbcli.cycles.unbalance.whirls import Chain, WhirlFound, free_whirl
+
+Array = NDArray[np.float64]
+Observer = Callable[[int, float, float], None]
+Tell = Callable[[UnbalancedWhirl], None]
+
+APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
+SAME = 1e-3  # of its frequency: a motion lies on a branch that passes it at this distance
+MOST_INTERVALS = 60_000  # in which the stability of a motion behind others is to be seen
+BORDER = 1e-9  # of the fastest speed
+
+
+def whirls_with_unbalance(
+    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None
+) -> LimitCycles:
+    """A diagram over the speed with its whirls with the unbalance.
+
+    course: of the machine over the speed; observe: called with the number of motions so far, the speed in Hz and the
+    largest eccentricity of the latest one.
+    """
+    speeds = [point.speed_Hz for point in found.equilibria]
+    follower = TorusFollower(course, (2.0 * math.pi * min(speeds), 2.0 * math.pi * max(speeds)))
+    branches, notes, count = [], list(found.notes), 0
+
+    def tell(whirl: UnbalancedWhirl) -> None:
+        nonlocal count
+        count += 1
+        if observe is not None:
+            observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
+
+    for number, branch in enumerate(found.branches):
+        whirls, remarks = _with_unbalance(follower, branch, tell)
+        notes += [f"Branch {number + 1} with unbalance: {remark}" for remark in remarks]
+        branches.append(replace(branch, with_unbalance=tuple(whirls)))
+    return replace(found, branches=tuple(branches), notes=tuple(notes))
+
+
+def _with_unbalance(
+    follower: TorusFollower, branch: CycleBranch, tell: Tell
+) -> tuple[list[UnbalancedWhirl], list[str]]:
+    """The whirls of a branch in its order, and what is to be said of them."""
+    chain, motions = Chain(), {}
+    for place in _taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
+        point = branch.points[place]
+        motions[place] = chain.next(follower.course.machine(2.0 * math.pi * point.speed_Hz), point)
+        if (motion := motions[place]) is not None:
+            tell(motion.whirl)
+    remarks, missing = [], [branch.points[place].speed_Hz for place, motion in motions.items() if motion is None]
+    if missing:
+        where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
+        between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
+        remarks.append(f"no motion was found {between} {where}.")
+    ends = [end for place in motions for way in (-1, 1) if (end := _end(follower, branch.points, motions, place, way))]
+    behind: dict[tuple[int, int], list[UnbalancedWhirl]] = {}
+    reached: list[_End] = []
+    for end in ends:
+        if end not in reached:
+            others = [other for other in ends if other.place != end.place]
+            behind[end.place, end.way], remark = _followed(follower, end, others, reached, tell)
+            remarks.append(remark)
+    whirls = []
+    for place, motion in motions.items():
+        own = [] if motion is None else [motion.whirl]
+        whirls += [*reversed(behind.get((place, -1), [])), *own, *behind.get((place, 1), [])]
+    return whirls, remarks
+
+
+def _taken(branch: CycleBranch, apart: float) -> list[int]:
+    """Places in a branch of stable cycles at some distance from each other in Hz, with those that were asked for."""
+    taken: list[int] = []
+    for place, point in enumerate(branch.points):
+        far = not taken or abs(point.speed_Hz - branch.points[taken[-1]].speed_Hz) >= apart
+        if point.stable and (far or point.kind == ASKED):
+            taken.append(place)
+    return taken
+
+
+@dataclass(frozen=True, eq=False)
+class _End:
+    """A motion of two frequencies behind which, on a way of 1 or -1 along its branch, none is known. place: of its
+    cycle in the branch; upwards: whether that way leads to higher speeds."""
+
+    torus: Torus
+    motion: WhirlFound
+    place: int
+    way: int
+    upwards: bool
+
+
+def _end(
+    follower: TorusFollower, points: Sequence[CyclePoint], motions: dict[int, WhirlFound | None], place: int, way: int
+) -> _End | None:
+    """The end of the motions at a place on a way; None if another motion follows, or the border of the range."""
+    motion = motions[place]
+    if motion is None or motion.torus is None:
+        return None
+    beyond = range(place + way, len(points) if way > 0 else -1, way)
+    first = points[beyond[0]] if beyond else None
+    inner = points[place - way] if 0 <= place - way < len(points) else points[place]
+    upwards = points[place].speed_Hz > inner.speed_Hz if first is None else first.speed_Hz > points[place].speed_Hz
+    for at in beyond:
+        if not points[at].stable or (at in motions and motions[at] is None):
+            return _End(motion.torus, motion, place, way, upwards)
+        if at in motions:
+            return None
+    last = 2.0 * math.pi * points[beyond[-1] if beyond else place].speed_Hz / follower.pace
+    at_border = min(abs(last - limit) for limit in follower.range) < BORDER
+    return None if at_border else _End(motion.torus, motion, place, way, upwards)
+
+
+def _followed(
+    follower: TorusFollower, end: _End, others: Sequence[_End], reached: list[_End], tell: Tell
+) -> tuple[list[UnbalancedWhirl], str]:
+    """The motions behind an end, and what is to be said of them. reached: gets the ends that they come to."""
+    from_Hz = hertz(end.torus.omega)
+    start = follower.start(end.torus, end.upwards)
+    if start is None:
+        return [], f"it could not be followed from {from_Hz:.4g} Hz."
+
+    def until(here: TorusPlace, there: TorusPlace) -> str:
+        met = [other for other in others if _passes(follower, here, there, other.torus)]
+        reached.extend(met)
+        return f"They come to those at {hertz(met[0].torus.omega):.4g} Hz." if met else ""
+
+    found = follow_torus(follower, start, until)
+    whirls = []
+    for each in found.places:
+        torus = follower.torus(each.orders, each.place.y)
+        machine = follower.course.machine(torus.omega)
+        stable = None if each.kind == FOLD else _stable(machine, torus, end.motion.cycle)
+        whirls.append(free_whirl(machine, torus, stable, each.kind))
+        tell(whirls[-1])
+    folds = " and ".join(f"{whirl.speed_Hz:.6g} Hz" for whirl in whirls if whirl.kind == FOLD)
+    turn = f"turn back at {folds}. " if folds else "go on. "
+    return whirls, f"the whirls from {from_Hz:.4g} Hz on {turn}{found.note}"
+
+
+def _stable(machine: Machine, torus: Torus, cycle: Array) -> bool | None:
+    return is_stable(machine, reduced_space(machine), torus, cycle, MOST_INTERVALS)
+
+
+def _passes(follower: TorusFollower, here: TorusPlace, there: TorusPlace, torus: Torus) -> bool:
+    """Whether the branch passes a motion between two places."""
+    ends = here.place.y[-2:] * follower.pace, there.place.y[-2:] * follower.pace
+    (nu, omega), (next_nu, next_omega) = ends
+    if omega == next_omega or not min(omega, next_omega) <= torus.omega <= max(omega, next_omega):
+        return False
+    share = (torus.omega - omega) / (next_omega - omega)
+    return bool(abs(nu + share * (next_nu - nu) - torus.nu) < SAME * torus.nu)
