@@ -150,6 +150,22 @@ def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
     return 0.5 * abs(around[1] - around[0]), 0.0 if event["kind"] == "critical-speed" else SHARE_OF_LINE * line_Hz
 
 
+def growth(run: RunLike, event: Mapping[str, Any], known: float) -> float:
+    """How fast, in 1/s, the whirl of an onset in a plain bearing grows out of less than an amplitude over the clearance
+    that is known. 0 where it does not, and of any other event."""
+    film, least = str(event["film"] or ""), min(known, WHIRL_ENDS)
+    room = signals.bearing_clearance(run, film)
+    if event["kind"] != "onset" or film.endswith(SIDES) or room is None:
+        return 0.0
+    turns, (motion,) = track(run, [Tracked("journal", film, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)])
+    middle = WHIRL_REVOLUTIONS * STEPS // 2
+    before = np.abs(motion[: max(0, int(np.searchsorted(turns.time_s, event["t_s"])) - middle)]) / room
+    unknown = np.flatnonzero(before < least)
+    if len(unknown) == 0 or middle + unknown[-1] < turns.settled:
+        return 0.0
+    return float(np.log(WHIRL_BEGINS / least) / (event["t_s"] - turns.time_s[middle + unknown[-1]]))
+
+
 def _near_the_speed(
     run: RunLike,
     turns: Revolutions,

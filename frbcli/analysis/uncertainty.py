@@ -14,16 +14,17 @@ differences that the errors of the run are.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.analysis.events import WHIRL_BEGINS, resolution
+from frbcli.analysis.events import WHIRL_BEGINS, growth, resolution
 from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
-from frbcli.analysis.signals import RunLike, Values, piece
+from frbcli.analysis.signals import RunLike, Values, joined, piece, samples_about, speed_at
 
 BETWEEN = 0.03  # of a step of the search: how far a moment that is read between two steps may be off
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
@@ -37,8 +38,11 @@ TRIMMED = 1.5  # root mean square of normal differences over that without their 
 PEAK = 0.1  # of what a search finds a frequency by: beside weaker peaks a parabola is off in both runs alike
 FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
+SMALLER = 100.0  # times: the errors of steps at a tenth of the target, from which a whirl may grow as well
+LONG = 20.0  # revolutions: what comes so early before a contact is a motion beside the shell, not the fall into it
 GIVEN = "clearance-step"  # its time stands in the case
 SAME = ("kind", "film", "point")
+CONTACT = "contact"
 OF_WHIRLS = ("onset", "lock-in", "offset")
 NUMBERS = SPEED, FREQUENCY, AMPLITUDE = "speed_Hz", "frequency_Hz", "amplitude"
 
@@ -75,10 +79,11 @@ def with_uncertainties(
     both = [(event, other) for event, other in zip(events, others, strict=True) if other is not None]
     usual = _Usual.of([pair for pair in both if pair[0]["kind"] in OF_WHIRLS], amplitude, share)
     alone = _Usual.of([], amplitude, share)
+    by_kind = dict.fromkeys(OF_WHIRLS, usual) | {CONTACT: replace(alone, amplitude=usual.amplitude)}
     return [
         {**event, **_unmatched(event, events, second)}
         if other is None
-        else {**event, **_matched(run, event, other, usual if event["kind"] in OF_WHIRLS else alone)}
+        else {**event, **_matched(run, event, other, by_kind.get(event["kind"], alone))}
         for event, other in zip(events, others, strict=True)
     ]
 
@@ -86,9 +91,10 @@ def with_uncertainties(
 @dataclass(frozen=True)
 class _Usual:
     """Usual uncertainties of all events of whirls: of speed and frequency relative to them, of the amplitude; safety:
-    times the difference of one of them, by the number."""
+    times the difference of one of them, by the number; known: the least uncertainty of an amplitude."""
 
     safety: Mapping[str, float]
+    known: float
     speed: float = 0.0
     frequency: float = 0.0
     amplitude: float = 0.0
@@ -99,7 +105,7 @@ class _Usual:
         kept = {key: _without_outliers([_relative(*pair, key) for pair in both]) for key in NUMBERS}
         safety = {key: min(BESIDE * share, SAFETY) if len(values) > 1 else SAFETY for key, values in kept.items()}
         speed, frequency, usual = (_usual(values, share) for values in kept.values())
-        return cls(safety, speed, frequency, max(amplitude, usual))
+        return cls(safety, amplitude, speed, frequency, max(amplitude, usual))
 
 
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
@@ -130,7 +136,7 @@ def partners(events: Sequence[Record], second: Sequence[Record]) -> list[Record 
         (abs(other["t_s"] - event["t_s"]), i, j)
         for i, event in enumerate(events)
         for j, other in enumerate(second)
-        if _key(other) == _key(event) and abs(other["t_s"] - event["t_s"]) <= _window_s(event)
+        if _key(other) == _key(event) and _are_near(event, other)
     )
     found: dict[int, int] = {}
     for _, i, j in candidates:
@@ -144,8 +150,12 @@ def _key(event: Record) -> tuple[Any, ...]:
     return tuple(event.get(name) for name in SAME)
 
 
-def _window_s(event: Record) -> float:
-    return max(NEAR * float(event["t_s"]), NEAR_REVOLUTIONS / max(abs(float(event["speed_Hz"])), 1.0))
+def _are_near(event: Record, other: Record, times: float = 1.0) -> bool:
+    """Whether two events are as near in time, or by the revolutions between them, as one of two runs may be; times: as
+    much."""
+    apart_s = abs(float(other["t_s"]) - float(event["t_s"]))
+    revolutions = 0.5 * (abs(float(event["speed_Hz"])) + abs(float(other["speed_Hz"]))) * apart_s
+    return apart_s <= times * NEAR * float(event["t_s"]) or revolutions <= times * NEAR_REVOLUTIONS
 
 
 def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[str, Any]:
@@ -156,10 +166,12 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
     off = {key: safety * _apart(event, other, key) for key, safety in usual.safety.items()}
     read = step_Hz if off[SPEED] == 0.0 else BETWEEN * step_Hz  # equal moments: both are no finer than a step
     line_Hz *= 1.0 if off[FREQUENCY] == 0.0 else PEAK
-    speed = max(off[SPEED], usual.speed * _size(event, SPEED), read)
+    speed = max(off[SPEED], usual.speed * _size(event, SPEED), read, _by_seed(run, event, usual.known))
     at_another_speed = abs(_number(event, "frequency_ratio")) * speed
     frequency = max(off[FREQUENCY], usual.frequency * _size(event, FREQUENCY), line_Hz, at_another_speed)
-    reason = _faint(event) or _grazing(run, event)
+    near_s = _beside_the_shell(run, event, usual.amplitude)
+    speed = max(speed, abs(float(event[SPEED]) - speed_at(run, float(event["t_s"]) - near_s)))
+    reason = _faint(event) or _grazing(run, event, near_s)
     return {
         "speed_uncertainty_Hz": speed,
         "frequency_uncertainty_Hz": None if event.get(FREQUENCY) is None else frequency,
@@ -172,7 +184,7 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
 def _unmatched(event: Record, events: Sequence[Record], second: Sequence[Record]) -> dict[str, Any]:
     """What is added to an event that the second run does not have."""
     elsewhere = [other for other in second if _key(other) == _key(event)]
-    again = [other for other in events if _key(other) == _key(event) and _are_near(event, other)]
+    again = [other for other in events if _key(other) == _key(event) and _are_near(event, other, RETURNS)]
     if reason := _faint(event):
         pass
     elif len(again) >= RETURNS:
@@ -186,10 +198,6 @@ def _unmatched(event: Record, events: Sequence[Record], second: Sequence[Record]
     return {"certain": False, "reason": reason}
 
 
-def _are_near(event: Record, other: Record) -> bool:
-    return abs(float(other["t_s"]) - float(event["t_s"])) <= RETURNS * _window_s(event)
-
-
 def _faint(event: Record) -> str:
     """Why an onset is not certain whose whirl hardly counts as one, "" for any other event."""
     amplitude = event.get("amplitude")
@@ -199,11 +207,39 @@ def _faint(event: Record) -> str:
     return f"its amplitude of at most {amplitude:.2g} is close to the {begins:g} from which a whirl counts"
 
 
-def _grazing(run: RunLike, event: Record) -> str:
-    """Why a contact is not certain that does not end its run, "" for any other event."""
-    if event["kind"] != "contact" or run.status == "contact":
+def _by_seed(run: RunLike, event: Record, known: float) -> float:
+    """Uncertainty in Hz of the speed of an onset whose whirl grows out of less than the error of the run: out of the
+    errors of its steps, and later with smaller ones, by the logarithm."""
+    rate = growth(run, event, known) if known > 0.0 else 0.0
+    if rate == 0.0:
+        return 0.0
+    t, later_s = float(event["t_s"]), math.log(SMALLER) / rate
+    return abs(speed_at(run, t + later_s) - speed_at(run, t - later_s)) / 2.0
+
+
+def _grazing(run: RunLike, event: Record, near_s: float) -> str:
+    """Why a contact is not certain, "" for any other event: it does not end its run, or the journal has been beside its
+    shell for some time (near_s) before."""
+    if event["kind"] != CONTACT or (run.status == "contact" and near_s == 0.0):
         return ""
     return "the journal grazes the shell, and may miss it by less than the error of its eccentricity"
+
+
+def _beside_the_shell(run: RunLike, event: Record, amplitude: float) -> float:
+    """How long in s before a contact the journal has already come as near to its shell as the amplitude is uncertain,
+    to a factor of two; 0 below LONG, and of any other event."""
+    name = joined("eccentricity", str(event["film"] or ""))
+    if event["kind"] != CONTACT or name not in run.signals:
+        return 0.0
+    near = run.references.get("contact_eccentricity", 1.0) - amplitude
+    t, turn_s = float(event["t_s"]), 1.0 / max(abs(float(event[SPEED])), 1.0)
+    long_s, found_s = LONG * turn_s, 0.0
+    while long_s < t:
+        before = samples_about(run, t - 2.0 * long_s, t - long_s)
+        if float(np.max(piece(run, name, *before))) < near:
+            break
+        found_s = long_s = 2.0 * long_s
+    return min(found_s, t)
 
 
 def _apart(event: Record, other: Record, key: str) -> float:

@@ -518,6 +518,16 @@ def test_combinations_of_two_whirls_are_no_whirls() -> None:
     assert [kind for kind in kinds(events) if kind[0] == "onset"] == [("onset", "inner")] * 2
 
 
+def test_the_fall_of_the_start_is_no_whirl_that_grows_out_of_it() -> None:
+    """It whirls with the films, fades to less than a whirl, and is never lost before one grows: the onset is that of
+    the growth, as of a run that begins at rest."""
+    faint, grown = RingWhirl("inner", -9.0, 9.0, 1e3, 0.017), RingWhirl("inner", 0.8, 9.0, 1e3)
+    fall = RingWhirl("inner", -9.0, 0.25, 1e3, 0.06)
+    (onset, *_), (of_rest, *_) = (find_events(ring_run(*whirls)) for whirls in ((faint, grown, fall), (faint, grown)))
+    assert (onset.kind, of_rest.kind) == ("onset", "onset")
+    assert 0.7 < onset.t_s == pytest.approx(of_rest.t_s, abs=1e-3)
+
+
 def test_rings_without_whirl_have_no_events() -> None:
     assert kinds(find_events(ring_run())) == []
     assert kinds(find_events(ring_run(noise=0.05))) == []

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -10,15 +11,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from synthetic_run import Rotor, as_run, make_run
 
-from frbcli.analysis.events import WHIRL_BEGINS
+from frbcli.analysis.events import WHIRL_BEGINS, find_events
 from frbcli.analysis.uncertainty import (
     BESIDE,
     BETWEEN,
     FAINT,
     NEAR,
+    NEAR_REVOLUTIONS,
     PEAK,
     SAFETY,
     SAFETY_OF_MEANS,
+    SMALLER,
     STUDENT,
     TRIMMED,
     partners,
@@ -83,6 +86,17 @@ def test_normal_errors_of_half_the_differences_are_held_in_nine_of_ten_cases(
     assert np.median(ratios) < median
 
 
+def test_a_whirl_that_grows_out_of_the_error_of_the_run_is_later_with_a_smaller_one(run: Run) -> None:
+    """It grows by exp(60 t) to 0.8 of the clearance: out of a hundredth of its seed it takes ln(100) / 60 s more, in
+    which the ramp rises by 2.3 Hz. What is above the error from the start has no such seed."""
+    (onset,) = [each for each in map(asdict, find_events(run)) if each["kind"] == "onset"]
+    later = RAMP * np.log(SMALLER) / 60.0
+    grown = with_uncertainties(run, [onset], [onset], amplitude=1e-3)[0]
+    assert grown["speed_uncertainty_Hz"] == pytest.approx(later, rel=0.1)
+    assert grown["frequency_uncertainty_Hz"] == pytest.approx(onset["frequency_ratio"] * later, rel=0.1)
+    assert with_uncertainties(run, [onset], [onset])[0]["speed_uncertainty_Hz"] < 0.1 * later
+
+
 def test_equal_runs_leave_the_resolution(run: Run) -> None:
     """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a hundredth of a line of 16 revolutions. Beside weaker
     peaks two frequencies that are not equal are off alike, but for a tenth of that."""
@@ -117,6 +131,16 @@ def test_an_event_of_a_ring_is_resolved_by_its_windows(run: Run) -> None:
 def test_a_step_of_the_clearance_is_given(run: Run) -> None:
     step = event(6.0, "clearance-step") | {"frequency_Hz": None, "amplitude": None}
     assert with_uncertainties(run, [step], [step])[0]["speed_uncertainty_Hz"] == 0.0
+
+
+def test_a_contact_is_not_certain_where_the_journal_has_long_been_as_near_as_its_eccentricity_is_uncertain() -> None:
+    """The whirl of the synthetic run has an eccentricity of 0.8 to 0.9 long before 8 s, and 0.3 before 6 s."""
+    ended = make_run(Rotor(), "contact")
+    for t_s, amplitude, certain in ((8.0, 0.01, True), (8.0, 0.3, False), (6.0, 0.3, True)):
+        touch = event(t_s, "contact") | {"frequency_Hz": None, "amplitude": None}
+        (found,) = with_uncertainties(ended, [touch], [touch], amplitude)
+        assert found["certain"] is certain
+        assert ("grazes" in (found["reason"] or "")) is not certain
 
 
 def test_a_contact_has_no_frequency(run: Run) -> None:
@@ -174,7 +198,16 @@ def test_every_event_has_one_partner_at_most_and_all_are_in_order(own: list[floa
     found = partners([event(t) for t in own], [event(t) for t in second])
     matched = [(t, other["t_s"]) for t, other in zip(own, found, strict=True) if other is not None]
     assert [other for _, other in matched] == sorted({other for _, other in matched})
-    assert all(abs(t - other) <= max(NEAR * t, 40.0 / (RAMP * t)) + 1e-12 for t, other in matched)
+    assert all(
+        abs(t - other) <= NEAR * t + 1e-12 or 0.5 * RAMP * abs(t**2 - other**2) <= NEAR_REVOLUTIONS + 1e-9
+        for t, other in matched
+    )
+
+
+def test_revolutions_between_two_events_are_those_of_the_ramp() -> None:
+    """From 30 Hz on 39 until 57 Hz, and 45 until 60 Hz, of which the speed of the former alone would make 30."""
+    assert partners([event(1.0)], [event(1.9)]) == [event(1.9)]
+    assert partners([event(1.0)], [event(2.0)]) == [None]
 
 
 def rings(speed_Hz: float, wave_Hz: float, warm_K: float) -> Run:

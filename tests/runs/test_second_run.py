@@ -28,6 +28,7 @@ from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
+from frbcli.solve.tableau import METHODS
 
 CASE = ("film.theory=short", "output.step=0.2 ms")
 
@@ -97,6 +98,8 @@ def test_the_second_plan_is_coarser_in_all(settings: tuple[str, ...]) -> None:
     plan = make_plan(case)
     coarser = coarser_plan(case, plan)
     assert coarser.tolerance == LOOSER * plan.tolerance
+    longer = plan.steps_per_revolution / coarser.steps_per_revolution
+    assert longer ** METHODS[plan.method].tableau.error_order == pytest.approx(LOOSER)
     assert (coarser.method, coarser.theory) == (plan.method, plan.theory)
     if plan.cells is not None:
         assert coarser.cells is not None

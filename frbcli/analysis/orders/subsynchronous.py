@@ -173,7 +173,7 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
         leads = np.flatnonzero((amplitudes[index] > 0.0) & (amplitudes[index] >= strongest))
         if len(leads) == 0 or np.all(amplitudes[index, leads] < FAINT * amplitudes[:, leads].max(axis=0)):
             continue
-        first, last = int(np.argmax(amplitudes[index] >= BEGINS)), int(leads[-1])
+        first, last = _begins(amplitudes[index], int(np.searchsorted(time, settled_s))), int(leads[-1])
         at = first + np.flatnonzero(amplitudes[index, first : last + 1])
         lasts = last >= len(middle) - 1 - PAUSE
         shortest = max(SHORTEST * window_s, SHORTEST_REVOLUTIONS / max(float(speed[first]), 1e-9))
@@ -208,6 +208,15 @@ def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
     for row, ridge in enumerate(ridges):
         frequencies[row, ridge.columns], amplitudes[row, ridge.columns] = ridge.frequencies, ridge.amplitudes
     return frequencies, amplitudes
+
+
+def _begins(amplitude: Values, settled: int) -> int:
+    """The window in which a ridge of an amplitude (windows,) becomes a whirl; settled: that in which the run has
+    settled. The fall of the start is a ridge, too, and may fade into that of a whirl which grows later."""
+    whirls, fades = amplitude >= BEGINS, (amplitude > 0.0) & (amplitude < BEGINS)
+    first = int(np.argmax(whirls))
+    faded = first + int(np.argmax(fades[first:]))  # itself: it never does
+    return faded + int(np.argmax(whirls[faded:])) if first <= settled and whirls[faded:].any() else first
 
 
 def _side(frequency: Values, ring: Values) -> Side:

@@ -8,6 +8,7 @@ from frbcli.case.schema import Case
 from frbcli.film.grid import Mesh
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.costs.cost import ExpectedCost, expected_cost
+from frbcli.scene.costs.course import ERROR_ORDERS
 from frbcli.scene.costs.preparation import memory_B
 from frbcli.scene.planning.planned import Plan
 
@@ -18,10 +19,14 @@ SHARE = 1.0 / 3.0  # of the CPU time of a run that a second one may take unasked
 
 
 def coarser_plan(case: Case, plan: Plan) -> Plan:
-    """The plan with fewer cells or elements and a larger tolerance; cells: those of the stated error of a run."""
+    """The plan with fewer cells or elements, a larger tolerance and longer steps; cells: those of the stated error of a
+    run. Where the steps of a revolution are as few as a run may take, the tolerance decides nothing: they are as many
+    fewer as make the error of a step of the method as much larger as the tolerance."""
     films = tuple((form, _coarser(mesh)) for form, mesh in plan.films)
     cells = plan.form.fewer_cells(case, plan) or plan.cells
-    return replace(plan, films=films, mesh=_coarser(plan.mesh), cells=cells, tolerance=LOOSER * plan.tolerance)
+    steps = plan.steps_per_revolution / LOOSER ** (1.0 / ERROR_ORDERS[plan.method])
+    coarser = replace(plan, films=films, mesh=_coarser(plan.mesh), cells=cells)
+    return replace(coarser, tolerance=LOOSER * plan.tolerance, steps_per_revolution=steps)
 
 
 def cost_of_run(case: Case, plan: Plan, profile: SpeedProfile, asked: bool = False) -> ExpectedCost:
