@@ -40,6 +40,15 @@ class BearingWalls(Model):
     )
 
 
+Misalignment = Annotated[
+    tuple[Tilt, Tilt] | None,
+    Field(
+        description="tilt of the shell about x, y through the middle of the bearing; in kinematic tests of a single "
+        "film, runs and at rest; of a shell around a ring with film.tilt = follows"
+    ),
+]
+
+
 class SingleFilmBearing(FilmGeometry, BearingWalls):
     """A journal in a shell with one film between them."""
 
@@ -48,11 +57,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
-    misalignment: tuple[Tilt, Tilt] | None = Field(
-        default=None,
-        description="tilt of the shell about x, y through the middle of the bearing; in kinematic tests, runs and at "
-        "rest",
-    )
+    misalignment: Misalignment = None
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
@@ -137,6 +142,7 @@ class FloatingRingBearing(BearingWalls):
     channels: Channels = "pressure"
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    misalignment: Misalignment = None
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:

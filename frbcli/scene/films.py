@@ -32,7 +32,8 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 class FilmPlace:
     """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
     which a blocked ring and a shell count as; the body that its openings turn with; the name that results carry; the
-    feed holes of coupled channels that it has beside its own supply."""
+    feed holes of coupled channels that it has beside its own supply; misalignment: tilt of its shell about x and y in
+    rad."""
 
     geometry: FilmGeometry
     inside: int
@@ -40,6 +41,7 @@ class FilmPlace:
     grid_body: int
     name: str
     feed_holes: Bores | None = None
+    misalignment: tuple[float, float] = (0.0, 0.0)
 
 
 def film_places(case: Case) -> tuple[FilmPlace, ...]:
@@ -48,14 +50,16 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
     places, spins = [], iter(_spins(case))
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
-            places.append(FilmPlace(bearing, ROTOR, HOUSING, _opening_body(bearing, ROTOR, HOUSING), bearing.name))
+            body, tilt = _opening_body(bearing, ROTOR, HOUSING), bearing.misalignment or (0.0, 0.0)
+            places.append(FilmPlace(bearing, ROTOR, HOUSING, body, bearing.name, None, tilt))
         else:
             names = (f"{bearing.name}_{side}".lstrip("_") for side in ("inner", "outer"))
             inner, outer, between = next(names), next(names), next(spins)
             places.append(FilmPlace(bearing.inner, ROTOR, between, _opening_body(bearing.inner, ROTOR, between), inner))
             feed_holes = feed_holes_in_outer_film(bearing)
             body = _opening_body(bearing.outer, between, HOUSING) if feed_holes is None else between
-            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, feed_holes))
+            tilt = bearing.misalignment or (0.0, 0.0)
+            places.append(FilmPlace(bearing.outer, between, HOUSING, body, outer, feed_holes, tilt))
     places += [FilmPlace(each.given, HOUSING, HOUSING, HOUSING, each.film) for each in DamperElement.of(case)]
     return tuple(places)
 

@@ -98,7 +98,7 @@ def tilt_key(case: Case) -> tuple[str, str]:
 def misaligned(case: Case) -> Iterator[tuple[str, str]]:
     """The key and the value of each shell that is not in line."""
     for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, SingleFilmBearing) and bearing.misalignment is not None and any(bearing.misalignment):
+        if bearing.misalignment is not None and any(bearing.misalignment):
             yield f"{bearing_key(case, index)}.misalignment", as_text(bearing.misalignment)
 
 

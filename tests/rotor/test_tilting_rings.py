@@ -306,6 +306,27 @@ def test_a_run_that_begins_at_rest_stays_there_and_tells_its_tilts() -> None:
     assert signals["tilt_left_inner_x_rad"] == pytest.approx(rest.journals[0, 2], rel=2e-2)
 
 
+def test_a_ring_follows_a_shell_that_is_not_in_line() -> None:
+    """Both shells tilt against each other around a rotor without weight: by symmetry the shaft stays in line, and each
+    ring stands between it and the shell so that the moments of its films balance. A run that begins there stays."""
+    size, more = 1e-3, ("rotor.gravity=0", "film.cavitation=sommerfeld")
+    shells = [f'bearing.{side}.misalignment=["{tilt} rad", "0 rad"]' for side, tilt in ((0, size), (1, -size))]
+    case = ringed(*more, *shells, inner=INNER.replace(BORES, GROOVE))
+    system = system_of(case)
+    rest = resting_position(system, OMEGA)
+    inner, outer = rest.journals[0::2, 2:], rest.journals[1::2, 2:]
+    assert inner + outer == pytest.approx(np.array([[-size, 0.0], [size, 0.0]]), abs=1e-7 * size)  # against the shells
+    assert inner[0] == pytest.approx(-inner[1], rel=1e-6)
+    share = np.hypot(*inner[0]) / size
+    assert 0.1 < share < 0.9
+    moments = np.array([film.force[2:] for film in rest.films])
+    assert moments[0::2] == pytest.approx(moments[1::2], rel=1e-7)
+    profile = speed_profile((0.0, 1e-3), (OMEGA, OMEGA))
+    found = march(system, profile, CONTROL, state_at(system, profile, rest.displacements, rest.velocities(system)))
+    moved = system.films.seen(system.rotor.journals) @ (found.q - rest.displacements).T
+    assert np.abs(moved).max() < 1e-4 * system.clearances[0]
+
+
 # -------------------------------------------------------------------------------------------------------------- case
 
 
@@ -313,6 +334,14 @@ def test_what_rings_that_tilt_do_not_have_is_refused() -> None:
     with pytest.raises(InputError) as refused:
         make_plan(ringed("bearing.0.channels=coupled"))
     assert [fault.key for fault in refused.value.faults] == ["bearing.0.channels"]
+    shell = 'misalignment=["{} mrad", "0 mrad"]'
+    with pytest.raises(InputError) as refused:
+        make_plan(ringed("bearing.1." + shell.format(20)))
+    assert [fault.key for fault in refused.value.faults] == ["bearing.1.misalignment"]
+    with pytest.raises(InputError, match="whose own tilt"):
+        make_plan(frbcli.load_case("floating-ring", ["bearing." + shell.format(0.1)]))
+    with pytest.raises(InputError, match="in line but for the motion"):
+        frbcli.rotation(ringed("bearing.0." + shell.format(0.1), 'motion={film="left_outer", eccentricity=0.5}'))
     with pytest.raises(InputError, match="less than half"):
         ringed(ring='{mass = "5 g", inertia = "2 kg*mm^2", tilt_inertia = "0.5 kg*mm^2"}')
     with pytest.raises(InputError, match="moves in its plane"):

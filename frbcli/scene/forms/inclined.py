@@ -6,14 +6,16 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
 from frbcli.scene.forms.tilted import RUNS, TiltedForm, film_faults, law_faults, misalignment_faults, run_faults
 from frbcli.scene.gate.analysis import FILMS, RANGE, RUN, SHEETS, STABILITY
 from frbcli.scene.gate.rule import Rule
+from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
-from frbcli.scene.tilt import misaligned
+from frbcli.scene.tilt import as_text, misaligned
 
 AT_REST = (FILMS, STABILITY, RANGE, *SHEETS)
 WITHOUT = "Leave bearing.misalignment out."
@@ -28,12 +30,22 @@ def _shaft_faults(case: Case) -> Iterator[Fault]:
             yield Fault(key, value, None, problem, remedy)
 
 
+def _ring_faults(case: Case) -> Iterator[Fault]:
+    """Shells around rings, which would tilt, too."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and bearing.misalignment is not None:
+            problem = "tilts the shell around a ring, whose own tilt is modelled in films that follow it alone."
+            key = f"{bearing_key(case, index)}.misalignment"
+            yield Fault(key, as_text(bearing.misalignment), None, problem, WITHOUT)
+
+
 @dataclass(frozen=True)
 class InclinedForm(TiltedForm):
     """The cells of films that follow a tilt, with one that is given."""
 
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(_shaft_faults, (*AT_REST, *RUNS)),
+        Rule(_ring_faults, (*AT_REST, *RUNS)),
         Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
         Rule(lambda case: run_faults(case, WITHOUT), (RUN,)),

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, ClassVar
 
-from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.errors import Fault
@@ -102,11 +102,11 @@ def run_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
 def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells so far out of line that a journal in the middle touches their ends."""
     for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, SingleFilmBearing) and bearing.misalignment is not None:
-            most = bearing.clearance / (0.5 * bearing.width)
+        if bearing.misalignment is not None:
+            most = bearing.films[-1].clearance / (0.5 * bearing.films[-1].width)
             if math.hypot(*bearing.misalignment) >= most:
                 key = f"{bearing_key(case, index)}.misalignment"
-                problem = "closes the gap at the ends of the bearing around a journal in its middle."
+                problem = "closes the gap at the ends of the bearing around what stands in its middle."
                 remedy = f"Write less than {1e3 * most:.3g} mrad."
                 yield Fault(key, as_text(bearing.misalignment), None, problem, remedy)
 

@@ -14,6 +14,7 @@ from frbcli.nearest import did_you_mean
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import bearing_films
 from frbcli.scene.keys import bearing_key, film_keys
+from frbcli.scene.tilt import as_text
 
 LEFT_OUT = {
     "given_rotor": None, "shaft": (), "disks": (), "forces": (), "magnetic_pulls": (), "bases": (),
@@ -62,6 +63,10 @@ def choice_faults(case: Case, test: str) -> Iterator[Fault]:
         key = f"{bearing_key(case, case.bearings.index(bearing))}.channels"
         problem = "lets the oil of one film of the ring into the other, and a test is of one film."
         yield Fault(key, "coupled", None, problem, 'Write channels = "pressure".')
+    if bearing.misalignment is not None:
+        key = f"{bearing_key(case, case.bearings.index(bearing))}.misalignment"
+        problem = "tilts the shell around a ring, and a test is of one film of it, in line but for the motion."
+        yield Fault(key, as_text(bearing.misalignment), None, problem, "Leave it out; motion.tilt tilts the film.")
     if case.heat is not None:
         problem = "has a ring as its wall, whose temperature follows from both of its films, and a test is of one."
         yield Fault("thermal.model", "lumped", None, problem, 'Write thermal.model = "none".')

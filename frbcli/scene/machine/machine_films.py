@@ -127,7 +127,7 @@ def source_film(case: Case, geometry: FilmGeometry, mesh: Mesh) -> SourceFilm:
 
 def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> TiltedFilms:
     places, cells = film_places(case), cells_of(plan)
-    misalignments = np.array([getattr(place.geometry, "misalignment", None) or (0.0, 0.0) for place in places])
+    misalignments = np.array([place.misalignment for place in places])
     flat = [volume_film(case, place, COARSEST, top_Hz) for place in places]
     sections = [whole_width(film.section) for film in flat]
     lands = min((section.copies for section in sections), default=1)  # lands of all films have equal numbers of cells
