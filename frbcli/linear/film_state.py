@@ -28,6 +28,7 @@ Array = NDArray[np.float64]
 
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them
+SLOW = 0.6  # share of the angle that an iteration leaves, above which the next one follows from the last two
 SAMPLES = 720  # angles at which the smallest gap is looked for
 
 
@@ -138,6 +139,7 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
     the journal, rad/s. Raises NotConverged where there is no such place."""
     angle = -0.25 * math.pi if omega >= 0.0 else -0.75 * math.pi
     near: FilmForce | None = None
+    before = turned = math.nan
     for _ in range(TURNS):
         place = eccentricity * system.clearances[i] * np.array([math.cos(angle), math.sin(angle)])
         near = system.force(i, place, np.zeros(2), omega, near)
@@ -147,7 +149,8 @@ def under_vertical_load(system: System, i: int, eccentricity: float, omega: floa
         off = math.remainder(0.5 * math.pi - math.atan2(f_y, f_x), 2.0 * math.pi)
         if abs(off) < ALIGNED:
             return place, settled_force(system, i, place, omega, near)
-        angle += off
+        turned = off * turned / (before - off) if SLOW * abs(before) < abs(off) < abs(before) else off
+        angle, before = angle + turned, off
     raise NotConverged(f"No attitude angle was found at an eccentricity of {eccentricity:g}: off by {off:.2g} rad.")
 
 

@@ -37,6 +37,7 @@ from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_bl
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
+from frbcli.film.cells.gas.mixing import GasMixing
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.gap import gap_rate
@@ -49,9 +50,8 @@ SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iterati
 DRY = -1e-6  # an oil fraction below this is none
 REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
 GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what free gas is off by; the latter where it does not fall any more
-GAS_LIMIT = 3  # times the iterations of a film without gas: its error falls by a fixed ratio
-# How close cells come to their balances where gas is solved with the oil: before oil fractions are held anew, and last.
-HELD_CLOSE, CLOSE = 1e-3, 1e-14
+# How close cells come to their balances where gas is solved with the oil: where it begins to go with the oil, and last.
+BEGUN, CLOSE = 1e-4, 1e-14
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -70,9 +70,13 @@ class Attempt:
 
 
 PLAIN = Attempt(math.inf, 1.0, 20)
-DAMPED = Attempt(1.0, 4.0, 150, 0.5)
-GENTLE = Attempt(0.1, 1.5, 300, 0.2)
+DAMPED = Attempt(1.0, 4.0, 150)
+GENTLE = Attempt(0.1, 1.5, 300)
 ATTEMPTS = (PLAIN, DAMPED, GENTLE)
+# Gas that begins to go with the oil answers with more than it is given, the finer the cells the more.
+GAS_DAMPED, GAS_GENTLE = replace(DAMPED, limit=50, gas=0.5), replace(GENTLE, limit=900, gas=0.2)
+GAS_BEGINS: tuple[Attempt, ...] = (GAS_DAMPED, GAS_GENTLE)
+GAS_ATTEMPTS: tuple[Attempt, ...] = (replace(PLAIN, limit=60), *GAS_BEGINS)
 
 
 class FilmSolver:
@@ -129,10 +133,11 @@ class FilmSolver:
         repeated = REPEATED if law.keeps_oil and not (law.starves or upwind) else 0
         if law.carries_gas:
             self._hold_gas(self.film.gaps(motion), storage, 0.0)
-            solution = self._again(motion, solution, storage, HELD_CLOSE if repeated else CLOSE)
-        for left in reversed(range(repeated)):
+            solution = self._again(motion, solution, storage, BEGUN)
+            solution = self._again(motion, solution, storage)
+        for _ in range(repeated):
             self._before = before_upstream(solution.state.fraction, motion.omega)
-            solution = self._again(motion, solution, storage, HELD_CLOSE if left else CLOSE)
+            solution = self._again(motion, solution, storage)
         return solution
 
     def keep(
@@ -154,7 +159,9 @@ class FilmSolver:
         solution = self._solve(flowing, w, storage)
         return solution, gap * solution.state.fraction
 
-    def _again(self, motion: Motion, solution: VolumeSolution, storage: Storage, close: float) -> VolumeSolution:
+    def _again(
+        self, motion: Motion, solution: VolumeSolution, storage: Storage, close: float = CLOSE
+    ) -> VolumeSolution:
         """The solution that follows one of the same motion, with the iterations of both."""
         found = self._solve(motion, solution.w, storage, close)
         return replace(found, iterations=solution.iterations + found.iterations)
@@ -186,11 +193,12 @@ class FilmSolver:
         return replace_oil(film, cells, self._states, self._paths)
 
     def _solve(self, motion: Motion, start: Array, storage: Storage, close: float = CLOSE) -> VolumeSolution:
-        """Solve by the first of ATTEMPTS that converges. close: what free gas and its oil may be off by."""
+        """Solve by the first attempt that converges. close: what free gas and its oil may be off by."""
         spent, failure = 0, ""
         start = np.ascontiguousarray(start, dtype=np.float64)  # as the kernels take it
         gas = self._states[CARRIED_GAS:BEFORE_UPSTREAM].copy()
-        for attempt in ATTEMPTS:
+        with_gas = GAS_ATTEMPTS if close < BEGUN else GAS_BEGINS
+        for attempt in with_gas if self._carries else ATTEMPTS:
             self._states[CARRIED_GAS:BEFORE_UPSTREAM] = gas
             w, iterations, failure = self._iterate(motion, start, storage, attempt, close)
             spent += iterations
@@ -207,12 +215,11 @@ class FilmSolver:
         self, motion: Motion, w: Array, storage: Storage, attempt: Attempt, close: float
     ) -> tuple[Array, int, str]:
         """(w, iterations, what is wrong or nothing)."""
-        passed = self._passed(motion)
+        passed, mixing = self._passed(motion), GasMixing(self.film.law.gas_content) if self._carries else None
         pseudo_rate, left_before, largest_before = motion.rate / attempt.first, math.inf, math.inf
         worst, off_before = np.zeros_like(w), math.inf
-        limit = attempt.limit * (GAS_LIMIT if self._carries else 1)
-        for iteration in range(1, limit + 1):
-            residual = self._assemble(motion, w, storage, attempt.gas)
+        for iteration in range(1, attempt.limit + 1):
+            residual = self._assemble(motion, w, storage, mixing, attempt.gas)
             with np.errstate(over="ignore"):  # on the way to a failure
                 worst = np.abs(residual) / self._terms(passed, w, storage)
             largest, left = float(np.max(worst)), float(np.abs(residual).sum())
@@ -231,18 +238,18 @@ class FilmSolver:
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
-        return w, limit, self._where(worst)
+        return w, attempt.limit, self._where(worst)
 
-    def _assemble(self, motion: Motion, w: Array, storage: Storage, gas: float = 1.0) -> Array:
-        """(m, k) what does not balance, and in the arrays of the solver Newton's equations. gas: see Attempt."""
+    def _assemble(self, motion: Motion, w: Array, storage: Storage, mixing: GasMixing | None, gas: float) -> Array:
+        """(m, k) what does not balance, and in the arrays of the solver Newton's equations. mixing: of the gas that the
+        oil carries; gas: see Attempt."""
         self._states[BEFORE_UPSTREAM] = self._before
         self._set_states(w)
-        if self._carries:
+        if mixing is not None:
             carried = self._states[CARRIED_GAS:BEFORE_UPSTREAM]
             before = carried.copy()
             self._off = self._carry(motion)
-            if gas < 1.0:
-                carried -= (1.0 - gas) * (carried - before)
+            carried[:2] = mixing.mixed(before[:2], carried[:2], gas)
             self._set_states(w)
         self._flow(motion, storage.past)
         states, kept = self._states, self._area * storage.factor

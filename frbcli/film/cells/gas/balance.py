@@ -171,7 +171,6 @@ def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPa
 def free_gas(law: Law, scales: Scales, grid: VolumeGrid, states: Array, paths: Array, off: float) -> FreeGas:
     """The gas of a solution with the states (STATES, m, k), whose `paths` (PATHS, m, k) are those of carry.py."""
     layers, states = paths.copy(), states.copy()
-    onward, backward, upward, downward, out, given = layers[:KEPT]
     area = np.where(grid.fixed, 0.0, grid.area)
     return FreeGas(
         law,
@@ -181,12 +180,18 @@ def free_gas(law: Law, scales: Scales, grid: VolumeGrid, states: Array, paths: A
         Carried(states[CARRIED_GAS], states[TURNOVER]),
         off,
         area * layers[HEIGHT] * states[FRACTION],
-        OilPaths(onward, backward, upward[:, :-1], downward[:, :-1], out, given),
+        paths_of(layers),
         layers[KEPT],
         layers[KNOWN],
         area * layers[GAS_PAST],
         grid.fixed,
     )
+
+
+def paths_of(layers: Array) -> OilPaths:
+    """The paths in array notation of the layers of carry.py (PATHS, m, k)."""
+    onward, backward, upward, downward, out, given = layers[:KEPT]
+    return OilPaths(onward, backward, upward[:, :-1], downward[:, :-1], out, given)
 
 
 def path_layers(paths: OilPaths, layers: Array) -> None:

@@ -18,10 +18,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.balances import GridMotion
+from frbcli.film.cells.balance.carried import UPWIND
+from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, PRESSURE, STATES, TURNOVER, cell_states
+from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import FreeGas, brought, oil_paths, with_own_gas
+from frbcli.film.cells.gas.balance import FreeGas, brought, paths_of, with_own_gas
+from frbcli.film.cells.gas.carry import PATHS, follow_oil
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
@@ -85,7 +90,9 @@ class _Settled:
     """The balances of a film near a settled solution with the free gas `gas`; rated: 1 / (1 + tau r)."""
 
     def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array) -> None:
-        self.film = film
+        data = volume_films([film])
+        self.film, self._own = film, (data.films[0], data.ring[0], data.width[0], data.cells[0])
+        self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         _, self.time = film.law.exchanged(pressure, gas.carried.gas, film.scales)
         self.rated = 1.0 / (1.0 + self.time * gas.carried.turnover)
 
@@ -105,13 +112,18 @@ class _Settled:
 
     def balances(self, w: Array, free: Array, motion: Motion) -> tuple[Array, Array]:
         """(m, k) each: what leaves the cells net, of their oil, and of their gas as above."""
-        film, law = self.film, self.film.law
-        at, state = CellBalances(film.section, film.grid, motion), self.state(w, free)
-        paths = oil_paths(at, state.pressure, state.fraction)
+        film, law, (m, k) = self.film, self.film.law, free.shape
+        own, ring, width, cells = self._own
+        states, layers = np.full((STATES, m, k), UPWIND), np.empty((PATHS, m, k))
+        states[CARRIED_GAS], states[TURNOVER] = with_own_gas(free)
+        cell_states(own, cells, self._law, 0.0, np.ascontiguousarray(w), states)
+        x, y = motion.d
+        follow_oil(own, ring, width, cells, states, GridMotion(x, y, motion.omega), layers)
+        paths = paths_of(layers)
         comes = brought(paths, np.ones_like(free)) + paths.given
         taken = comes * free - brought(paths, free) - paths.given * law.supplied_gas
-        target, _ = law.exchanged(state.pressure, free, film.scales)
-        held = film.grid.area * self.gap(motion) * state.fraction
+        target, _ = law.exchanged(states[PRESSURE], free, film.scales)
+        held = film.grid.area * self.gap(motion) * states[FRACTION]
         open_ = np.where(film.grid.fixed, 0.0, 1.0)
         gas = open_ * self.rated * (self.time * taken - held * (target - free))
         return open_ * (paths.out - comes), gas
