@@ -23,6 +23,7 @@ from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, fillings, film_signals, tilt_signals
 from frbcli.runs.record.header import FLOW, named, recorded, ring_names
+from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
 from frbcli.runs.start import first_state, rotor_data
@@ -104,6 +105,7 @@ class March:
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
+        self._kept = KeptFilms(case.output.films, system)
         self._wear = RunWear(case.contact.wear_rate, case.output.step, system.bodies)
         self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
@@ -209,11 +211,13 @@ class March:
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
         cpu, wall = time.process_time(), time.perf_counter()
-        status, rows = self._go(self._budget)
+        budget = self._kept.steps(self.time, self._control.longest_step, self._budget)
+        status, rows = self._go(budget)
         spent = time.perf_counter() - wall
         self._cpu_s += time.process_time() - cpu
         self._wall_s += spent
-        self._budget = max(1, min(BUDGET, int(self._budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
+        self._budget = max(1, min(BUDGET, int(budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
+        self._kept.take(self._now, self._state, self._profile.angle(self.time))
         first = int(self._state.numbers[OUTPUTS]) - rows
         times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
         speeds = self._profile.speed(times)
@@ -273,7 +277,7 @@ class March:
         """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
         noted = {"noted": self._noted} if self._watches and not np.isnan(self._noted).any() else {}
-        beside = {**noted, **self._wear.snapshot(), **self._heat.snapshot()}
+        beside = {**noted, **self._wear.snapshot(), **self._heat.snapshot(), **self._kept.snapshot()}
         return {**self._state._asdict(), **beside, "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
@@ -289,6 +293,7 @@ class March:
         self._heat.take_up(self._segments[self._current].case, self._system)
         self._heat.restore(checkpoint)
         self._wear.restore(checkpoint)
+        self._kept.restore(checkpoint, self.time)
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:

@@ -89,6 +89,7 @@ TABLES = {
     "[contact]": "Contact",
     "[accuracy]": "Accuracy",
     "[output]": "Output",
+    "[output.films]": "FilmFrames",
 }
 
 

@@ -27,7 +27,7 @@ from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.plot.run.animation import animate_orbits
+from frbcli.plot.moving.orbits import animate_orbits
 from frbcli.results.files.kinds import PAGE, TABLES
 from frbcli.results.files.lock import locked
 from frbcli.results.files.tables import harmless_text, write_table

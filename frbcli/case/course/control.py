@@ -7,12 +7,13 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Count, Displacement, Quantity
+from frbcli.case.quantities import Count, Displacement, Duration, Hold, Quantity
 from frbcli.units import NUMBER
 
 OUTPUT_STEP = 5e-5  # resolves 10 kHz
 STEPS_PER_REVOLUTION = 40
 MACRO_STEP = 1e-6  # table 6.2
+MOST_FRAMES = 200  # of films that a run keeps
 
 FilmSignal = Literal["force", "film-thickness", "power", "torque", "oil-flow"]
 
@@ -49,6 +50,14 @@ class Accuracy(Model):
     )
 
 
+class FilmFrames(Model):
+    """Oil fractions and free gas of all cells that a run keeps, for pictures of its films."""
+
+    begin: Hold = Field(alias="from", description="time of the first ones")
+    end: Duration = Field(alias="to", description="time of the last ones")
+    frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="so many, at even times")
+
+
 class Output(Model):
     """Output of a run."""
 
@@ -61,3 +70,4 @@ class Output(Model):
         "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves "
         "it through its open ends",
     )
+    films: FilmFrames | None = Field(default=None, description="keep the oil and the gas of films that keep their oil")

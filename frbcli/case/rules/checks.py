@@ -187,9 +187,22 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach(("output", "step"), problem, "Shorten the step.")
     whole = duration + (number(speed, "hold", "s", DEFAULT_HOLD) or 0.0)
     whole += number(speed, "down_duration", "s", duration) or 0.0
+    yield from _kept(table(table(data, "output"), "films"), whole)
     if whole / step > MOST_SAMPLES:
         problem = f"makes {whole / step:.3g} samples of one run."
         yield Breach(("output", "step"), problem, "Lengthen it, or shorten the run.")
+
+
+def _kept(films: Mapping[str, Any], whole: float) -> Iterator[Breach]:
+    """Films that a run keeps, between times of it. whole: s that it lasts at the most."""
+    begin, end = (number(films, key, "s") for key in ("from", "to"))
+    if begin is None or end is None:
+        return
+    if begin >= end:
+        yield Breach(("output", "films", "to"), "is not after from.", "Exchange or correct the two.")
+    elif begin >= whole:
+        problem = f"is not before the end of the run, {display(whole, 's')}."
+        yield Breach(("output", "films", "from"), problem, "Correct it.")
 
 
 def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:

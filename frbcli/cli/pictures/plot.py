@@ -1,9 +1,10 @@
-"""`frb plot`: eccentricities, ring speeds, oil content, heat, what a run records of its films, orbits, displacements,
-or the summary of a run; the cavitation laws of a case."""
+"""`frb plot`: eccentricities, ring speeds, oil content, heat, what a run records and keeps of its films, orbits,
+displacements, or the summary of a run; the cavitation laws of a case."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -12,8 +13,9 @@ import click
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import INPUT, beside, check_outputs, here
 from frbcli.cli.looks import look_options
-from frbcli.cli.options import TIME_OPTION, over_option, signal_option
+from frbcli.cli.options import TIME_OPTION, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
+from frbcli.cli.progress import display
 
 if TYPE_CHECKING:
     from frbcli.plot.curves import Over
@@ -23,7 +25,21 @@ if TYPE_CHECKING:
 LAW = "law"  # of a case, the others of runs
 FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow", "tilt", "supply-pressure")
 CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", *FILM_SIGNALS)
-SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
+MOVING = ("orbit", "film")
+SUBJECTS = (*CURVES, *MOVING, "displacement", "summary", LAW)
+
+
+@dataclass(frozen=True)
+class Times:
+    """What is drawn of a run, from one time to another in s; None: from its beginning, to its end."""
+
+    from_time: float | None
+    to_time: float | None
+
+    @property
+    def both(self) -> tuple[float | None, float | None]:
+        """The two times."""
+        return self.from_time, self.to_time
 
 
 @click.command()
@@ -34,39 +50,44 @@ SUBJECTS = (*CURVES, "orbit", "displacement", "summary", LAW)
 @over_option("time")
 @signal_option(None)
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=f"{SETTING} With --what law.")
-@click.option("--animate", is_flag=True, help="A moving picture of an orbit: GIF, or MP4 where ffmpeg is installed.")
+@click.option("--animate", is_flag=True,
+              help="A moving picture of an orbit or a film: GIF, or MP4 where ffmpeg is installed.")  # fmt: skip
+@click.option("--film", metavar="NAME", help="The film of --what film, as in eccentricity_NAME. [the first one]")
 @picture_option("RUN-WHAT.png")
 @look_options
 @output_options
+@gathered("span", Times)
 def command(
     run_files: tuple[Path, ...],
     what: str,
-    from_time: float | None,
-    to_time: float | None,
+    span: Times,
     over: Over,
     signal: str | None,
     settings: tuple[str, ...],
     animate: bool,
+    film: str | None,
     output: Path | None,
     terminal: Terminal,
 ) -> None:
     """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
     from frbcli.results.store import read_run
 
-    if animate and (what != "orbit" or len(run_files) > 1):
-        raise click.UsageError("--animate belongs to --what orbit, of one run.")
+    if animate and what not in MOVING:
+        raise click.UsageError(f"--animate belongs to --what {' and '.join(MOVING)}.")
+    if film is not None and what != "film":
+        raise click.UsageError("--film belongs to --what film.")
     if what == LAW:
         if len(run_files) > 1:
             raise click.UsageError("A law is of one case.")
-        if from_time is not None or to_time is not None or signal is not None or over != "time":
+        if span.both != (None, None) or signal is not None or over != "time":
             raise click.UsageError("--from, --to, --over and --signal belong to pictures of runs.")
         _law(str(run_files[0]), settings, output, terminal)
         return
     if settings:
         raise click.UsageError("--set belongs to --what law; a run cannot be changed.")
-    if what == "summary" and len(run_files) > 1:
-        raise click.UsageError("A summary is of one run.")
-    if what == "summary" and (from_time is not None or to_time is not None):
+    if len(run_files) > 1 and (animate or what in ("summary", "film")):
+        raise click.UsageError(f"{'A moving picture' if animate else f'A {what}'} is of one run.")
+    if what == "summary" and span.both != (None, None):
         raise click.UsageError("A summary is of the whole run: leave --from and --to out.")
     if signal is not None and what != "displacement":
         raise click.UsageError("--signal belongs to --what displacement.")
@@ -74,29 +95,38 @@ def command(
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
     target = output or beside(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
     if animate:
-        _animate(run_files[0], target, (from_time, to_time), terminal)
+        _animate(run_files[0], target, span.both, what, film, terminal)
         return
     check_outputs(picture=target)
     runs = [read_run(path) for path in run_files]
     if what == "eccentricity" and over == "time" and all("length_m" in run.references for run in runs):
         what = "displacement"  # no bearing has a film
-    draw_wanted(terminal, lambda: _figure(what, runs, (from_time, to_time), over, signal), target, what)
+    draw_wanted(terminal, lambda: _figure(what, runs, span.both, over, film or signal), target, what)
     first = run_files[0] if len(run_files) == 1 else list(run_files)
     terminal.emit({"command": "plot", "run": first, "output": target, "what": what})
 
 
 def _animate(
-    run_file: Path, target: Path, span: tuple[float | None, float | None], terminal: Terminal
-) -> None:
-    from frbcli.plot.run.animation import animate_orbits, check_animation
+    run_file: Path, target: Path, span: tuple[float | None, float | None], what: str, film: str | None,
+    terminal: Terminal,
+) -> None:  # fmt: skip
+    from frbcli.plot.moving.films import animate_films
+    from frbcli.plot.moving.orbits import animate_orbits
+    from frbcli.plot.moving.writer import check_animation
     from frbcli.results.files import kinds
     from frbcli.results.store import read_run
 
     check_animation(target)
     check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
-    animate_orbits(read_run(run_file), target, *span)
-    terminal.result(f"orbit: {target}")
-    terminal.emit({"command": "plot", "run": run_file, "output": target, "what": "orbit"})
+    run = read_run(run_file)
+    with display(terminal, "Drawing.") as shown:
+        tell = shown.counting("frame ")
+        if what == "film":
+            animate_films(run, target, film, *span, observe=tell)
+        else:
+            animate_orbits(run, target, *span, observe=tell)
+    terminal.result(f"{what}: {target}")
+    terminal.emit({"command": "plot", "run": run_file, "output": target, "what": what})
 
 
 def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: Terminal) -> None:
@@ -111,9 +141,11 @@ def _law(source: str, settings: tuple[str, ...], output: Path | None, terminal: 
 
 
 def _figure(
-    what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, signal: str | None
+    what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, point: str | None
 ) -> Picture:
+    """point: the point or film that is asked for."""
     from frbcli.plot.axial import axial_figure
+    from frbcli.plot.moving.films import film_moments_figure
     from frbcli.plot.run.displacement import displacement_figure
     from frbcli.plot.run.eccentricity import eccentricity_figure
     from frbcli.plot.run.film_signals import film_signal_figure
@@ -127,8 +159,10 @@ def _figure(
         return summary_figure(runs[0])
     if what == "orbit":
         return orbit_figure(runs, *span)
+    if what == "film":
+        return film_moments_figure(runs[0], point, *span)
     if what == "displacement":
-        return displacement_figure(runs, signal, *span)
+        return displacement_figure(runs, point, *span)
     if what in FILM_SIGNALS:
         return film_signal_figure(runs, what, *span, over)
     known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure,

@@ -113,6 +113,7 @@ RULES = (
     Rule(cycles.speed_cycle_faults, (SPEED_CYCLES, WHIRLS)),
     Rule(cycles.unbalance_faults, (WHIRLS,)),
     Rule(cycles.speed_range_faults, EVERY_CYCLE, last=True),
+    Rule(runs.kept_film_faults, (RUN,), moving=True),
     Rule(runs.axial_heat_faults, (RUN,), moving=True),
     Rule(runs.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
     Rule(runs.number_faults, (RUN,), last=True),

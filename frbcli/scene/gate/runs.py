@@ -8,7 +8,10 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
 from frbcli.case.surroundings.time_tables import WALLS
 from frbcli.errors import Fault
+from frbcli.film.cavitation.table import law_named
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places, is_plain
+from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.solutions import solution_fault
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.keys import film_keys
@@ -57,6 +60,23 @@ def changing_supply_faults(case: Case) -> Iterator[Fault]:
             problem = "changes over time, and not in proportion to oil.cavitation_pressure, which a table has, too."
             remedy = 'Write film.solution = "cells", or oil.cavitation_pressure as oil.ambient_pressure.'
         yield Fault(f"{key}.supply.pressure", "over time", None, problem, remedy)
+
+
+def kept_film_faults(case: Case) -> Iterator[Fault]:
+    """The films that a run keeps are those whose cells have an oil fraction as their state."""
+    form, kept = form_of(case), case.output.films
+    if kept is None:
+        return
+    if form is not CELLS:
+        problem = f"asks for the oil of cells, and the films are: {form}."
+    elif coupling_of(case).in_turn:
+        problem = "asks for films at single steps, which a co-simulation does not take."
+    elif not all(law_named(name).keeps_oil for name in case.cavitations):
+        problem = "asks for the oil of the films, and their model does not keep any."
+    else:
+        return
+    remedy = 'Leave it out, or write film.cavitation = "two-phase", with film.coupling = "auto" and film.tilt = "none".'
+    yield Fault("output.films", f"{kept.frames} frames", None, problem, remedy)
 
 
 def axial_faults(case: Case) -> Iterator[Fault]:

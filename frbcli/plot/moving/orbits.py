@@ -1,47 +1,30 @@
-"""The orbits of the journals as a moving picture: GIF, or MP4 where ffmpeg is installed."""
+"""The orbits of the journals as a moving picture."""
 
 from __future__ import annotations
 
-import shutil
+from collections.abc import Callable
 from pathlib import Path
-from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
-from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import joined, points, speed_at
+from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
 from frbcli.plot.run.envelope import at_times
 from frbcli.plot.run.orbit import LAST_s
 from frbcli.plot.signals import MICRO, cut, ends, heading, motion, shell
-from frbcli.plot.style import BLUE, GREY, new_figure, refused, styled
-from frbcli.results.files.kinds import PICTURES
-from frbcli.results.files.place import require_places
-from frbcli.results.files.write import written
+from frbcli.plot.style import BLUE, GREY, new_figure, styled
 from frbcli.results.store import Run
 
-FORMATS = (".gif", ".mp4")
-FRAMES, PER_SECOND = 80, 20
 BETWEEN = 24  # points of the trail per frame
 TRAIL = 2.0  # revolutions of the rotor that stay seen
-DPI = 90
-
-
-def check_animation(path: Path) -> None:
-    """Raises InputError if a moving picture cannot have this name or this place, or its program is missing."""
-    if path.suffix.lower() not in FORMATS:
-        raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
-    if path.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
-        raise refused(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
-    require_places([(path, PICTURES[path.suffix.lower()])])
 
 
 def animate_orbits(
     run: Run, path: str | Path, from_time: float | None = None, to_time: float | None = None, frames: int = FRAMES,
-    dpi: int = DPI,
+    dpi: int = DPI, observe: Observer | None = None,
 ) -> Path:  # fmt: skip
     """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
 
@@ -53,17 +36,11 @@ def animate_orbits(
     begin = max(end - LAST_s, 0.0) if from_time is None else from_time
     cut(run, begin, end)
     with styled():
-        film, draw = _scene(run, begin, end, frames)
-        moving = FuncAnimation(film, draw, frames=frames, blit=False)
-        writer: Any = FFMpegWriter(PER_SECOND) if path.suffix.lower() == ".mp4" else PillowWriter(PER_SECOND)
-        with written(path, PICTURES[path.suffix.lower()]) as part, TemporaryDirectory(prefix="frb-") as folder:
-            drawn = Path(folder) / f"orbits{path.suffix.lower()}"  # by which its writers know the format
-            moving.save(str(drawn), writer=writer, dpi=dpi)
-            shutil.copyfile(drawn, part)
+        write_animation(path, *_scene(run, begin, end, frames), frames, dpi, observe)
     return path
 
 
-def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any]:
+def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Callable[[int], None]]:
     """The figure, and what draws a frame on it by its number."""
     bearings = list(points(run.signals, "journal")) or [""]
     title, subtitle = heading([run])
@@ -79,9 +56,6 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Any
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
     told = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
-
-    figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # it would be sought anew for each frame
 
     def draw(frame: int) -> None:
         last = (frame + 1) * BETWEEN
