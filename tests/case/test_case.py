@@ -110,6 +110,12 @@ displacement = [0.1, -0.2]
 ASPERITIES = "[contact]\nmodel = 'asperities'\nsummit_radius = '20 um'\nsummit_density = '1e10 1/m^2'"
 
 
+def test_a_model_of_contact_that_is_none_is_the_only_fault() -> None:
+    with pytest.raises(InputError) as caught:
+        load_case("rigid", ["contact.model=auto", "contact.policy=elastic", "contact.stiffness=1e8 N/m"])
+    assert [fault.key for fault in caught.value.faults] == ["contact.model"]
+
+
 def faults_of(text: str, *settings: str) -> dict[str, Fault]:
     """The faults of a case by their keys."""
     with pytest.raises(InputError) as caught:
@@ -357,6 +363,7 @@ mesh = [1, 2.5]
             "contact.journal_roughness", "more than roughness",
         ),
         ("[bearing]", f"{ASPERITIES}\nroughness = '9 um'\n[bearing]", "contact.roughness", "summits are flat"),
+        ("[bearing]", f"{ASPERITIES}\nroughness = '3 um'\n[bearing]", "contact.summit_density", "1.78 times the area"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nfriction = 1.1\n[bearing]", "contact.friction", "at most 1"),
         ("[bearing]", "[start]\ndisplacement = [0.8, 0.8]\n[bearing]", "start.displacement", "outside"),
         ("[bearing]", "[start]\ndisplacement = [0, 0]\nposition = 'centre'\n[bearing]", "start.position", "beside"),

@@ -13,10 +13,19 @@ import nasty_pairs
 import pytest
 from paths import ROOT
 
+from frbcli.case.reading.load import load_case
 from frbcli.cli.main import COMMANDS
+from frbcli.errors import InputError
+from frbcli.scene.gate.analysis import BEARING, CYCLES, ROTATION, RUN, STABILITY, WHIRL
+from frbcli.scene.gate.gate import require
+from frbcli.scene.planning.plan import make_plan
 
 BATCH, BATCHES = 48, 8
 BATCH_s = 1800.0
+SURFACES = 200  # cases with nasty values of contact, free gas, limited flow and baths
+SEEDS = range(nasty_pairs.SURFACES, nasty_pairs.SURFACES + SURFACES)
+ANALYSES = RUN, ROTATION, WHIRL, BEARING, STABILITY, CYCLES
+NIGHT = 50  # of them in a process
 MEMORY = 4 * 1024**3
 
 
@@ -55,3 +64,38 @@ def test_two_nasty_values_break_no_command(batch: int, tmp_path: Path) -> None:
 def test_an_input_over_time_and_a_nasty_value_break_no_command(tmp_path: Path) -> None:
     """Pressures, temperatures, speeds, forces and motions of the ground: points and files, good and bad ones."""
     tried(tmp_path, range(nasty_pairs.OVER_TIME, nasty_pairs.OVER_TIME + BATCH))
+
+
+def refused(seed: int) -> InputError | None:
+    """Why the case of a seed is refused; None if it is planned. Any other exception passes, and is a bug."""
+    _, source, settings = nasty_pairs.trial(seed)
+    try:
+        case = load_case(source, settings)
+        require(case, ANALYSES[seed % len(ANALYSES)])
+        make_plan(case)
+    except InputError as error:
+        return error
+    return None
+
+
+def test_nasty_surfaces_and_gas_are_refused_or_planned() -> None:
+    """With key, problem and remedy, before a film is made."""
+    vague, planned = [], 0
+    for seed in SEEDS:
+        try:
+            error = refused(seed)
+        except Exception as bug:
+            bug.add_note(f"seed {seed}: {nasty_pairs.trial(seed)}")
+            raise
+        planned += error is None
+        for fault in () if error is None else error.faults:
+            if not (fault.key and fault.problem and fault.remedy):
+                vague.append((nasty_pairs.trial(seed), str(fault)))
+    assert not vague
+    assert 0.2 < planned / SURFACES < 0.8  # neither harmless nor hopeless
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("batch", range(SURFACES // NIGHT))
+def test_nasty_surfaces_and_gas_break_no_command(batch: int, tmp_path: Path) -> None:
+    tried(tmp_path, SEEDS[batch * NIGHT : (batch + 1) * NIGHT])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -11,6 +12,7 @@ OF_SPRING = ("policy", "stiffness")
 OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
 WITH_DEFAULT = ("modulus", "hardness", "friction", "wear", "flow_factors", "journal_roughness")  # of asperities, too
 STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
+MOST_CROWDED = math.sqrt(2.0) / math.pi  # density, radius and roughness: all of the area, pi^2 N^2 b^2 s^2 F_2(0) = 1
 
 
 def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -23,7 +25,11 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         for key in (*OF_ASPERITIES, *WITH_DEFAULT):
             if key in contact:
                 yield Breach(("contact", key), "is of rough surfaces.", 'Add model = "asperities", or remove it.')
-        return
+    elif contact["model"] == "asperities":
+        yield from _breaches_of_asperities(contact)
+
+
+def _breaches_of_asperities(contact: Mapping[str, Any]) -> Iterator[Breach]:
     for key in OF_SPRING:
         if key in contact:
             yield Breach(("contact", key), "is of a spring between smooth surfaces.", "Remove it.")
@@ -42,3 +48,8 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     if roughness and radius and roughness > STEEPEST * radius > 0.0:
         problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."
         yield Breach(("contact", "roughness"), problem, "Correct one of the two.")
+    density = number(contact, "summit_density", "1/m^2")
+    if roughness and radius and density and (crowd := density * radius * roughness) > MOST_CROWDED:
+        problem = f"lets summits touch on {(crowd / MOST_CROWDED) ** 2:.3g} times the area, where the mean planes meet."
+        remedy = f'Give no more than "{MOST_CROWDED / (radius * roughness):.2g} 1/m^2" with this radius and roughness.'
+        yield Breach(("contact", "summit_density"), problem, remedy)

@@ -11,7 +11,7 @@ from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity
+from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity, touch
 
 
 @dataclass(frozen=True)
@@ -46,8 +46,11 @@ class Rubbing:
 
     def standing(self, load: float) -> float:
         """Eccentricity in m of a journal that stands still on its summits under a load in N; 0 between smooth
-        surfaces."""
-        return 0.0 if self.surfaces is None else standing_eccentricity(self.surfaces, self.film, self.clearance, load)
+        surfaces, and if they do not carry it up to two clearances."""
+        far = 2.0 * self.clearance
+        if self.surfaces is None or touch(self.surfaces, self.film, self.clearance, far).radial < load:
+            return 0.0
+        return standing_eccentricity(self.surfaces, self.film, self.clearance, load)
 
     def loads(self, film: FilmLoads, motion: Motion, turning: float = 0.0) -> FilmLoads:
         """The loads of a film with those of its summits. motion: in a shell at rest, seen from a frame that turns with

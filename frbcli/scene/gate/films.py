@@ -29,6 +29,7 @@ from frbcli.units import display
 
 AT_FLOW = (RUN, *SHEETS, FILMS, HEAT, *KINEMATIC)  # analyses of films whose supply gives a flow at the most
 SMOOTH = 'Write contact.model = "spring"'
+HENRY = 1e7  # Pa, saturation pressure
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
 
 
@@ -112,6 +113,15 @@ def gas_faults(case: Case) -> Iterator[Fault]:
         if law_named(name).carries_gas and form_of(case).solved:
             problem = "lets the oil carry free gas, which limit cycles and ladders of accuracy do not follow."
             yield Fault(key, name, None, problem, 'Write "peeken" here, which is its limit of fast exchange.')
+
+
+def saturation_faults(case: Case) -> Iterator[Fault]:
+    """Gas that dissolves in proportion to its pressure, as Henry's law has it."""
+    pressure = case.film.bubbly.saturation_pressure if "bubbly" in case.cavitations else None
+    if pressure is not None and pressure > HENRY:
+        problem = f"is above {display(HENRY, 'Pa')}, up to which gas dissolves in proportion to its pressure."
+        remedy = "Give the pressure of the air over the oil in its tank."
+        yield Fault("film.bubbly.saturation_pressure", display(pressure, "Pa"), None, problem, remedy)
 
 
 def moved_gas_faults(case: Case) -> Iterator[Fault]:

@@ -73,6 +73,7 @@ RULES = (
     Rule(films.rough_tilt_faults, KINEMATIC),
     Rule(films.rough_coupling_faults, (RUN,)),
     Rule(films.rough_rest_faults, (*KINEMATIC, HEAT, *SHEETS, STABILITY, RANGE, *EVERY_CYCLE)),
+    Rule(films.saturation_faults, ALL),
     Rule(films.gas_faults, (LADDER, *EVERY_CYCLE), moving=True),
     Rule(films.moved_gas_faults, (RUN,), moving=True),
     Rule(films.enclosed_faults, KINEMATIC),

@@ -9,6 +9,7 @@ import pytest
 
 from frbcli.film.roughness.asperities import Asperities, rub, summit_pressure, touch
 from frbcli.film.roughness.plain import plain_pressure, plain_touch
+from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.film.roughness.summits import FLAT, LAST, elastic_summits, summit_integral, touching_summits
 
 # Greenwood, Tripp 1970: F_5/2 to the digits in print
@@ -19,6 +20,13 @@ SHELL_SPEED = 40.0
 
 def surfaces(roughness: float = 0.4e-6, plastic: float = math.inf, friction: float = 0.12) -> Asperities:
     return Asperities(roughness, 2.4e8, plastic, friction, np.array([12.5e-3]), np.array([20e-3]))
+
+
+def test_summits_carry_a_load_or_stand_nowhere() -> None:
+    own = surfaces()
+    stands, weak = Rubbing(own, 0, C), Rubbing(own._replace(elastic=1e-30), 0, C)
+    assert touch(own, 0, C, stands.standing(30.0)).radial == pytest.approx(30.0, rel=1e-9)
+    assert weak.standing(30.0) == stands.standing(0.0) == 0.0
 
 
 def test_integral_gives_the_printed_table() -> None:
