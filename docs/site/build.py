@@ -213,8 +213,8 @@ def configuration(source: Path, target: Path) -> str:
     """Settings of MkDocs: no fonts and scripts from elsewhere, equations by equations.py."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
     guides = ("terms", "case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements",
-              "report", "bearing-sheet", "thrust", "rotors", "standards", "floating-rings", "elements",
-              "surroundings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
+              "report", "bearing-sheet", "thrust", "rotors", "standards", "floating-rings", "gas-and-contact",
+              "elements", "surroundings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
     science = ("theory", "equations", "heat", "validation", "accuracy")
     development = ("architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method", "hard-cases")
 

@@ -159,10 +159,14 @@ def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> N
     words = words_of(line)
     if "cold.h5" in words and "heat" in words:
         shutil.copy(heated, place / "cold.h5")
-    for word, name, shipped in (("engine.h5", "engine.h5", "turbocharger-engine"),
-                               ("axial", "run.h5", "turbocharger-car-thrust")):  # fmt: skip
+    for word, name, shipped, more in (
+        ("engine.h5", "engine.h5", "turbocharger-engine", ()),
+        ("axial", "run.h5", "turbocharger-car-thrust", ()),
+        ("film", "onset.h5", "turbocharger-low-supply", ('output.films={ from="5 ms", to="0.2 s" }', "speed.to=60 Hz")),
+    ):
         if word in words and words[0] != "runup":
-            frbcli.runup(frbcli.load_case(shipped, ["speed.duration=20 ms"]), place / name, force=True)
+            given = ["speed.duration=0.2 s" if more else "speed.duration=20 ms", *more]
+            frbcli.runup(frbcli.load_case(shipped, given), place / name, force=True)
     if words[0] in ("runup", "rundown"):
         words.append("--force")
     if words[0] == "cases" and "-o" in words:  # frb does not write over a file of one's own

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, speed_at
 from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
@@ -22,6 +23,7 @@ from frbcli.results.store import Run
 MOMENTS = 6  # beside each other in a picture that does not move
 COLUMNS, COURSE = 256, 400  # of a map around, and points of a curve over time
 MAP_HEIGHT, COURSE_HEIGHT, WIDTH = 0.75, 1.5, 8.0  # inches
+TICKS = 5  # of a scale, at most
 NEARLY_FULL, GAS_FREE = 0.99, 1e-3  # least upper ends of the scales of missing oil and of gas
 
 
@@ -109,7 +111,8 @@ def _panels(run: Run, kept: KeptFilm, rows: int) -> tuple[Figure, Axes, Any]:
     ):
         image = maps[0, column].imshow([[0.0]], cmap=LEVEL_MAP)
         image.set_clim(*_scale(values, column))
-        bar = parts[1].colorbar(image, ax=maps[:, column], location="bottom", shrink=0.8, aspect=35)
+        bar = parts[1].colorbar(image, ax=maps[:, column], location="bottom", shrink=0.8, aspect=35,
+                                ticks=MaxNLocator(TICKS))  # fmt: skip
         bar.set_label(label, fontsize=8.0)
         bar.outline.set_visible(False)
         maps[-1, column].set_xlabel("φ in °; z from 0 to 1 along the section", fontsize=8.0)
