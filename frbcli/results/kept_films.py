@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 # 1) boundaries of the cells around in rad.
 MOMENTS, OIL, GAS, EDGES = "kept_moments", "kept_oil", "kept_gas", "kept_edges"
 OF_A_FILM = 3
-REMEDY = 'Run the case again with --set \'output.films={from="0.1 s", to="0.2 s"}\', of its times.'
+REMEDY = 'Run the case again with --set \'output.films={from="0.1 s", to="0.2 s"}\', and its own times.'
 
 
 @dataclass(frozen=True)
