@@ -4,7 +4,7 @@ cycle and the points where it changes."""
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -136,7 +136,8 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     finer = follower.as_fine(place, after.place)
     place_there = _crossing(follower, finer, length, (before.multipliers, after.multipliers))
     if place_there is not None:
-        found.append(follower.cycle(place_there, kind, after))
+        crossed = follower.cycle(place_there, kind, after)
+        found.append(replace(crossed, kind=_kind_of(crossing(crossed)) or kind))
     return found
 
 
@@ -146,10 +147,20 @@ def _kind(cycle: Cycle) -> str:
     outside = others[np.abs(others) > 1.0 + cycle.multipliers.defect]
     if not len(outside):
         return FOLD
-    nearest = outside[np.argmin(np.abs(outside))]
-    if abs(nearest.imag) > 1e-6 * abs(nearest):
+    return _kind_of(complex(outside[np.argmin(np.abs(outside))])) or FOLD
+
+
+def crossing(cycle: Cycle) -> complex:
+    """The multiplier that is nearest to the unit circle, the trivial one apart."""
+    others = cycle.multipliers.others
+    return complex(others[np.argmin(np.abs(np.abs(others) - 1.0))])
+
+
+def _kind_of(multiplier: complex) -> str:
+    """What a cycle is whose multiplier crosses the unit circle there; nothing of one that is positive."""
+    if abs(multiplier.imag) > 1e-6 * abs(multiplier):
         return TORUS
-    return FLIP if nearest.real < 0.0 else FOLD
+    return FLIP if multiplier.real < 0.0 else ""
 
 
 def _crossing(

@@ -95,7 +95,7 @@ TABLES: dict[str, Columns] = {
     "whirls": of_json(whirl_columns(())),
     "lines": of_json(line_columns(())),
     "special points": of_json(special_columns(())),
-    "map": of_pandas(map_columns("KEY", "", "KEY of --and", "")),
+    "map": of_pandas(map_columns("KEY", "", "KEY of --and", "", crossings=True)),
     "map points": of_json(map_point_columns(())),
     "sweep": point_columns(("KEY",), "runup"),
     "fit": FITTED,

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from frbcli.plot.style import Picture
 
 ASKED = "asked"
+KINDS = {"hopf": "Hopf points", "fold": "folds", "torus": "torus points", "flip": "flips"}
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ class Range:
 @click.option("--points", type=click.IntRange(2, 500), default=3,
               help="Number of values of --and at which diagrams are computed, where curves begin. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
-              help="Add what stable cycles become with unbalance: whirls of two frequencies or locked in.")  # fmt: skip
+              help="Add what stable cycles become with unbalance: whirls of two frequencies or locked in; to a map of "
+                   "--and the curves of torus points and flips, also of the synchronous response.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")
@@ -87,14 +89,14 @@ def command(
     along_speed = over == "speed"
     if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
-    if with_unbalance and (key is not None or not along_speed):
-        raise click.UsageError("--with-unbalance is of the diagram of one case over its speed.")
+    if with_unbalance and key is None and not along_speed:
+        raise click.UsageError("--with-unbalance is of the diagram over the speed and of maps (--and).")
     drawn = "limit-cycles" if key is None else "stability-map"
     places = outputs.check(here(case.name, f"-{drawn}.png"))
     at = speeds[0] if speeds else case.speed.end
     if varied.second is not None:
         across = None if along_speed or low is None or high is None else (over, low, high, at)
-        _map(terminal, case, (*varied.second, varied.points), across, places)
+        _map(terminal, case, (*varied.second, varied.points), across, with_unbalance, places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
     with computing(terminal, case) as shown:
@@ -125,6 +127,7 @@ def _map(
     case: Case,
     second: tuple[str, str, str, int],
     first: tuple[str, str, str, float] | None,
+    with_unbalance: bool,
     places: Outputs,
 ) -> None:
     """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
@@ -133,7 +136,7 @@ def _map(
 
     across = None if first is None else Across(*first)
     with computing(terminal, case) as shown:
-        found = stability_map(case, *second, shown.counting(), across)
+        found = stability_map(case, *second, shown.counting(), across, with_unbalance)
     _tell_map(terminal, found)
     names = tuple(place.name for place in film_places(case))
     written = places.write(terminal, found)
@@ -157,8 +160,8 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
     for curve in found.curves:
         values = [point.value for point in curve.points]
         told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
-        named = "Hopf points" if curve.kind == "hopf" else "folds"
-        terminal.sentence(" ".join([f"Curve of {named}: {told}", *curve.notes]))
+        of = " of the synchronous response" if curve.synchronous else ""
+        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}{of}: {told}", *curve.notes]))
     for row in found.rows:
         if row.problem:
             terminal.sentence(f"{row.value:.4g} {found.unit}: {row.problem}")
@@ -185,6 +188,7 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
         "curves": [
             {
                 "kind": curve.kind,
+                "synchronous": curve.synchronous,
                 "points": documents(map_point_columns(names), curve.points),
                 "notes": curve.notes,
             }

@@ -70,7 +70,7 @@ def hopf_equations(plane: MapPlane, y: Array) -> Equations:
         return np.concatenate([rest, [g.real, g.imag]])
 
     def equations(y: Array) -> tuple[Array, Array]:
-        _require_positive(y)
+        require_positive(y)
         steps = DIFFERENCE * np.eye(len(y))
         columns = [(residual(y + step) - residual(y - step)) / (2.0 * DIFFERENCE) for step in steps]
         return residual(y), np.transpose(columns)
@@ -78,7 +78,8 @@ def hopf_equations(plane: MapPlane, y: Array) -> Equations:
     return equations
 
 
-def _require_positive(y: Array) -> None:
+def require_positive(y: Array) -> None:
+    """Raises Unreachable where a number of the plane is not above zero."""
     if not np.all(y[-2:] > DIFFERENCE):
         raise Unreachable
 
@@ -107,7 +108,7 @@ def fold_equations(plane: MapPlane, y: Array) -> Equations:
     last = np.eye(n + 1)[-1]
 
     def equations(y: Array) -> tuple[Array, Array]:
-        _require_positive(y)
+        require_positive(y)
         residual, slope = balance(y)
         bordered = np.zeros((n + 1, n + 1))
         bordered[:n, :n], bordered[:n, n], bordered[n, :n] = slope[:, :-1], b, c

@@ -12,13 +12,15 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.cycles.branch import Branch
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.family import Family
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
-from frbcli.cycles.method.follower import FoldFollower
+from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz
+from frbcli.cycles.unbalance.synchronous import synchronous_response
 
 Array = NDArray[np.float64]
 
@@ -47,8 +49,13 @@ class MapPlane(ABC):
         """The unknowns with the speed of the rotor over the pace in place of both numbers."""
 
     @abstractmethod
-    def walk(self, share: float) -> Walk:
-        """Over the first number at a value of the second. Raises NotConverged, Unreachable."""
+    def walk(self, share: float, crossings: bool = False) -> Walk:
+        """Over the first number at a value of the second. crossings: whether torus and flip points of its branches are
+        located as well. Raises NotConverged, Unreachable."""
+
+    def response(self, _walk: Walk) -> Branch | None:
+        """The synchronous response to the unbalance over a walk, None where none is computed."""
+        return None
 
 
 class SpeedPlane(MapPlane):
@@ -70,11 +77,17 @@ class SpeedPlane(MapPlane):
         """See MapPlane."""
         return y[:-1]
 
-    def walk(self, share: float) -> Walk:
+    def walk(self, share: float, crossings: bool = False) -> Walk:
         """See MapPlane."""
         machine = self.second.machine(share)
         resting = resting_curve(self.second.system(share), machine, *self.speeds)
-        return over_speed(OverSpeed(machine), resting, FoldFollower(machine, *self.speeds))
+        follower = (Follower if crossings else FoldFollower)(machine, *self.speeds)
+        return over_speed(OverSpeed(machine), resting, follower)
+
+    def response(self, walk: Walk) -> Branch | None:
+        """See MapPlane."""
+        fastest = walk.resting.points[-1]
+        return synchronous_response(walk.course.machine(fastest.value), fastest, self.speeds[0])
 
 
 class KeyPlane(MapPlane):
@@ -96,10 +109,11 @@ class KeyPlane(MapPlane):
         """See MapPlane."""
         return np.append(y[:-2], self._omega / self.machine(y).pace)
 
-    def walk(self, share: float) -> Walk:
+    def walk(self, share: float, crossings: bool = False) -> Walk:
         """See MapPlane."""
         family, lowest = self._family(share), self._lowest
-        return Walk(family.key, family, resting_over(family, lowest), family.high, _KeyFoldFollower(family, lowest))
+        follower = (KeyFollower if crossings else _KeyFoldFollower)(family, lowest)
+        return Walk(family.key, family, resting_over(family, lowest), family.high, follower)
 
 
 class _KeyFoldFollower(FoldFollower, KeyFollower):

@@ -1,5 +1,5 @@
 """A stability map: the curves of Hopf points and of folds over two numbers, the rotor speed and one of the case or two
-of the case, and where the resting position is unstable."""
+of the case, those of torus and flip points if they are asked for, and where the resting position is unstable."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
+from frbcli.cycles.maps.crossings import CrossingCurve, CrossingStart, starts_of
 from frbcli.cycles.maps.curves import (
     MOST_HARMONICS,
     fitted_fold,
@@ -26,11 +27,13 @@ from frbcli.cycles.maps.curves import (
     with_harmonics,
 )
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
+from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
 from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FOLD, HOPF, Cycle, amplitude, eccentricities
+from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle, amplitude, eccentricities
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
+from frbcli.cycles.unbalance.synchronous import synchronous_equations
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 
@@ -47,7 +50,8 @@ MET = "It meets the curve of Hopf points."
 class MapPoint:
     """A point of a curve. over, value: of the first and the second number, the speed in Hz; eccentricity_max: (F,);
     criticality, lyapunov: of Hopf points, see SpecialPoint; kind: "", "bautin" where the criticality changes, "cusp"
-    where a curve of folds turns back."""
+    where a curve of folds turns back; second_frequency_Hz: of torus and flip points, with which the motion that begins
+    there swings beside the first one, at most half of it."""
 
     over: float
     value: float
@@ -57,15 +61,18 @@ class MapPoint:
     criticality: str | None = None
     lyapunov: float = math.nan
     kind: str = ""
+    second_frequency_Hz: float = math.nan
 
 
 @dataclass(frozen=True)
 class MapCurve:
-    """A curve of Hopf points or folds; notes: why it ends within the map, if it does."""
+    """A curve of Hopf points, folds, torus or flip points; notes: why it ends within the map, if it does; synchronous:
+    whether its points are those of the synchronous response to the unbalance, not of limit cycles."""
 
     kind: str
     points: tuple[MapPoint, ...]
     notes: tuple[str, ...]
+    synchronous: bool = False
 
 
 @dataclass(frozen=True)
@@ -110,8 +117,9 @@ class StabilityMap(Tabular):
 
     def table(self) -> Table:
         """One row per point of a curve."""
-        columns = map_columns(self.over, self.over_unit, self.key, self.unit)
-        points = ((number, curve.kind, point) for number, curve in enumerate(self.curves) for point in curve.points)
+        crossings = any(curve.kind in (TORUS, FLIP) for curve in self.curves)
+        columns = map_columns(self.over, self.over_unit, self.key, self.unit, crossings)
+        points = ((number, curve, point) for number, curve in enumerate(self.curves) for point in curve.points)
         return table_of(columns, points)
 
 
@@ -134,6 +142,7 @@ def stability_map(
     count: int = 3,
     observe: Callable[[int, int], None] | None = None,
     across: Across | None = None,
+    with_unbalance: bool = False,
 ) -> StabilityMap:
     """Map Hopf points and folds of limit cycles over the speed and a key of the case.
 
@@ -151,6 +160,9 @@ def stability_map(
         Called with the number of each of them and their number.
     across : Across, optional
         Another number, in place of the speed.
+    with_unbalance : bool
+        Whether curves of torus and flip points are followed as well, of the limit cycles and of the synchronous
+        response to the unbalance; over the speed alone.
 
     Returns
     -------
@@ -160,7 +172,7 @@ def stability_map(
     Raises
     ------
     InputError
-        If the values are none, or if the case cannot have one of them.
+        If the values are none, or if the case cannot have one of them; with_unbalance for a case without unbalance.
 
     Examples
     --------
@@ -168,11 +180,12 @@ def stability_map(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.stability_map(case, "oil.viscosity", "8 mPa*s", "14 mPa*s")  # doctest: +SKIP
     """
+    check(case, with_unbalance=with_unbalance)
     plane = _plane(case, (key, low, high), across)
     lowest = float(plane.corners[0][1])
-    rows, begun = [], _Begun([], [])
+    rows, begun = [], _Begun([], [], [])
     for number, share in enumerate(np.linspace(lowest, 1.0, count)):
-        rows.append(_row(plane, float(share), begun))
+        rows.append(_row(plane, float(share), begun, with_unbalance))
         if observe is not None:
             observe(number + 1, count)
     curves: list[MapCurve] = []
@@ -180,6 +193,8 @@ def stability_map(
         curves += _new_curve(plane, curves, HOPF, hopf)
     for fold in begun.folds:
         curves += _new_curve(plane, curves, FOLD, fold)
+    for start in begun.crossings:
+        curves += _new_crossing(plane, curves, start)
     return StabilityMap(
         case=case,
         over=plane.over,
@@ -216,13 +231,14 @@ class _Begun:
 
     hopf: list[Array]
     folds: list[Array]
+    crossings: list[CrossingStart]
 
 
-def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
+def _row(plane: MapPlane, share: float, begun: _Begun, with_unbalance: bool) -> MapRow:
     """The special points at a share, which are added to `begun`, too."""
     value = share * plane.second.high
     try:
-        walk = plane.walk(share)
+        walk = plane.walk(share, crossings=with_unbalance)
     except (NotConverged, Unreachable) as error:
         return MapRow(value, (), str(error) or "The resting positions could not be followed.")
     special: list[SpecialPoint] = []
@@ -235,7 +251,14 @@ def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
         for cycle in branch.cycles:
             if cycle.kind == FOLD:
                 begun.folds.append(np.append(cycle.place.y, share))
+            if cycle.kind in (FOLD, TORUS, FLIP):
                 special.append(cycle_special(walk, cycle, number))
+        begun.crossings.extend(starts_of(branch.cycles, share, synchronous=False))
+    response = plane.response(walk) if with_unbalance else None
+    for cycle in () if response is None else response.cycles:
+        if cycle.kind in (TORUS, FLIP):
+            special.append(replace(cycle_special(walk, cycle, 0), branch=None))
+    begun.crossings.extend(starts_of(() if response is None else response.cycles, share, synchronous=True))
     return MapRow(value, tuple(special))
 
 
@@ -272,6 +295,26 @@ def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Arr
     for special, point in zip(between, points[1:], strict=True):
         told += [*special, point]
     return [MapCurve(kind, tuple(told), tuple(filter(None, found.notes)))]
+
+
+def _new_crossing(plane: MapPlane, known: Sequence[MapCurve], start: CrossingStart) -> list[MapCurve]:
+    """The curve of torus or flip points through one, unless it is known or not found."""
+    crossing = CrossingCurve(plane, synchronous_equations if start.synchronous else Balance, start.kind == TORUS)
+
+    def told(y: Array) -> MapPoint:
+        point = _point(plane, FOLD, crossing.motion_of(y))
+        return replace(point, second_frequency_Hz=crossing.shift(y) * point.frequency_Hz)
+
+    own = [curve for curve in known if (curve.kind, curve.synchronous) == (start.kind, start.synchronous)]
+    if any(_lies_on(plane, curve, told(start.y)) for curve in own):
+        return []
+    found = follow_both(crossing.equations, start.y, plane.corners, crossing.fitted, crossing.ends)
+    if found is None:
+        return []
+    points = tuple(told(place.y) for place in found.places)
+    if any(_lies_on(plane, curve, points[0]) for curve in own):
+        return []
+    return [MapCurve(start.kind, points, tuple(filter(None, found.notes)), start.synchronous)]
 
 
 def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:

@@ -24,6 +24,7 @@ from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 DIFFERENCE = 1e-6  # of the pace
 WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one
@@ -38,23 +39,9 @@ class Synchronous(Follower):
     share = 1.0
 
     def equations(self, place: Place) -> Equations:
-        """Those of the motions about a place: residual (n,), n = c (2 H + 1) + 1, the last of periods nu = Omega."""
-        machine, harmonics, periods = self.machine, (len(place.y) - 2) // self.machine.size // 2, self.periods
-        balance = Balance(machine, unpacked(place.y[:-2], machine.size))
-
-        def driven(speed: float) -> Array:
-            return self.share * driven_motion(machine, harmonics, periods, speed)
-
-        def at(y: Array) -> tuple[Array, Array]:
-            residual, slope = balance(y)
-            residual[:-1] -= driven(float(y[-1]))
-            ahead, behind = (driven(float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
-            slope[:-1, -1] -= (ahead - behind) / (2.0 * DIFFERENCE)
-            residual[-1], slope[-1] = periods * y[-2] - y[-1], 0.0
-            slope[-1, -2:] = periods, -1.0
-            return residual, slope
-
-        return at
+        """Those of the motions about a place."""
+        reference = unpacked(place.y[:-2], self.machine.size)
+        return synchronous_equations(self.machine, reference, self.periods, self.share)
 
     def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
         """The multipliers; none is trivial, for the unbalance holds the motion in time, and a 1 stands in its place."""
@@ -63,6 +50,26 @@ class Synchronous(Follower):
         values = np.linalg.eigvals(monodromy(self.machine, self.space_at(place.y), place.y, count)).astype(complex)
         values = values[largest_first(values)]
         return Multipliers(np.concatenate([[1.0 + 0.0j], values]), 0.0)
+
+
+def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0) -> Equations:
+    """Those of motions of some periods of the rotor with a share of the unbalance: residual (n,), n = c (2 H + 1) + 1,
+    the last of periods nu = Omega."""
+    balance = Balance(machine, reference)
+
+    def driven(speed: float) -> Array:
+        return share * driven_motion(machine, balance.harmonics, periods, speed)
+
+    def at(y: Array) -> tuple[Array, Array]:
+        residual, slope = balance(y)
+        residual[:-1] -= driven(float(y[-1]))
+        ahead, behind = (driven(float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
+        slope[:-1, -1] -= (ahead - behind) / (2.0 * DIFFERENCE)
+        residual[-1], slope[-1] = periods * y[-2] - y[-1], 0.0
+        slope[-1, -2:] = periods, -1.0
+        return residual, slope
+
+    return at
 
 
 def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float) -> Branch | None:
