@@ -10,11 +10,13 @@ import pytest
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.grid import Array
 from frbcli.linear.bearing_sheet import sommerfeld_chart
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points
+from frbcli.linear.threshold import find_threshold
 
 CELLS, COARSER = (48, 6), ((24, 4), (32, 4))  # of the sheets here: rotation has the first of them
 ECCENTRICITY = 0.5
@@ -90,7 +92,7 @@ def test_at_once_it_is_the_sheet_of_peekens_model_and_bubbles_that_last_change_i
     assert lasting.error < 0.5
 
 
-ROTOR = ("rotor.mass=30 kg",)
+ROTOR = ("rotor.mass=30 kg",)  # as in docs/theory.md
 PEEKEN = 161.5, 0.7  # Hz, threshold and its error
 
 
@@ -110,3 +112,16 @@ def test_at_once_the_rotor_is_as_stable_as_on_peekens_model() -> None:
         growths.append(point.critical)
     assert growths[1] == pytest.approx(growths[0], rel=1e-7)
     assert abs(growths[0].real) < 1e-2 * abs(growths[0])
+
+
+@pytest.mark.nightly
+def test_gas_that_is_released_fast_and_absorbed_slowly_raises_the_threshold() -> None:
+    """By more than both errors; docs/theory.md has the table."""
+    case = with_rates("0.1 ms", "1 s")
+    _, points = stability_points(case, [130.0, 200.0])
+    found, note = find_threshold(case, StaticMachines(case, memory=True), points)
+    assert found is not None, note
+    speed, error = PEEKEN
+    assert found.speed_Hz - found.speed_uncertainty_Hz > speed + error
+    assert found.speed_Hz == pytest.approx(163.05, abs=found.speed_uncertainty_Hz)
+    assert found.whirl_ratio == pytest.approx(0.503, abs=2e-3)
