@@ -169,7 +169,8 @@ def _take_in_border(typing, border, rows, right, sizes):  # type: ignore[no-unty
     """right (k, k + r), its last r layers <- the right-hand sides of rows (k, w) less what they take from the border,
     whose solutions stand in place of its right-hand sides in border (k, w)."""
     k, r, w = len(sizes[0]), len(sizes[1]), row_length(len(sizes[0]), len(sizes[1]))
-    places = range(2 * k, 2 * k + r, LANES)
+    first = min(2 * k, w - row_length(0, r))  # no vector reaches beyond its row
+    places, shift = range(first, 2 * k + r, LANES), 2 * k - first
 
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
@@ -180,7 +181,8 @@ def _take_in_border(typing, border, rows, right, sizes):  # type: ignore[no-unty
             for j in range(k):
                 row = code.less(row, code.all_lanes(code.number(rows, w * i + k + j)), there[j])
             for side in range(r):
-                code.put(right, (k + r) * i + k + side, code.lane(row[side // LANES], side % LANES))
+                place, lane = divmod(shift + side, LANES)
+                code.put(right, (k + r) * i + k + side, code.lane(row[place], lane))
         return context.get_dummy_value()
 
     return types.void(border, rows, right, sizes), generate
