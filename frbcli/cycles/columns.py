@@ -18,6 +18,7 @@ FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
 STABLE = Column("stable", "", "whether all disturbances decay; none where it is not known")
 VALUE = Column("value", "", "value of the number that is varied", flat=False)
 TEMPERATURE = "temperature of a film, with heat"
+END_MEANING = "larger eccentricity of both ends, of films whose journals tilt"
 RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
@@ -53,8 +54,13 @@ def _temperatures(films: Sequence[str], heat: bool) -> tuple[Column, ...]:
     return (column,) if heat else ()
 
 
-def equilibrium_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...]:
-    """The columns of a RestingPoint in JSON. heat: whether films have temperatures."""
+def _at_ends(films: Sequence[str], name: str, tilts: bool) -> tuple[Column, ...]:
+    column = Column(name, "", END_MEANING + ", by film", lambda point: by_film(films, getattr(point, name)), flat=False)
+    return (column,) if tilts else ()
+
+
+def equilibrium_columns(films: Sequence[str], heat: bool = False, tilts: bool = False) -> tuple[Column, ...]:
+    """The columns of a RestingPoint in JSON. heat: whether films have temperatures; tilts: whether journals tilt."""
     return (
         VALUE,
         SPEED_COLUMN,
@@ -64,11 +70,12 @@ def equilibrium_columns(films: Sequence[str], heat: bool = False) -> tuple[Colum
         Column("films", "", "displacements, by film", lambda point: by_film(films, point.displacement), flat=False),
         RINGS,
         *_temperatures(films, heat),
+        *_at_ends(films, "end_eccentricity", tilts),
     )  # fmt: skip
 
 
-def cycle_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...]:
-    """The columns of a CyclePoint in JSON. heat: whether films have temperatures."""
+def cycle_columns(films: Sequence[str], heat: bool = False, tilts: bool = False) -> tuple[Column, ...]:
+    """The columns of a CyclePoint in JSON. heat: whether films have temperatures; tilts: whether journals tilt."""
     return (
         VALUE,
         SPEED_COLUMN,
@@ -84,6 +91,7 @@ def cycle_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
         Column("kind", "", "kind of a special point, `asked` at a speed that was asked for", lambda p: p.kind or None),
         FREQUENCY_UNCERTAINTY,
         _largest_uncertainty(films),
+        *_at_ends(films, "end_eccentricity_max", tilts),
     )  # fmt: skip
 
 
@@ -221,12 +229,13 @@ def map_columns(over: str, over_unit: str, key: str, unit: str, crossings: bool 
 
 
 def diagram_columns(
-    over: str, films: Sequence[str], rings: int, lines: Sequence[str], unbalance: bool, heat: bool = False
-) -> tuple[Column, ...]:
+    over: str, films: Sequence[str], rings: int, lines: Sequence[str], unbalance: bool, heat: bool = False,
+    tilts: bool = False,
+) -> tuple[Column, ...]:  # fmt: skip
     """The columns of a diagram in pandas: of the number of a branch, -1 for none, and one of its points.
 
     over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
-    unbalance; unbalance: whether there are any; heat: whether films have temperatures.
+    unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether journals tilt.
     """
 
     def of_point(*columns: Column, film: str = "") -> tuple[Column, ...]:
@@ -252,6 +261,9 @@ def diagram_columns(
         *(column for film, name in enumerate(films)
           for column in of_point(Column("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed",
                                         _eccentricity_uncertainty(film)),
+                                 film=name if several else "")),
+        *(column for film, name in enumerate(films if tilts else ())
+          for column in of_point(Column("end_eccentricity_max", "", END_MEANING, _end_eccentricity(film)),
                                  film=name if several else "")),
         *(column for film, name in enumerate(films if heat else ())
           for column in of_point(Column("temperature", "K", TEMPERATURE, _temperature(film)),
@@ -281,6 +293,12 @@ def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
 def _eccentricity(film: int) -> Callable[[Any], float]:
     return lambda point: float(
         point.eccentricity[film] if isinstance(point, RestingPoint) else point.eccentricity_max[film]
+    )
+
+
+def _end_eccentricity(film: int) -> Callable[[Any], float]:
+    return lambda point: float(
+        (point.end_eccentricity if isinstance(point, RestingPoint) else point.end_eccentricity_max)[film]
     )
 
 

@@ -29,7 +29,8 @@ def hertz(omega: float) -> float:
 class RestingPoint:
     """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
     the clearance; ring_speeds_Hz: (R,); eigenvalues:
-    (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,) of the films, empty without heat."""
+    (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,) of the films, empty without heat;
+    end_eccentricity: (F,) the larger one of both ends, empty of films that do not tilt."""
 
     value: float
     speed_Hz: float
@@ -38,6 +39,7 @@ class RestingPoint:
     eigenvalues: Complex
     stable: bool
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
+    end_eccentricity: Array = field(default_factory=lambda: np.zeros(0))
 
     @property
     def eccentricity(self) -> Array:
@@ -53,7 +55,8 @@ class CyclePoint:
     (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
     speed that was asked for; temperatures_K: (F,) of the films, empty without heat; value_uncertainty: of a fold;
     frequency_uncertainty_Hz, eccentricity_max_uncertainty (F,): by the mesh of the films, at the same value, NaN where
-    no such cycle was found on films of another mesh; the latter is None if none was sought.
+    no such cycle was found on films of another mesh; the latter is None if none was sought; end_eccentricity_max: (F,)
+    the larger one of both ends, empty of films that do not tilt.
     """
 
     value: float
@@ -70,6 +73,7 @@ class CyclePoint:
     value_uncertainty: float = math.nan
     frequency_uncertainty_Hz: float = math.nan
     eccentricity_max_uncertainty: Array | None = None
+    end_eccentricity_max: Array = field(default_factory=lambda: np.zeros(0))
 
     def orbit(self, film: int = 0, count: int = 360) -> Array:
         """(count, 2) displacements of a journal over the clearance, at equal moments of a period."""
@@ -167,6 +171,11 @@ class LimitCycles(Tabular):
     cost: Cost
     synchronous: tuple[CyclePoint, ...] = ()
 
+    @property
+    def tilts(self) -> bool:
+        """Whether the journals tilt in their films."""
+        return any(len(point.end_eccentricity) for point in self.equilibria)
+
     def of(self, kind: str) -> tuple[SpecialPoint, ...]:
         """The special points of a kind."""
         return tuple(point for point in self.special if point.kind == kind)
@@ -181,5 +190,7 @@ class LimitCycles(Tabular):
         rows += [(number, point) for number, branch in numbered for point in branch.points]
         rings = max((len(point.ring_speeds_Hz) for point in self.equilibria), default=0)
         lines = list(dict.fromkeys(line.name for _, whirl in whirls for line in whirl.lines))
-        heat = self.case.heat is not None
-        return table_of(diagram_columns(self.over, self.films, rings, lines, bool(whirls), heat), [*rows, *whirls])
+        columns = diagram_columns(
+            self.over, self.films, rings, lines, bool(whirls), self.case.heat is not None, self.tilts
+        )
+        return table_of(columns, [*rows, *whirls])

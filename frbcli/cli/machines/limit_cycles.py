@@ -276,14 +276,14 @@ def _left_out(found: LimitCycles) -> list[str]:
 def _document(found: LimitCycles) -> dict[str, object]:
     from frbcli.cycles.columns import equilibrium_columns, special_columns
 
-    films = found.films
+    films, heat = found.films, found.case.heat is not None
     special = documents(special_columns(films, found.over), found.special)
     return {
         "command": "limit-cycles",
         "case": found.case.name,
         "over": found.over,
         "unit": found.unit,
-        "equilibria": documents(equilibrium_columns(films, found.case.heat is not None), found.equilibria),
+        "equilibria": documents(equilibrium_columns(films, heat, found.tilts), found.equilibria),
         "branches": [
             {
                 "from": None if branch.start is None else special[branch.start],
@@ -305,7 +305,7 @@ def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     from frbcli.cycles.columns import cycle_columns
 
     orbits = {name: point.orbit(film) for film, name in enumerate(found.films)} if point.kind == ASKED else None
-    told = document(cycle_columns(found.films, found.case.heat is not None), point)
+    told = document(cycle_columns(found.films, found.case.heat is not None, found.tilts), point)
     return told | ({} if orbits is None else {"orbits": orbits})
 
 

@@ -45,6 +45,9 @@ def follow_shots(
     while len(shots) < MOST_POINTS:
         shot = shots[-1]
         found, length = halved_until(partial(_next, shooting, shot, along), length, SHORTEST)
+        if found is None:  # the last step has passed a bend: on along the tangent
+            along = shot.tangent
+            found, length = halved_until(partial(_next, shooting, shot, along), FIRST, SHORTEST)
         if found is None:
             note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
             return with_folds(shooting, shots), note

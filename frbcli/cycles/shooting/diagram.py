@@ -28,7 +28,7 @@ from frbcli.cycles.result import (
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
-from frbcli.cycles.shooting.shots import Rest, Shooting, Shot
+from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
@@ -61,12 +61,12 @@ def limit_cycles_by_shooting(
     ends: list[float] = []
     for begin in hopf:
         if any(abs(end - begin.rest.omega) < SAME * begin.rest.omega for end in ends):
-            special.append(_hopf(begin, None, None))
+            special.append(_hopf(shooting, begin, None, None))
             continue
         shots, note = _branch(shooting, begin, (slowest, fastest), asked, tell)
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
-        special.append(_hopf(begin, len(branches), shots[0] if shots else None))
+        special.append(_hopf(shooting, begin, len(branches), shots[0] if shots else None))
         branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(flow, note, shots)))
     return LimitCycles(
         case=case,
@@ -126,23 +126,26 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThresho
 def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
     speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
     turning = rest.wet.v[spins] / (2.0 * math.pi)
-    return RestingPoint(speed, speed, rest.displacement, turning, rest.eigenvalues, rest.stable)
+    return RestingPoint(
+        speed, speed, shooting.flow.middles(rest.displacement), turning, rest.eigenvalues, rest.stable,
+        end_eccentricity=shooting.flow.at_ends(np.hypot(*rest.displacement.T)),
+    )  # fmt: skip
 
 
-def _hopf(begin: RestThreshold, branch: int | None, first: Shot | None) -> SpecialPoint:
+def _hopf(shooting: Shooting, begin: RestThreshold, branch: int | None, first: Shot | None) -> SpecialPoint:
     """criticality: by the first cycle, where its stability is clear."""
-    rest = begin.rest
+    rest, middles = begin.rest, shooting.flow.middles(begin.rest.displacement)
     criticality = None
     if first is not None and len(first.multipliers.others):
-        largest, blur = float(np.abs(first.multipliers.others[0])), first.multipliers.defect
-        criticality = SUBCRITICAL if largest > 1.0 + blur else SUPERCRITICAL if largest < 1.0 - blur else None
+        size, blur = float(np.abs(first.multipliers.others[0])), first.multipliers.defect
+        criticality = SUBCRITICAL if size > 1.0 + blur else SUPERCRITICAL if size < 1.0 - blur else None
     return SpecialPoint(
         kind=HOPF,
         branch=branch,
         value=hertz(rest.omega),
         speed_Hz=hertz(rest.omega),
         frequency_Hz=hertz(float(rest.eigenvalues[begin.number].imag)),
-        eccentricity_max=np.hypot(*rest.displacement.T),
+        eccentricity_max=np.hypot(*middles.T),
         criticality=criticality,
         value_uncertainty=hertz(begin.uncertainty),
     )
@@ -158,32 +161,36 @@ def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:
     speed, spins = hertz(rest.omega), list(shooting.flow.system.spins)
     nu = float(rest.eigenvalues[number].imag)
     values = np.exp(np.delete(rest.eigenvalues, number) * 2.0 * math.pi / nu)
-    harmonics = np.zeros((SAMPLES // 4, *rest.displacement.shape), dtype=complex)
-    harmonics[0] = rest.displacement
+    middles = shooting.flow.middles(rest.displacement)
+    harmonics = np.zeros((SAMPLES // 4, *middles.shape), dtype=complex)
+    harmonics[0] = middles
     return CyclePoint(
         value=speed,
         speed_Hz=speed,
         frequency_Hz=hertz(nu),
-        eccentricity_max=np.hypot(*rest.displacement.T),
+        eccentricity_max=np.hypot(*middles.T),
         ring_speeds_Hz=rest.wet.v[spins] / (2.0 * math.pi),
         torque_N_m=math.nan,
         stable=bool(np.all(np.delete(rest.eigenvalues, number).real < SLOWLY * nu)),
         multipliers=np.concatenate([[1.0 + 0.0j], values]),
         harmonics=harmonics,
+        end_eccentricity_max=shooting.flow.at_ends(np.hypot(*rest.displacement.T)),
     )
 
 
 def _cycle(shooting: Shooting, shot: Shot) -> CyclePoint:
     speed, spins = shooting.speed_Hz(shot), list(shooting.flow.system.spins)
+    orbits = [shooting.flow.middles(orbit) for orbit in shot.orbits]
     return CyclePoint(
         value=speed,
         speed_Hz=speed,
         frequency_Hz=shooting.unit * math.exp(-shot.mean_p[0]),
-        eccentricity_max=shot.eccentricity_max,
+        eccentricity_max=np.mean([largest(orbit) for orbit in orbits], axis=0),
         ring_speeds_Hz=shot.wet.v[spins] / (2.0 * math.pi),
         torque_N_m=math.nan,
         stable=shot.multipliers.stable,
         multipliers=shot.multipliers.values,
-        harmonics=np.fft.rfft(shot.mean_displacements[:SAMPLES], axis=0)[: SAMPLES // 4] / SAMPLES,
+        harmonics=np.fft.rfft(np.mean(orbits, axis=0)[:SAMPLES], axis=0)[: SAMPLES // 4] / SAMPLES,
         kind=shot.kind,
+        end_eccentricity_max=shooting.flow.at_ends(shot.eccentricity_max),
     )

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +20,7 @@ from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.data import COS, GAP, SIN, UNKNOWN, VolumeFilms
+from frbcli.film.cells.data import UNKNOWN
 from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
@@ -55,7 +56,7 @@ MOST_STEPS = 10**6
 @dataclass(frozen=True)
 class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
-    angle 0; theta, rate, w: (F, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells. a, rate and w
+    angle 0; theta, rate, w: (fields, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells. a, rate and w
     follow from the rest within the first step, and are carried along as its guess."""
 
     q: Array
@@ -68,8 +69,8 @@ class Wet:
 
 @dataclass(frozen=True)
 class Passage:
-    """What a time has led to: the state at its end; displacements: (samples + 1, F, 2) over the clearances at equal
-    moments from its start to its end."""
+    """What a time has led to: the state at its end; displacements: (samples + 1, J, 2) over the clearances at equal
+    moments from its start to its end, see PeriodMap."""
 
     end: Wet
     displacements: Array
@@ -77,14 +78,17 @@ class Passage:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """The time loop of a system without unbalance; turned: (F, 1 + rings) shares in the speed of each film's cells;
-    begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the cells lie there; held: (F, m,
-    k) the cells whose oil is part of the state."""
+    """The time loop of a system without unbalance, which has J journals: one in each film, or both ends of one that
+    tilts. films: as the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned:
+    (F, 1 + rings) shares in the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at
+    the start, which say how the cells lie there; held: (fields, m, k) the cells whose oil is part of the state."""
 
     system: System
-    films: VolumeFilms
+    films: Any
     control: Control
     tableau: Tableau
+    journals: Array
+    standing: Array
     clearances: Array
     turned: Array
     begun: Array
@@ -99,6 +103,16 @@ class PeriodMap:
     def places(self) -> tuple[float, ...]:
         """Further PLACES of the cells at the start of a cycle, which matter where cells turn."""
         return PLACES if self.turned.any() else ()
+
+    def middles(self, d: Array) -> Array:
+        """(..., F, 2) displacements in the middle of the films, of those of the journals (..., J, 2)."""
+        return np.asarray(d.reshape(*d.shape[:-2], self.system.films.count, -1, 2).mean(axis=-2))
+
+    def at_ends(self, eccentricities: Array) -> Array:
+        """(F,) the larger eccentricity of both ends, of the journals' (J,); empty of films that do not tilt."""
+        if self.system.films.stations == 1:
+            return np.zeros(0)
+        return np.asarray(eccentricities.reshape(self.system.films.count, -1).max(axis=1))
 
     def packed(self, wet: Wet, omega: float) -> Array:
         """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
@@ -145,7 +159,7 @@ class PeriodMap:
         )
         control = self.control._replace(output_step=time / samples, longest_step=time / steps, steps_per_revolution=1.0)
         state = self._state(wet, time)
-        output = make_output(samples + 8, len(wet.q), len(self.clearances))
+        output = make_output(samples + 8, len(wet.q), self.system.films.count)
         written, status = [], RUNNING
         while status == RUNNING:
             status, count = advance(rotor, self.films, self.tableau, control, state, MOST_STEPS, output)
@@ -153,7 +167,7 @@ class PeriodMap:
         if status != FINISHED or not np.isfinite(state.q).all():
             raise Unreachable
         q = np.concatenate(written)[: samples + 1]
-        places = np.einsum("fij,nj->nfi", self.system.rotor.journals, q) / self.clearances[:, None]
+        places = (np.einsum("fij,nj->nfi", self.journals, q) + self.standing) / self.clearances[:, None]
         return Passage(self._end(state, time, omega), places)
 
     @property
@@ -168,26 +182,25 @@ class PeriodMap:
         return np.asarray(told)
 
     def _gaps(self, q: Array, bodies: Array) -> Array:
-        """(F, m) H in the cells of films between rotor and rings at angles (1 + rings,)."""
-        d, angles = self.system.rotor.journals @ q / self.clearances[:, None], self.turned @ bodies
+        """H in the cells of films between rotor and rings at angles (1 + rings,), see Films.gaps."""
+        films, d = self.system.films, (self.journals @ q + self.standing) / self.clearances[:, None]
+        angles = np.repeat(self.turned @ bodies, films.stations)
         c, s = np.cos(angles)[:, None], np.sin(angles)[:, None]
-        x, y = c * d[:, :1] + s * d[:, 1:], c * d[:, 1:] - s * d[:, :1]
-        ring = self.films.ring
-        return np.asarray(ring[:, GAP] + x * ring[:, SIN] - y * ring[:, COS])
+        return films.gaps(np.hstack([c * d[:, :1] + s * d[:, 1:], c * d[:, 1:] - s * d[:, :1]]))
 
     def _state(self, wet: Wet, time: float) -> State:
-        count, first = len(self.clearances), FIRST_STEP * time
+        first = FIRST_STEP * time
         films = np.zeros((WET, *wet.theta.shape))
         films[W] = films[W_BEFORE] = wet.w
-        films[OIL] = wet.theta * self._gaps(wet.q, self.begun)[:, :, None]
+        films[OIL] = wet.theta * self._gaps(wet.q, self.begun)
         films[RATE] = wet.rate
         numbers = np.zeros(NUMBERS)
         numbers[STEP] = numbers[STEP_DONE] = first
         numbers[RUN_END] = time
-        past = np.zeros((HISTORY, 1 + 2 * count))
+        past = np.zeros((HISTORY, 1 + 2 * len(self.journals)))
         past[:, 0] = first * np.arange(1 - HISTORY, 1)
-        past[:, 1:] = (self.system.rotor.journals @ wet.v).ravel()
-        flows, errors = np.zeros((2, count, FLOWS)), np.zeros((2, ERROR_SPANS))
+        past[:, 1:] = (self.journals @ wet.v).ravel()
+        flows, errors = np.zeros((2, len(wet.theta), FLOWS)), np.zeros((2, ERROR_SPANS))
         q = wet.q.copy()
         q[list(self.system.spins)] = self.begun[1:]
         return State(numbers, q, wet.v.copy(), wet.a.copy(), past, films, flows, errors)
@@ -195,9 +208,10 @@ class PeriodMap:
     def _end(self, state: State, time: float, omega: float) -> Wet:
         spins = list(self.system.spins)
         bodies = np.concatenate([[self.begun[0] + omega * time], state.q[spins]])
-        theta = state.wet[OIL] / self._gaps(state.q, bodies)[:, :, None]
+        theta = state.wet[OIL] / self._gaps(state.q, bodies)
+        angles = (self.turned @ (bodies - self.begun))[self.system.films.film_of_cells]
         theta, rate, w = (
-            np.stack([turned_back(*each) for each in zip(fields, self.turned @ (bodies - self.begun), strict=True)])
+            np.stack([turned_back(*each) for each in zip(fields, angles, strict=True)])
             for fields in (theta, state.wet[RATE], state.wet[W])
         )
         q = state.q.copy()
@@ -209,17 +223,19 @@ def period_map(case: Case) -> PeriodMap:
     """The map of a case whose films are all on cells."""
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     system = make_system(case, plan)
-    films = system.films.loop
+    films, own = system.films.loop, system.films
     tableau = METHODS[plan.method].tableau
     return PeriodMap(
         system=system,
         films=films,
         control=control_of(case, plan, system.asperities),
         tableau=tableau._replace(defect=np.zeros_like(tableau.defect)),
-        clearances=np.array(system.clearances),
+        journals=own.seen(system.rotor.journals),
+        standing=own.seen(own.standing),
+        clearances=np.repeat(system.clearances, own.stations),
         turned=system.turning[:, GRID],
         begun=np.zeros(1 + system.ring_count),
-        held=(films.cells[:, UNKNOWN] != 0.0) & np.array(system.films.remembering)[:, None, None],
+        held=(films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None],
     )
 
 
@@ -229,7 +245,7 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
         state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
     except NotConverged:
         raise Unreachable from None
-    theta = state.wet[OIL] / found._gaps(q, found.begun)[:, :, None]
+    theta = state.wet[OIL] / found._gaps(q, found.begun)
     return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
 
 

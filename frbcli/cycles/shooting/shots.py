@@ -68,15 +68,14 @@ class Shot:
         return np.asarray(np.mean([self.p, *(p for p, _ in self.others)], axis=0))
 
     @property
-    def mean_displacements(self) -> Array:
-        """(SAMPLES + 1, F, 2) the same."""
-        return np.asarray(np.mean([self.displacements, *(places for _, places in self.others)], axis=0))
+    def orbits(self) -> tuple[Array, ...]:
+        """(SAMPLES + 1, J, 2) displacements with the cells in each place."""
+        return (self.displacements, *(orbit for _, orbit in self.others))
 
     @property
     def eccentricity_max(self) -> Array:
-        """(F,) the same."""
-        orbits = (self.displacements, *(places for _, places in self.others))
-        return np.asarray(np.mean([largest(places) for places in orbits], axis=0))
+        """(J,) mean over the places of the cells."""
+        return np.asarray(np.mean([largest(orbit) for orbit in self.orbits], axis=0))
 
     @property
     def blur(self) -> Array:
@@ -91,8 +90,8 @@ class Shot:
 
 @dataclass(frozen=True)
 class Rest:
-    """A resting position. x, wet: its state; omega: rad/s; displacement: (F, 2); eigenvalues: (k,) 1/s of slow
-    motions, and their states (N, k)."""
+    """A resting position. x, wet: its state; omega: rad/s; displacement: (J, 2), see PeriodMap; eigenvalues: (k,) 1/s
+    of slow motions, and their states (N, k)."""
 
     x: Array
     wet: Wet
@@ -297,7 +296,7 @@ class _Asked:
 
 
 def largest(displacements: Array) -> Array:
-    """(F,) largest eccentricity of an orbit (SAMPLES + 1, F, 2), between samples by parabolas."""
+    """(J,) largest eccentricity of an orbit (SAMPLES + 1, J, 2), between samples by parabolas."""
     e = np.hypot(displacements[:-1, :, 0], displacements[:-1, :, 1])
     at, films = e.argmax(axis=0), np.arange(e.shape[1])
     before, here, after = e[at - 1, films], e[at, films], e[(at + 1) % len(e), films]

@@ -15,7 +15,7 @@ from frbcli.film.cells.balance.balances import ENDS_NET, FILLING, FLOWS, INFLOW,
 from frbcli.film.cells.balance.feed import ALL, supply_line, supply_pressure
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
-from frbcli.film.cells.data import GIVEN_PRESSURE, SHEARED, VolumeFilms
+from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm, refilled, supplied
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.loads import CavitationFactor, force, loads
@@ -65,9 +65,14 @@ class CellFilms(Films):
         """See Films.with_fields."""
         return self.own
 
+    def gaps(self, d: Array) -> Array:
+        """See Films.gaps."""
+        ring = self.data.ring
+        return np.asarray(ring[:, GAP] + d[:, :1] * ring[:, SIN] - d[:, 1:] * ring[:, COS])[:, :, None]
+
     def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
         """See Films.oil_unknowns."""
-        return np.stack([_unknown_at(*each) for each in zip(self.own, theta, near, w, strict=True)])
+        return np.stack([unknown_at(*each) for each in zip(self.own, theta, near, w, strict=True)])
 
     @property
     def cavitation_factor(self) -> str:  # type: ignore[override]
@@ -287,7 +292,7 @@ def least_gaps(section: Section, d: Array) -> Array:
     return np.asarray(height.min(axis=1))
 
 
-def _unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
+def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
     """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
 
     The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
@@ -194,8 +195,18 @@ class Films(ABC):
         """The films with their fields of pressure, flow and oil; empty where these are not kept."""
         return ()
 
+    @property
+    def film_of_cells(self) -> NDArray[np.int64]:
+        """(fields,) number of the film that each field of m x k cells in the time loop belongs to."""
+        return np.arange(self.count)
+
+    def gaps(self, d: Array) -> Array:
+        """H in the cells of all fields, (fields, m, k) or (fields, m, 1), of displacements d (films stations, 2) over
+        the clearance, in the frame of their openings."""
+        raise NotImplementedError
+
     def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
-        """(films, m, k) unknowns of films with oil theta, from unknowns w of films with the oil near."""
+        """(fields, m, k) unknowns of films with oil theta, from unknowns w of films with the oil near."""
         raise NotImplementedError
 
 

@@ -10,14 +10,15 @@ from itertools import pairwise
 from typing import Any, ClassVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.data import SHEARED
+from frbcli.film.cells.data import COS, GAP, SHEARED, SIN
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.tilted.balances import tilted_outflow
-from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
+from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import (
     COORDINATES,
     TiltedFilm,
@@ -29,7 +30,7 @@ from frbcli.film.cells.tilted.force import (
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
-from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil
+from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil, unknown_at
 from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.kinds.fields import Part
 from frbcli.film.rectangles.film import FilmForce
@@ -118,6 +119,23 @@ class TiltedFilms(Films):
         """See Films.starving."""
         films = zip(self.own, self.remembering, strict=True)
         return any(keeps and is_unfed(film.section, type(film.lands[0].film.law)) for film, keeps in films)
+
+    @property
+    def film_of_cells(self) -> NDArray[np.int64]:
+        """See Films.film_of_cells."""
+        return np.array([i for i, _ in self._lands])
+
+    def gaps(self, d: Array) -> Array:
+        """See Films.gaps."""
+        ring, along = self.data.ring, self.data.places[:, MIDDLES, :-1]
+        ends = np.swapaxes(d.reshape(self.count, self.stations, 2)[self.film_of_cells], 0, 1)
+        near, far = (ring[:, GAP] + end[:, :1] * ring[:, SIN] - end[:, 1:] * ring[:, COS] for end in ends)
+        return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
+
+    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
+        """See Films.oil_unknowns."""
+        films = [land.film for _, land in self._lands]
+        return np.stack([unknown_at(*each) for each in zip(films, theta, near, w, strict=True)])
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         """See Films.oil_defect."""

@@ -10,14 +10,14 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.forms.tilted import RUNS, TiltedForm, film_faults, law_faults, misalignment_faults, run_faults
-from frbcli.scene.gate.analysis import FILMS, RANGE, RUN, SHEETS, STABILITY
+from frbcli.scene.forms.tilted import LOOPS, RUNS, TiltedForm, film_faults, law_faults, misalignment_faults, run_faults
+from frbcli.scene.gate.analysis import FILMS, RANGE, SHEETS, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text, misaligned
 
-AT_REST = (FILMS, STABILITY, RANGE, *SHEETS)
+AT_REST = (FILMS, STABILITY, RANGE, SPEED_CYCLES, *SHEETS)
 WITHOUT = "Leave bearing.misalignment out."
 
 
@@ -48,7 +48,7 @@ class InclinedForm(TiltedForm):
         Rule(_ring_faults, (*AT_REST, *RUNS)),
         Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
-        Rule(lambda case: run_faults(case, WITHOUT), (RUN,)),
+        Rule(lambda case: run_faults(case, WITHOUT), LOOPS),
         Rule(misalignment_faults, (*AT_REST, *RUNS)),
     )
 

@@ -17,7 +17,17 @@ from frbcli.scene.channels import coupled
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.gate.analysis import ALL, BEARING, COMPARISON, FILMS, LADDER, RANGE, RUN, STABILITY
+from frbcli.scene.gate.analysis import (
+    ALL,
+    BEARING,
+    COMPARISON,
+    FILMS,
+    LADDER,
+    RANGE,
+    RUN,
+    SPEED_CYCLES,
+    STABILITY,
+)
 from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.shafts.table import shaft_of
@@ -28,13 +38,14 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING), (RUN, COMPARISON, LADDER)
+FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES), (RUN, COMPARISON, LADDER)
+LOOPS = (RUN, SPEED_CYCLES)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
 
 def _analysis_faults(_: Case) -> Faults:
-    problem = "is for runs, bearing sheets under the load of a rotor, stability, damped modes and response."
+    problem = "is for runs, sheets under the load of a rotor, stability, modes, response, and cycles over the speed."
     yield Fault(KEY, ASKED, None, problem, 'Write film.tilt = "none" here, or call `frb runup`.')
 
 
@@ -52,6 +63,13 @@ def _machine_faults(case: Case) -> Iterator[Fault]:
             yield Fault(f"{key}.channels", "coupled", None, problem, f'Write channels = "pressure". {WITHOUT}')
     for damper in DamperElement.of(case):
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
+
+
+def _ring_faults(case: Case) -> Faults:
+    """Cycles of rings that tilt."""
+    if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
+        problem = "lets rings tilt, whose limit cycles are not computed."
+        yield Fault(KEY, ASKED, None, problem, f"{WITHOUT[:-1]} here, or call `frb runup`.")
 
 
 def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
@@ -124,7 +142,8 @@ class TiltedForm(CellForm):
         Rule(_machine_faults, (*FOLLOWED, *RUNS)),
         Rule(film_faults, (*FOLLOWED, *RUNS)),
         Rule(law_faults, FOLLOWED),
-        Rule(run_faults, (RUN,)),
+        Rule(run_faults, LOOPS),
+        Rule(_ring_faults, (SPEED_CYCLES,)),
         Rule(misalignment_faults, (*FOLLOWED, *RUNS)),
     )
 

@@ -129,8 +129,9 @@ def by_shooting(case: Case) -> bool:
 
 
 def turning_openings(case: Case) -> bool:
-    """Whether all films on cells solve a linear equation and have no openings but those that turn."""
-    if not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
+    """Whether films on cells are tabulated as the mean over the angle of their openings: their gaps are even along the
+    axis, all solve a linear equation, and all openings turn."""
+    if form_of(case).inclines or not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
         return False
     return all(
         is_plain(place.geometry) or (place.geometry.lobes is None and place.grid_body != HOUSING)

@@ -122,5 +122,5 @@ def end_faults(case: Case, test: str) -> Iterator[Fault]:
 def misalignment_faults(case: Case) -> Iterator[Fault]:
     """Shells that are not in line, where journal and shell are taken to be parallel."""
     for key, value in misaligned(case):
-        problem = "tilts the shell, which kinematic tests, runs and machines at rest follow; others do not."
+        problem = "tilts the shell, which kinematic tests, runs, machines at rest and cycles over the speed follow."
         yield Fault(key, value, None, problem, "Leave it out here.")

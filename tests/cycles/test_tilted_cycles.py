@@ -1,0 +1,180 @@
+"""Limit cycles of films that follow the tilt of their journals, and in shells that are not in line, by shooting."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from marches import rigid_shaft
+
+import frbcli
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Rest, Shooting
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.kinds.cells import CellFilms
+from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.linear.stability import stability_points
+from frbcli.rotor.body import PLANE
+from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.analysis import CYCLES, SPEED_CYCLES, WHIRLS
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.machine.rotor import make_rotor
+
+MESH = "accuracy.mesh=[4, 24]"  # 24 x 8 cells over the whole width
+SPEED_Hz = 300.0
+OMEGA = 2.0 * math.pi * SPEED_Hz
+FOLLOWS = ("film.tilt=follows", "disk.0.unbalance=0 g*mm", MESH)
+ASIDE = "disk.0.position=12 mm"  # beside the middle of the shaft, so that the journals tilt
+COLLAR = (
+    'thrust_bearing=[{name = "collar", position = "3 mm", side = "both", inner_radius = "5.5 mm", '
+    'outer_radius = "11 mm", pads = 4, pad_angle = "75 deg", taper_angle = "50 deg", taper = "20 um", '
+    'end_play = "60 um"}]',
+    'axial={load="4 N"}',
+    "speed.from=10 Hz",
+)
+INCLINED = ('bearing.misalignment=["0.5 mrad", "-0.3 mrad"]', "film.theory=finite", "rotor.unbalance=0 g*mm", MESH)
+
+
+@pytest.fixture(autouse=True)
+def same_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Machines at rest have the cells of the time loop."""
+    monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
+
+
+def at_rest(flow: PeriodMap, omega: float) -> Rest:
+    rest = settled(Shooting(flow, omega), omega)
+    assert rest is not None
+    return rest
+
+
+@pytest.mark.parametrize(
+    ("case", "speed_Hz"),
+    [
+        (rigid_shaft(*FOLLOWS, ASIDE, "film.cavitation=reynolds", *COLLAR), SPEED_Hz),
+        (rigid_shaft(*FOLLOWS, "film.cavitation=reynolds", 'bearing.1.misalignment=["1 mrad", "2 mrad"]'), SPEED_Hz),
+        (load_case("jeffcott", [*INCLINED, "film.cavitation=reynolds"]), 120.0),
+    ],
+    ids=["collar", "shell out of line", "Jeffcott"],
+)
+def test_small_motions_at_rest_grow_as_in_the_linearised_machine(case: Case, speed_Hz: float) -> None:
+    """Forces, moments and the collar are those of stability: cylindrical and conical whirls alike."""
+    flow, omega = period_map(case), 2.0 * math.pi * speed_Hz
+    rest, point = at_rest(flow, omega), stability_points(case, [speed_Hz])[1][0]
+    middles = flow.middles(rest.displacement)
+    for film, middle, end in zip(point.films, middles, flow.at_ends(np.hypot(*rest.displacement.T)), strict=True):
+        np.testing.assert_allclose(film.displacement, middle, atol=1e-5)
+        assert end > np.hypot(*middle) + 1e-4
+    s = point.eigenvalues
+    slow = s[(np.abs(s.imag) > 0.05 * omega) & (np.abs(s.imag) < 0.95 * omega) & (s.real > -0.2 * omega)]
+    assert len(slow) >= 2
+    for value in slow:
+        assert np.abs(rest.eigenvalues - value).min() < 2e-3 * abs(value)
+
+
+def in_plane(case: Case, flow: PeriodMap) -> PeriodMap:
+    """The same machine and the same cells, and films that do not know of a tilt."""
+    films = flow.system.films
+    assert isinstance(films, TiltedFilms)
+    lands = [film.lands[0].film for film in films.own]
+    own = tuple(
+        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
+        for film, land in zip(films.own, lands, strict=True)
+    )
+    flat = CellFilms(
+        films.clearances, own, volume_films(own, (), films.settled), films.cells, "none", 2, case.oil_viscosity
+    )
+    rotor = make_rotor(case, PLANE)
+    system = replace(flow.system, films=flat, rotor=rotor)
+    return replace(
+        flow, system=system, films=flat.loop, journals=rotor.journals, standing=np.zeros((2, 2)),
+        clearances=np.array(films.clearances),
+    )  # fmt: skip
+
+
+def test_a_machine_that_moves_in_its_plane_has_the_cycles_of_films_without_tilt() -> None:
+    """The weight lies in the middle of a rigid symmetric rotor: nothing tilts. The map is the same to round-off, and a
+    cycle to what Newton's method leaves."""
+    case = rigid_shaft(*FOLLOWS, "film.cavitation=half-sommerfeld")
+    tilted, plane = period_map(case), in_plane(case, period_map(case))
+    aside = np.linalg.pinv(tilted.journals.reshape(8, -1)) @ np.tile([0.2, -0.3], 4) * tilted.scale
+    ends = [
+        flow.passage(wet_at(flow, aside, np.zeros(len(aside)), OMEGA), 5e-3, OMEGA, 300) for flow in (tilted, plane)
+    ]
+    orbits = [flow.middles(end.displacements) for flow, end in zip((tilted, plane), ends, strict=True)]
+    assert np.ptp(orbits[0]) > 0.1
+    assert np.abs(orbits[0] - orbits[1]).max() < 1e-9
+    assert np.abs(ends[0].end.v - ends[1].end.v).max() < 1e-9 * OMEGA * tilted.scale
+    shots = []
+    for flow in (tilted, plane):
+        shooting = Shooting(flow, OMEGA)
+        rest = at_rest(flow, 2.0 * math.pi * 250.0)
+        shot = shooting.from_rest(rest, int(rest.whirls[0]), 0.2)
+        assert shot is not None
+        shots.append(shot)
+    one, other = shots
+    assert one.amplitude > 0.1
+    assert np.abs(one.p - other.p).max() < 1e-6
+    assert np.abs(tilted.middles(one.displacements) - other.displacements).max() < 1e-6
+    assert np.abs(np.diff(one.displacements.reshape(-1, 2, 2, 2), axis=2)).max() < 1e-9
+
+
+@pytest.mark.parametrize(
+    ("case", "settings", "key"),
+    [
+        (None, ["film.cavitation=elrod"], "film.cavitation"),
+        (None, ['contact={policy="elastic", stiffness="1e8 N/m"}'], "contact.policy"),
+        ("rigid", [*INCLINED, "film.cavitation=elrod"], "film.cavitation"),
+        ("rigid", [*INCLINED, 'contact={policy="elastic", stiffness="1e8 N/m"}'], "contact.policy"),
+    ],
+)
+def test_what_cycles_do_not_follow_is_refused(case: str | None, settings: list[str], key: str) -> None:
+    given = rigid_shaft(*FOLLOWS, *settings) if case is None else load_case(case, settings)
+    assert [fault.key for fault in faults(given, SPEED_CYCLES)] == [key]
+
+
+@pytest.mark.parametrize("analysis", [CYCLES, WHIRLS])
+def test_cycles_over_other_numbers_and_whirls_with_unbalance_do_not_follow(analysis: str) -> None:
+    tilted, inclined = rigid_shaft("film.tilt=follows"), load_case("rigid", [*INCLINED, "rotor.unbalance=3 g*mm"])
+    for case, key in ((tilted, "film.tilt"), (inclined, "bearing.misalignment")):
+        assert key in [fault.key for fault in faults(case, analysis)]
+    assert not faults(tilted, SPEED_CYCLES)
+    assert not faults(inclined, SPEED_CYCLES)
+
+
+@pytest.mark.nightly
+def test_a_diagram_agrees_with_stability_and_with_a_run(tmp_path: Path) -> None:
+    """A disk beside the middle: the Hopf point is the threshold of stability, up to the size of the disturbances, 0.5 %
+    of the clearance at an eccentricity of 1.6 %. At a constant speed a run ends in the stable cycle."""
+    speed = 230.0
+    case = rigid_shaft(
+        *FOLLOWS, ASIDE, "film.cavitation=half-sommerfeld", "speed.from=222 Hz", "speed.to=250 Hz",
+    )  # fmt: skip
+    found = frbcli.limit_cycles(case, [speed])
+    (hopf,) = found.of("hopf")
+    threshold = frbcli.stability(case, [235.0, 250.0]).threshold
+    assert threshold is not None
+    assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=5e-4)
+    assert hopf.frequency_Hz == pytest.approx(threshold.frequency_Hz, rel=1e-3)
+    asked = [point for branch in found.branches for point in branch.points if point.kind == "asked"]
+    (cycle,) = (point for point in asked if point.stable)
+    table = found.to_pandas()
+    assert table["end_eccentricity_max_left"].max() >= cycle.end_eccentricity_max[0]
+    run = frbcli.runup(
+        case.with_settings(
+            f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=2 s", "output.step=0.1 ms",
+            "start.displacement=[0.8, 0]", "accuracy.target=1e-4", MESH,
+        ),
+        tmp_path / "run.h5",
+    )  # fmt: skip
+    late = run["time_s"] > 1.5
+    for number, film in enumerate(("left", "right")):
+        assert run[f"eccentricity_{film}"][late].max() == pytest.approx(cycle.eccentricity_max[number], rel=1e-3)
+        end = run[f"end_eccentricity_{film}"][late].max()
+        assert end == pytest.approx(cycle.end_eccentricity_max[number], rel=1e-3)
