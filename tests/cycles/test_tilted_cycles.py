@@ -169,7 +169,7 @@ def test_a_diagram_agrees_with_stability_and_with_a_run(tmp_path: Path) -> None:
     run = frbcli.runup(
         case.with_settings(
             f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=2 s", "output.step=0.1 ms",
-            "start.displacement=[0.8, 0]", "accuracy.target=1e-4", MESH,
+            "start.displacement=[0.8, 0]", "accuracy.tolerance=1e-6", MESH,
         ),
         tmp_path / "run.h5",
     )  # fmt: skip
