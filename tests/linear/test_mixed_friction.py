@@ -124,7 +124,7 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
 @pytest.mark.parametrize(
     ("settings", "key", "problem"),
     [
-        (("contact.roughness=5 um",), "contact.roughness", "meet all around"),
+        (("contact.roughness=5 um", "contact.summit_density=1e9 1/m^2"), "contact.roughness", "meet all around"),
         (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
         (
             ("contact.flow_factors=true", "film.cavitation=two-phase", "film.two-phase.form=published"),
