@@ -59,10 +59,16 @@ def test_the_screen_tells_silence() -> None:
 
 
 def test_compiling_is_not_silent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """With an empty cache, and the machine that has the fewest kernels."""
+    """With an empty cache, and the machine that has the fewest kernels. A machine that is shared may stand still for
+    seconds: the better of two starts counts, for what the program does not tell it does not tell in both."""
     monkeypatch.chdir(tmp_path)
-    words = ["runup", "seal", "--set", "speed.duration=10 ms", "--no-picture"]
-    found = seen(words, environment={"NUMBA_CACHE_DIR": str(tmp_path / "cache")})
-    assert found.code == 0, found.text
-    assert "Compiling the kernels, once" in found.text
-    assert found.silent_s < LONGEST_s
+    words = ["runup", "seal", "--set", "speed.duration=10 ms", "--no-picture", "--force"]
+    silences = []
+    for trial in ("first", "second"):
+        found = seen(words, environment={"NUMBA_CACHE_DIR": str(tmp_path / trial)})
+        assert found.code == 0, found.text
+        assert "Compiling the kernels, once" in found.text
+        silences.append((found.silent_s, found.silent_after))
+        if found.silent_s < LONGEST_s:
+            break
+    assert min(silences)[0] < LONGEST_s, silences

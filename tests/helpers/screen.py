@@ -21,12 +21,13 @@ FRB = "import sys; exec(sys.argv.pop(1)); from frbcli.cli.process import main; m
 @dataclass(frozen=True)
 class Seen:
     """code: exit code; first_s: when something was on the screen; silent_s: the longest time from then on in which
-    nothing new was there; text: all that was."""
+    nothing new was there; text: all that was; silent_after: what was on the screen for the longest."""
 
     code: int
     first_s: float
     silent_s: float
     text: str
+    silent_after: str = ""
 
 
 def seen(arguments: Sequence[str], before: str = "", environment: Mapping[str, str] | None = None) -> Seen:
@@ -38,20 +39,23 @@ def seen(arguments: Sequence[str], before: str = "", environment: Mapping[str, s
     )
     os.close(end)
     began = time.monotonic()
-    last, silent, first, shown, text = began, 0.0, None, b"", b""
+    last, silent, first, shown, text, longest = began, 0.0, None, b"", b"", b""
     while chunk := _next(screen):
         new = CODES.sub(b"", chunk)
         if new.strip() and new != shown:  # what is drawn again as it was tells nothing
             now = time.monotonic()
             if first is None:
                 first = last = now
-            silent, last, shown = max(silent, now - last), now, new
+            if now - last > silent:
+                silent, longest = now - last, shown
+            last, shown = now, new
         text += chunk
     code = process.wait()
     os.close(screen)
-    silent = max(silent, time.monotonic() - last)
+    if time.monotonic() - last > silent:
+        silent, longest = time.monotonic() - last, shown
     all_text = CODES.sub(b"\n", text).decode("utf-8", "replace")
-    return Seen(code, (last if first is None else first) - began, silent, all_text)
+    return Seen(code, (last if first is None else first) - began, silent, all_text, longest.decode("utf-8", "replace"))
 
 
 def _next(screen: int) -> bytes:
