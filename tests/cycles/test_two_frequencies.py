@@ -413,7 +413,7 @@ def test_a_run_started_beside_an_unstable_motion_leaves_it_to_either_side(
     behind, large = behind_the_fold(turned), follower.torus(start.orders, start.place.y)
     machine = follower.course.machine(behind.omega)
     size, size_of_large = (np.abs(harmonic(torus, 1, 0)).max() for torus in (behind, large))
-    on_it = samples(behind.orders, behind.motion, (32, 16))[0, 0]
+    on_it = samples(behind.orders, behind.motion, (128, 16))[0, 0]
     np.testing.assert_allclose(state_space(machine).read @ state_of(machine, behind, 1.0), on_it, atol=1e-6)
     more, less = (whirl_in_time(machine, behind, share) for share in (1.03, 0.97))
     assert more > 0.5 * (size + size_of_large)
