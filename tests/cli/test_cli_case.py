@@ -46,6 +46,7 @@ def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFi
     shown = capsys.readouterr().out
     assert f"frb {name}" in shown
     assert "--json" in shown
+    assert max(map(len, shown.splitlines())) <= 80
 
 
 @pytest.mark.usefixtures("_planned")

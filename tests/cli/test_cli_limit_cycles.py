@@ -78,6 +78,14 @@ def test_the_command_goes_over_a_number_of_the_case(capsys: pytest.CaptureFixtur
     assert run([*words, "--from", "48 um", "--to", "60 um", "--and", "oil.viscosity"]) == 2
 
 
+def test_a_map_without_a_point_says_so(capsys: pytest.CaptureFixture[str]) -> None:
+    """Below its threshold of 178 Hz the rotor whirls at no clearance near its own."""
+    words = ["limit-cycles", "jeffcott", "--set", "film.theory=short", "--speed", "120 Hz", "--no-picture"]
+    words += ["--over", "bearing.clearance", "--from", "34 um", "--to", "36 um", "--points", "2"]
+    assert run([*words, "--and", "oil.viscosity", "--and-from", "12 mPa*s", "--and-to", "13 mPa*s"]) == 0
+    assert "no whirl begins or ends between these values" in " ".join(capsys.readouterr().out.split())
+
+
 def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     """Of the Jeffcott rotor, whose whirl locks in; refused over another number, without unbalance, and with oil."""
     monkeypatch.chdir(tmp_path)

@@ -12,7 +12,11 @@ from scipy.linalg import expm
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
+from frbcli.film.kinds.cells import CellFilms
+from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
@@ -51,6 +55,19 @@ class Result:
     v: Array
     status: int
     numbers: Array
+
+
+def flat_films(case: Case, system: System) -> CellFilms:
+    """The films of a system that follow tilts as ones that do not know of any, on the same cells."""
+    films = system.films
+    assert isinstance(films, TiltedFilms)
+    lands = [film.lands[0].film for film in films.own]
+    own = tuple(
+        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
+        for film, land in zip(films.own, lands, strict=True)
+    )
+    data = volume_films(own, films.centrifugal, films.settled)
+    return CellFilms(films.clearances, own, data, films.cells, "none", 2, case.oil_viscosity)
 
 
 def without_films(rotor: LinearRotor) -> System:

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, march, rigid_shaft
+from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_shaft
 
 import frbcli
 from frbcli.case.schema import Case
@@ -16,10 +16,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import ring_torques
 from frbcli.equilibrium.static_films import static_films
 from frbcli.errors import InputError
-from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.tilted.force import tilted_force
-from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import Link, assembled
@@ -69,16 +66,8 @@ def system_of(case: Case) -> System:
 
 def in_plane(case: Case, system: System) -> System:
     """The same machine and the same cells, rings that move in their plane, and films that do not know of a tilt."""
-    films = system.films
-    assert isinstance(films, TiltedFilms)
-    lands = [film.lands[0].film for film in films.own]
-    own = tuple(
-        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
-        for film, land in zip(films.own, lands, strict=True)
-    )
-    data = volume_films(own, films.centrifugal, films.settled)
-    flat = CellFilms(films.clearances, own, data, films.cells, "none", 2, case.oil_viscosity)
-    return replace(system, films=flat, rotor=make_rotor(case.with_settings({"film.tilt": "none"}), PLANE))
+    rotor = make_rotor(case.with_settings({"film.tilt": "none"}), PLANE)
+    return replace(system, films=flat_films(case, system), rotor=rotor)
 
 
 # -------------------------------------------------------------------------------------------------------------- body

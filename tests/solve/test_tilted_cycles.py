@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import rigid_shaft
+from marches import flat_films, rigid_shaft
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -16,10 +16,6 @@ from frbcli.case.schema import Case
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Rest, Shooting
-from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.kinds.cells import CellFilms
-from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.body import PLANE
 from frbcli.scene.forms.tilted import TiltedForm
@@ -80,21 +76,12 @@ def test_small_motions_at_rest_grow_as_in_the_linearised_machine(case: Case, spe
 
 def in_plane(case: Case, flow: PeriodMap) -> PeriodMap:
     """The same machine and the same cells, and films that do not know of a tilt."""
-    films = flow.system.films
-    assert isinstance(films, TiltedFilms)
-    lands = [film.lands[0].film for film in films.own]
-    own = tuple(
-        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
-        for film, land in zip(films.own, lands, strict=True)
-    )
-    flat = CellFilms(
-        films.clearances, own, volume_films(own, (), films.settled), films.cells, "none", 2, case.oil_viscosity
-    )
+    flat = flat_films(case, flow.system)
     rotor = make_rotor(case, PLANE)
     system = replace(flow.system, films=flat, rotor=rotor)
     return replace(
         flow, system=system, films=flat.loop, journals=rotor.journals, standing=np.zeros((2, 2)),
-        clearances=np.array(films.clearances),
+        clearances=np.array(flat.clearances),
     )  # fmt: skip
 
 

@@ -8,17 +8,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import SPEED, WIDTH, rigid_shaft
+from marches import SPEED, WIDTH, flat_films, rigid_shaft
 
 import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
-from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.kinds.cells import CellFilms
-from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
@@ -72,17 +68,7 @@ def run(
 
 def in_plane(case: Case, system: System) -> System:
     """The same machine and the same cells, and films that do not know of a tilt."""
-    films = system.films
-    assert isinstance(films, TiltedFilms)
-    lands = [film.lands[0].film for film in films.own]
-    own = tuple(
-        VolumeFilm(film.section, land.grid, land.law, land.scales.reference)
-        for film, land in zip(films.own, lands, strict=True)
-    )
-    flat = CellFilms(
-        films.clearances, own, volume_films(own, (), films.settled), films.cells, "none", 2, case.oil_viscosity
-    )
-    return replace(system, films=flat, rotor=make_rotor(case, PLANE))
+    return replace(system, films=flat_films(case, system), rotor=make_rotor(case, PLANE))
 
 
 @pytest.mark.parametrize("supply", ["none", "groove"])

@@ -156,7 +156,10 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
         for point in found.special
     ]  # fmt: skip
     columns = (found.key, "point", found.over_unit or found.over, "whirl Hz", "")
-    terminal.table(found.case.heading, columns, rows)
+    if rows:
+        terminal.table(found.case.heading, columns, rows)
+    else:
+        terminal.sentence(f"{found.case.heading}: no whirl begins or ends between these values.")
     for curve in found.curves:
         values = [point.value for point in curve.points]
         told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."

@@ -44,7 +44,8 @@ class Times:
 
 @click.command()
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
-@click.option("--what", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True, help="Subject.")
+@click.option("--what", metavar="SUBJECT", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True,
+              help=f"One of {', '.join(SUBJECTS)}.")
 @click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin of what is drawn, e.g. "6.4 s".')
 @click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End of what is drawn.")
 @over_option("time")

@@ -161,8 +161,8 @@ def stability_map(
     across : Across, optional
         Another number, in place of the speed.
     with_unbalance : bool
-        Whether curves of torus and flip points are followed as well, of the limit cycles and of the synchronous
-        response to the unbalance; over the speed alone.
+        Whether curves of torus and flip points are followed as well: of the limit cycles and, over the speed, of the
+        synchronous response to the unbalance.
 
     Returns
     -------
@@ -188,13 +188,6 @@ def stability_map(
         rows.append(_row(plane, float(share), begun, with_unbalance))
         if observe is not None:
             observe(number + 1, count)
-    curves: list[MapCurve] = []
-    for hopf in begun.hopf:
-        curves += _new_curve(plane, curves, HOPF, hopf)
-    for fold in begun.folds:
-        curves += _new_curve(plane, curves, FOLD, fold)
-    for start in begun.crossings:
-        curves += _new_crossing(plane, curves, start)
     return StabilityMap(
         case=case,
         over=plane.over,
@@ -202,7 +195,7 @@ def stability_map(
         key=key,
         unit=plane.second.unit,
         films=plane.machine(plane.corners[1]).names,
-        curves=tuple(curves),
+        curves=_curves(plane, begun),
         rows=tuple(rows),
         growth=_growth(plane),
     )
@@ -260,6 +253,18 @@ def _row(plane: MapPlane, share: float, begun: _Begun, with_unbalance: bool) -> 
             special.append(replace(cycle_special(walk, cycle, 0), branch=None))
     begun.crossings.extend(starts_of(() if response is None else response.cycles, share, synchronous=True))
     return MapRow(value, tuple(special))
+
+
+def _curves(plane: MapPlane, begun: _Begun) -> tuple[MapCurve, ...]:
+    """The curves through the points, each once."""
+    curves: list[MapCurve] = []
+    for hopf in begun.hopf:
+        curves += _new_curve(plane, curves, HOPF, hopf)
+    for fold in begun.folds:
+        curves += _new_curve(plane, curves, FOLD, fold)
+    for start in begun.crossings:
+        curves += _new_crossing(plane, curves, start)
+    return tuple(curves)
 
 
 def _unwatched(_: Cycle) -> None:
