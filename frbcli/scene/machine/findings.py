@@ -35,7 +35,7 @@ class FilmLoad:
 FILM_LOADS = (
     Column("film", "", "name of the film", shown=(Shown("film"),)),
     Column("load", "N", "static load", shown=(Shown("N", ".4g"),)),
-    Column("mean_pressure", "Pa", "load over width and diameter", shown=(Shown("N/(D B), bar", ".3g", "bar"),)),
+    Column("mean_pressure", "Pa", "load over width and diameter", shown=(Shown("N/(DB), bar", ".3g", "bar"),)),
     Column("sommerfeld_number", "", "Sommerfeld number (3.14) at the top speed", shown=(Shown("So", ".3g"),)),
     Column("supply", "", "oil supply", shown=(Shown("supply"),), key=""),
 )
