@@ -528,6 +528,14 @@ def test_the_fall_of_the_start_is_no_whirl_that_grows_out_of_it() -> None:
     assert 0.7 < onset.t_s == pytest.approx(of_rest.t_s, abs=1e-3)
 
 
+def test_a_whirl_of_the_start_that_grows_begins_there_although_it_fades_and_returns() -> None:
+    """Behind its end a faint motion goes on, out of which it grows once more."""
+    faint, again = RingWhirl("inner", -9.0, 9.0, 1e3, 0.017), RingWhirl("inner", 2.0, 9.0, 1e3)
+    onset, *_ = find_events(ring_run(faint, again, RingWhirl("inner", 0.15, 1.2, 1e3, 0.5)))
+    assert onset.kind == "onset"
+    assert onset.t_s < 0.3
+
+
 def test_rings_without_whirl_have_no_events() -> None:
     assert kinds(find_events(ring_run())) == []
     assert kinds(find_events(ring_run(noise=0.05))) == []

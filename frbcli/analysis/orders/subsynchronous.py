@@ -212,11 +212,13 @@ def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
 
 def _begins(amplitude: Values, settled: int) -> int:
     """The window in which a ridge of an amplitude (windows,) becomes a whirl; settled: that in which the run has
-    settled. The fall of the start is a ridge, too, and may fade into that of a whirl which grows later."""
+    settled. The fall of the start is a ridge, too, and may fade into that of a whirl which grows later; a whirl that
+    begins with the run grows beyond what the start has left."""
     whirls, fades = amplitude >= BEGINS, (amplitude > 0.0) & (amplitude < BEGINS)
     first = int(np.argmax(whirls))
     faded = first + int(np.argmax(fades[first:]))  # itself: it never does
-    return faded + int(np.argmax(whirls[faded:])) if first <= settled and whirls[faded:].any() else first
+    falls = first <= settled and amplitude[settled:faded].max(initial=0.0) <= amplitude[first : settled + 1].max()
+    return faded + int(np.argmax(whirls[faded:])) if falls and whirls[faded:].any() else first
 
 
 def _side(frequency: Values, ring: Values) -> Side:
