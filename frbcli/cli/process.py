@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 AGAIN_s, WITHIN_s = 0.01, 10.0
-YOUNG = 50_000  # objects between two searches for garbage: what imports make stays, and searches find nothing
+YOUNG = 300_000  # objects between two searches for garbage: what imports make stays, and searches find nothing
 IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 
 
