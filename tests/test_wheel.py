@@ -68,6 +68,7 @@ def has(target: str) -> bool:
 
 
 @pytest.mark.skipif(not has(TARGET), reason=f"this processor is no {TARGET}")
+@pytest.mark.nightly  # compiles two time loops of its own; what a change may break of it is in test_warm_up
 def test_an_installed_wheel_with_kernels_compiles_nothing_but_what_it_lacks(tmp_path: Path) -> None:
     """In another place, with other times of its files, and where kernels are kept apart from the package."""
     pure_wheel(tmp_path / PURE)

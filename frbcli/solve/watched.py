@@ -96,10 +96,11 @@ def _advance_watched(
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
     noted, status, written, now = notes.now, RUNNING, 0, np.empty_like(notes.now)
+    each = min(budget, 1)  # step: a literal would have a loop compiled for it beside that of runs that are not watched
     for _ in range(budget):
         t, first = numbers[TIME], numbers[OUTPUTS] - written
         left = LoopOutput(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])
-        status, rows = _advance(rotor, films, tableau, control, state, space, 1, left, heat)
+        status, rows = _advance(rotor, films, tableau, control, state, space, each, left, heat)
         step = numbers[TIME] - t
         if step > 0.0:
             _note(rotor, films, space.work, q, a, flows, notes.far_open, now)

@@ -46,7 +46,7 @@ class HeatArrays(NamedTuple):
 def arrays_of(model: HeatModel, viscosity: Array, drag: Array, formula: Array, by_formula: bool) -> HeatArrays:
     """The model as the kernels take it. viscosity (F,) Pa s, drag (F,) N m s: of the films as they were made; formula
     (F,): Q eta / C^3 of a concentric film, the side flow where by_formula."""
-    links = np.vstack([model.links.T, model.conductance, model.of_film]).astype(np.float64)
+    links = np.vstack([model.links.T, model.conductance, model.of_film]).astype(np.float64, order="C")
     made = (model.reference, viscosity, drag, formula)
     films = np.vstack([model.supply, model.inlet, model.clearance, *made]).astype(np.float64)
     oil = (model.oil_heat[AT_ZERO], model.oil_heat[SLOPE])

@@ -14,6 +14,9 @@ from frbcli.cycles.method.threshold import threshold_kind
 from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.plot.spectra.run_track import run_tracks
 
+SHORT = ("--set", "film.theory=short")
+AROUND = ("--set", "speed.from=165 Hz", "--set", "speed.to=185 Hz")  # Hopf point and fold of the Jeffcott rotor
+
 
 def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[str]) -> None:
     words = [
@@ -44,6 +47,7 @@ def test_what_has_no_limit_cycles_is_told(settings: list[str], told: str) -> Non
         frbcli.limit_cycles(frbcli.load_case("jeffcott", settings))
 
 
+@pytest.mark.nightly  # three diagrams, 14 s
 def test_a_diagram_over_a_number_of_the_case_meets_that_over_the_speed() -> None:
     """Rigid rotor at w = 2.72: Hopf point and fold over the viscosity lie where the diagrams over the speed of these
     viscosities have theirs."""
@@ -114,15 +118,16 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
 
 
 def test_speeds_without_a_cycle_are_told() -> None:
-    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm"])
-    assert frbcli.limit_cycles(case, [100.0, 200.0]).notes == ("No limit cycle at 100 Hz.",)
+    near = ["speed.from=150 Hz", "speed.to=185 Hz"]
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm", *near])
+    assert frbcli.limit_cycles(case, [155.0, 182.0]).notes == ("No limit cycle at 155 Hz.",)
     with pytest.raises(frbcli.InputError, match="outside of the range"):
         frbcli.limit_cycles(case, [400.0])
 
 
 def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
-    assert run(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--json", "--csv", "table.csv"]) == 0
+    assert run(["limit-cycles", "jeffcott", *SHORT, *AROUND, "--json", "--csv", "table.csv"]) == 0
     document = json.loads(capsys.readouterr().out)
     assert set(document["equilibria"][0]) >= {"speed_Hz", "displacement", "stable"}
     (branch,) = document["branches"]
@@ -163,9 +168,10 @@ def test_onset_and_offset_are_explained() -> None:
     assert "3.0 Hz away" in offset
 
 
+@pytest.mark.nightly  # 14 s; the option alone: tests/helpers/output_options.py
 def test_runs_are_drawn_over_the_diagram(tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
     monkeypatch.chdir(tmp_path)
-    short = ["--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
+    short = [*SHORT, *AROUND, "--set", "speed.duration=0.3 s"]
     assert run(["rundown", "jeffcott", *short, "--no-picture", "-o", "down.h5", "--explain", "--quiet"]) == 0
     up, down = run_tracks(frbcli.read_run("down.h5"), "down")
     assert up.rising

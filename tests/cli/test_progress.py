@@ -94,9 +94,11 @@ def test_rungs_are_counted() -> None:
 
 @pytest.mark.parametrize("words", [
     ["check", "turbocharger-car"], ["check", "jeffcott-two-phase"], ["check", "floating-ring", "--all"],
-    ["check", "axial-groove"], ["cases"], ["cases", "--hard"], ["stability", "turbocharger-heavy", "--speed", "500 Hz"],
+    ["check", "axial-groove"], ["cases"], ["cases", "--hard"],
+    pytest.param(["stability", "turbocharger-heavy", "--speed", "500 Hz"], marks=pytest.mark.nightly),
     ["rotation", "bearing-axial-groove", "--cavitation", "half-sommerfeld,two-phase", "--set", "accuracy.mesh=[8, 32]"],
-    ["limit-cycles", "jeffcott", "--set", "film.theory=short", "--set", "speed.from=140 Hz"],
+    pytest.param(["limit-cycles", "jeffcott", "--set", "film.theory=short", "--set", "speed.from=140 Hz"],
+                 marks=pytest.mark.nightly),
 ])  # fmt: skip
 def test_tables_break_no_words(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     """On 80 columns: every word of a cell stands in one piece, as on a very wide table."""

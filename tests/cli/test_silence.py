@@ -39,7 +39,13 @@ COMMANDS = {
 }  # fmt: skip
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+EVERY_CHANGE = ("stability", "compare", "report")  # one of each kind: the same clock watches all commands
+
+
+@pytest.mark.parametrize(
+    "command",
+    [pytest.param(name, marks=() if name in EVERY_CHANGE else pytest.mark.nightly) for name in COMMANDS],
+)
 def test_slow_work_is_not_silent(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     module, name, words = COMMANDS[command]
@@ -58,6 +64,7 @@ def test_the_screen_tells_silence() -> None:
     assert seen(["stability", *words], f"{before}slow({module!r}, {name!r})").silent_s > SLOW_s - 0.5
 
 
+@pytest.mark.nightly  # compiles a time loop of its own, up to twice
 def test_compiling_is_not_silent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """With an empty cache, and the machine that has the fewest kernels. A machine that is shared may stand still for
     seconds: the better of two starts counts, for what the program does not tell it does not tell in both."""

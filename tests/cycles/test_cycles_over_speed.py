@@ -81,6 +81,7 @@ def test_coefficients_that_do_not_change_are_constant_ones() -> None:
     assert asked(one, 184.0).multipliers[1:3] == pytest.approx(asked(other, 184.0).multipliers[1:3], rel=1e-6)
 
 
+@pytest.mark.nightly  # 36 s; without unbalance: the next test
 def test_whirls_with_unbalance_have_the_coefficients_of_their_speed() -> None:
     given = (tables((160.0, LOW), (200.0, HIGH)), 191.5), (constant(*at(194.0)), 193.0)
     settings = "rotor.unbalance=0.05 g*mm", "speed.to=194.5 Hz"

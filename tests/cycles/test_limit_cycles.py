@@ -212,7 +212,7 @@ def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -
     assert cycle.eccentricity_max[0] == pytest.approx(top, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["jeffcott", "ring", "turbocharger"])
+@pytest.mark.parametrize("name", ["jeffcott", "ring", pytest.param("turbocharger", marks=pytest.mark.nightly)])
 def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) -> None:
     """The growing motion at rest, 1 % above the lowest Hopf point, five periods in the time loop: asked is 1 %."""
     case = {

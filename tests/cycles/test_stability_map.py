@@ -28,6 +28,7 @@ from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
 
+@pytest.mark.nightly  # its rows are diagrams, see the next test
 def test_a_map_tells_where_the_criticality_changes(capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Of the rigid rotor: hard at a large viscosity, soft at a small one; each row is that of the case itself."""
     (tmp_path / "rigid.toml").write_text(rigid(1.313, 2.4, 2.9).source_text)
@@ -75,6 +76,7 @@ def test_curves_of_a_map_are_those_of_the_diagrams() -> None:
     assert float(line(4.538)) == pytest.approx(other.speed_Hz / UNIT_Hz, abs=1e-4)
 
 
+@pytest.mark.nightly  # five more diagrams
 def test_folds_end_where_the_criticality_changes_and_turn_back_in_a_cusp() -> None:
     """Soft below, hard above Gamma = 3.167, where the curve of folds begins; and one fold vanishes with another in a
     cusp at Gamma = 1.06."""

@@ -326,6 +326,7 @@ def test_a_large_unbalance_is_reached_by_raising_it(tmp_path: Path) -> None:
     assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=2e-5)
 
 
+@pytest.mark.nightly  # 15 s; a branch with its fold: the tests of followers below
 def test_a_branch_with_unbalance(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of a floating ring: next to its cycles, with the lines of whirl and unbalance first. It is followed on from there
     towards 3 nu = 2 Omega, where it needs ever more lines; here only few are allowed."""

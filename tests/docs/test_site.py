@@ -28,6 +28,7 @@ def test_the_case_of_the_tutorial_is_whole_from_its_bearings_on() -> None:
     assert frbcli.make_plan(case).cells is not None
 
 
+@pytest.mark.nightly  # the commands of the tutorial in a kernel of its own
 def test_the_notebook_of_the_tutorial_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Cell by cell, in an empty folder; what a cell ends with has something to show. It holds the case of the page and
     the outputs of such a run, pictures among them."""

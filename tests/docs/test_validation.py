@@ -92,6 +92,7 @@ def test_eccentricity_after_a_second(tmp_path: Path, row: str, case: str, settin
     assert agrees(row, measures.eccentricity_at_1s(tmp_path, case, (chapter6_rows.PENALTY, *settings)))
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_half_sommerfeld_rests_a_little_further_out_than_the_penalty_model(tmp_path: Path) -> None:
     half, penalty = (
         measures.eccentricity_at_1s(tmp_path, "jeffcott", (f"film.cavitation={model}",))

@@ -111,6 +111,7 @@ def warm_case(*more: str) -> Case:
     return frbcli.load_case("jeffcott", [*WARM, *more])
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_heat_of_films_and_of_pads_stand_beside_each_other(tmp_path: Path) -> None:
     """The collar is warm as at rest under its load; the films of the journals are as without it, bit for bit."""
     pads = tomllib.loads(PADS)["thrust_bearing"]

@@ -276,7 +276,10 @@ mass = "40 g"
 {OUTER}"""
 
 
-@pytest.mark.parametrize("settings", [(), ("film.theory=finite",)], ids=["short", "finite"])
+@pytest.mark.parametrize(
+    "settings",
+    [pytest.param((), id="short"), pytest.param(("film.theory=finite",), id="finite", marks=pytest.mark.nightly)],
+)
 def test_a_semi_floating_ring_is_a_shell_in_a_damper_without_a_spring(
     settings: tuple[str, ...], tmp_path: Path
 ) -> None:

@@ -96,7 +96,7 @@ CASES = {
     ),
 }  # fmt: skip
 TABULATED = [*films.KINDS, "axial grooves", "penalty"]
-ALL = [*TABULATED, "penalty, cells", "two-phase, cells", "published"]
+ALL = [*TABULATED, "penalty, cells", "two-phase, cells", pytest.param("published", marks=pytest.mark.nightly)]
 # Films without a pressure of their own, which no work can be taken from where nothing turns.
 PASSIVE = [*films.EQUAL_PRESSURES, "penalty", "penalty, cells"]
 

@@ -76,7 +76,7 @@ def test_threshold_is_that_of_an_independent_program(name: str, speed_Hz: float)
     [
         ("jeffcott", "half-sommerfeld", "[18, 288]", 0.1),
         ("axial-groove", "half-sommerfeld", "[12, 192]", 0.5),
-        ("jeffcott", "reynolds", "", 0.5),
+        pytest.param("jeffcott", "reynolds", "", 0.5, marks=pytest.mark.nightly),
     ],
 )
 def test_the_stated_error_of_a_threshold_holds(

@@ -18,7 +18,7 @@ def said(film: Found) -> bool:
     return film.true <= film.target or film.true <= film.stated
 
 
-@pytest.mark.parametrize("seed", [7, 26, 77, 184])
+@pytest.mark.parametrize("seed", [26, *(pytest.param(seed, marks=pytest.mark.nightly) for seed in (7, 77, 184))])
 def test_an_unseen_film_holds_its_targets(seed: int, tmp_path: Path) -> None:
     """Feed holes; an eccentricity of 0.97, with 1.35 times the target on cells that do not follow it; grooves in narrow
     bearings with oil-keeping laws, whose films had 1.1 to 2.5 times their targets."""
@@ -37,6 +37,7 @@ def test_a_film_that_misses_its_target_states_it(seed: int, tmp_path: Path) -> N
         assert film.true <= film.stated <= 6.0 * film.true
 
 
+@pytest.mark.nightly  # 8 s, one machine by chance
 def test_steps_are_short_where_their_errors_grow_and_the_target_is_not_called_certain(tmp_path: Path) -> None:
     """A two-phase film under a mean pressure of 58 bar: its eccentricities had 5.5 times their targets, which `frb
     check` called held."""

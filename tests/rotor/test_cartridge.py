@@ -149,6 +149,7 @@ def motion_without(rotor: LinearRotor, state: Array, times: Array) -> Array:
 # ---------------------------------------------------------------------------------------------------------- in films
 
 
+@pytest.mark.nightly  # time loops of four tabulated films, which no other file has
 def test_a_cartridge_whose_halves_are_not_connected_is_two_rings(tmp_path: Path) -> None:
     """Kept from turning, so that both rings turn alike: m L^2 / 4 is the inertia of two masses."""
     def body(tilt: float) -> str:
@@ -180,6 +181,7 @@ def test_both_ends_turn_one_ring() -> None:
     assert left / right == pytest.approx(1.5)
 
 
+@pytest.mark.nightly  # time loops of four tabulated films, which no other file has
 def test_a_concentric_cartridge_spins_up_as_its_torques_say(tmp_path: Path) -> None:
     """I omega_F' = sum of k_i (omega_R - omega_F) - sum of k_o omega_F, k = 2 pi eta R^3 B / C."""
     case = cartridge("rotor.gravity=0", "bearing.ring.inertia=0.07 kg*mm^2")
@@ -203,6 +205,7 @@ def test_both_ends_are_as_warm_as_two_rings() -> None:
     assert one.rings[0].inner > 343.15 + 1.0
 
 
+@pytest.mark.nightly  # time loops of four tabulated films, which no other file has
 def test_small_motions_decay_and_grow_as_the_eigenvalues_say() -> None:
     """Each motion of the linearised machine that the gyroscopic moments of the ring change, beside a run from it."""
     case = cartridge("rotor.gravity=0", ring=RING.replace('inertia = "0.7', 'inertia = "4.5'))
@@ -237,6 +240,7 @@ def from_mode(system: System, q: Array, v: Array, value: complex, shape: Array) 
     return run.q[:, :-1] - q[:-1], run.times
 
 
+@pytest.mark.nightly  # time loops of four tabulated films, which no other file has
 def test_a_stiff_pin_keeps_the_ring_from_turning() -> None:
     """A ring that a pin makes harder and harder to turn, and one that is blocked: they differ by 1 / inertia."""
     free, blocked = system_of(cartridge()), system_of(cartridge(ring=RING[:-1] + ', spin = "blocked"}'))

@@ -223,6 +223,7 @@ CONTROL = Control(1e-6, 24.0, 1e-3, 1e-4, 0.9999, 0.0)
 
 
 @pytest.mark.parametrize(("supply", "tolerance", "duration"), [(GROOVE, 1e-6, 3e-3), (BORES, 1e-9, 3e-4)])
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_rings_in_translation_run_as_without_tilt(supply: str, tolerance: float, duration: float) -> None:
     """Weight in the middle of a rigid symmetric rotor: nothing tilts, also where feed holes turn with the rings. With
     these, Newton's method leaves a difference that falls with the tolerance."""
@@ -250,6 +251,7 @@ def test_rings_in_translation_run_as_without_tilt(supply: str, tolerance: float,
     assert steps == same
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_small_tilts_grow_and_decay_as_the_eigenvalues_say() -> None:
     """The motion that the gyroscopic moments of the rings change the most, beside a run that begins in it."""
     ring = '{mass = "5 g", inertia = "2 kg*mm^2", tilt_inertia = "1 kg*mm^2"}'
@@ -281,6 +283,7 @@ def test_small_tilts_grow_and_decay_as_the_eigenvalues_say() -> None:
     assert np.abs(without - expected).max() > 0.05 * np.abs(expected).max()
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_a_run_that_begins_at_rest_stays_there_and_tells_its_tilts() -> None:
     case = ringed("disk.0.position=16 mm", inner=INNER.replace(BORES, GROOVE))  # no hole turns
     system = system_of(case)
@@ -295,6 +298,7 @@ def test_a_run_that_begins_at_rest_stays_there_and_tells_its_tilts() -> None:
     assert signals["tilt_left_inner_x_rad"] == pytest.approx(rest.journals[0, 2], rel=2e-2)
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_a_ring_follows_a_shell_that_is_not_in_line() -> None:
     """Both shells tilt against each other around a rotor without weight: by symmetry the shaft stays in line, and each
     ring stands between it and the shell so that the moments of its films balance. A run that begins there stays."""

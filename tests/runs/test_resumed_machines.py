@@ -42,7 +42,13 @@ def assert_same(run: Run, other: Run) -> None:
     assert (run.status, run.t_end_s, run.events, run.error) == (other.status, other.t_end_s, other.events, other.error)
 
 
-@pytest.mark.parametrize("settings", MACHINES.values(), ids=MACHINES)
+@pytest.mark.parametrize(
+    "settings",
+    [
+        pytest.param(settings, id=name, marks=[pytest.mark.nightly] * (name in ("collar and heat", "tilt and oil")))
+        for name, settings in MACHINES.items()
+    ],
+)
 def test_a_resumed_run_is_bit_equal(
     settings: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

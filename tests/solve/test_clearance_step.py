@@ -122,7 +122,11 @@ def test_a_shell_that_closes_upon_the_journal_is_contact(model: str, tmp_path: P
     ("name", "settings"),
     [
         ("jeffcott", [step_to("45 um", "0.03 s")]),
-        ("jeffcott", ["film.coupling=co-simulation", "film.cavitation=two-phase", *CELLS, step_to("45 um", "0.03 s")]),
+        pytest.param(
+            "jeffcott",
+            ["film.coupling=co-simulation", "film.cavitation=two-phase", *CELLS, step_to("45 um", "0.03 s")],
+            marks=pytest.mark.nightly,  # compiles a time loop that no other test has
+        ),
         ("floating-ring", ["accuracy.mesh=[3,32]", step_to("60 um", "0.03 s", "bearing.outer")]),
     ],
     ids=["table", "co-simulation", "rings"],
@@ -147,6 +151,7 @@ def test_a_run_that_was_put_down_goes_on_with_the_same_clearance(name: str, sett
             np.testing.assert_array_equal(joined, values, err_msg=signal)
 
 
+@pytest.mark.nightly  # co-simulation beside the coupled loop: test_cosimulation
 def test_coupled_in_turn_is_coupled_at_once(tmp_path: Path) -> None:
     """The journal jumps in the wider gap of a co-simulation as it does when rotor and film are solved together."""
     settings = ["speed.duration=0.1s", "speed.from=20 Hz", "speed.to=21Hz", step_to("45 um", "0.05 s")]

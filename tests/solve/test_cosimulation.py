@@ -73,6 +73,7 @@ def test_a_rigid_rotor_approaches_the_monolithic_one_with_third_order() -> None:
     assert errors[-1] < 1e-7
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_forces_act_between_the_exchanges_of_a_co_simulation() -> None:
     """A force of order 2 moves the journal as far as it does where rotor and film are solved together."""
     push = 'force=[{at="journal", force=["40 N", "0 N"], order=2}]'

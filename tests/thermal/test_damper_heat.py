@@ -49,6 +49,7 @@ def test_a_damper_that_no_heat_passes_changes_no_film() -> None:
     assert damper.temperature == pytest.approx(film.temperature, abs=1e-6)
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_squeezing_heats_a_damper_by_the_closed_form(tmp_path: Path) -> None:
     """Power of a short film without rotation: pi eta R (B/C)^3 (r'^2 (1 + 2 eps^2)/(1 - eps^2)^2.5 + (r phi')^2/(1 -
     eps^2)^1.5), the integral of its pressure over the rate of the gap."""

@@ -40,6 +40,7 @@ def test_a_film_that_keeps_its_oil_warms_up_as_in_the_run_in_one(tmp_path: Path)
     assert apart.error["heat_balance_relative"] < 1e-9
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_rings_turn_as_their_warm_films_have_them(tmp_path: Path) -> None:
     together, apart = both(tmp_path, ring_case(*QUICK))
     nodes = "inner", "outer", "ring_inner", "ring_outer"

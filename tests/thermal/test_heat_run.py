@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from numba import typeof
 from test_heat import RING, ring_case, single
 
 from frbcli.case.reading.load import load_case
@@ -84,6 +85,16 @@ def test_kernels_of_the_balance_are_their_plain_forms() -> None:
     assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
     assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
     assert [viscosity_at(numbers, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
+
+
+def test_any_number_of_links_has_one_type() -> None:
+    """For another order of the array of the links the time loop would be compiled once more."""
+    walls = (), (HOUSING,), (HOUSING, "thermal.shaft=50 degC")
+    models = [heat_of(single(*given)).model for given in walls]
+    ones = [[np.ones(len(model.reference))] * 3 for model in models]
+    types = {str(typeof(arrays_of(model, *one, by_formula=False))) for model, one in zip(models, ones, strict=True)}
+    assert len({len(model.links) for model in models}) == 3
+    assert len(types) == 1
 
 
 def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
@@ -219,8 +230,12 @@ SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-fl
 
 @pytest.mark.parametrize(
     "settings",
-    [[], ["film.cavitation=penalty"], ["film.cavitation=two-phase"]],
-    ids=["tabulated", "cells", "mass-conserving"],
+    [
+        pytest.param([], id="tabulated"),
+        # a time loop of films on cells, heat and signals
+        pytest.param(["film.cavitation=penalty"], id="cells", marks=pytest.mark.nightly),
+        pytest.param(["film.cavitation=two-phase"], id="mass-conserving", marks=pytest.mark.nightly),
+    ],
 )
 def test_chosen_signals_are_those_of_the_warm_films(settings: list[str], tmp_path: Path) -> None:
     """At rest: the weight on the film, power as torque times speed, flow and gap as the heat of the run has them."""

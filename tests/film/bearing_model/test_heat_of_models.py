@@ -104,6 +104,7 @@ def test_a_copy_of_the_film_of_the_program_is_as_warm() -> None:
     assert sheets[1].temperature == pytest.approx(sheets[0].temperature, rel=1e-9)
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_a_run_warms_up_as_with_the_film_of_the_program(tmp_path: Path) -> None:
     one, other = (frbcli.runup(warm(name), tmp_path / f"{name}.h5") for name in ("short", "copy"))
     assert one.status == other.status == "finished"
@@ -121,6 +122,7 @@ def sprung(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def] 
     return -1e6 * d_x - c * v_x, -1e6 * d_y - c * v_y
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_a_force_that_the_viscosity_does_not_scale_stays(tmp_path: Path) -> None:
     """A journal that rests on a spring does not move when the oil becomes thin."""
     frbcli.add_bearing(BearingModel("sprung", "on springs", sprung))
@@ -171,6 +173,7 @@ def test_a_model_that_tells_no_flow_is_told_which_function_it_needs() -> None:
     assert any("multiples of each other" in each.problem for each in faults(warm("copy"), SPEED_CYCLES))
 
 
+@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_the_flow_of_the_page_is_that_of_a_damper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Both examples of the page, one behind the other: a damper that is warm."""
     monkeypatch.chdir(tmp_path)

@@ -271,7 +271,7 @@ def moved(path: Path, *settings: str) -> Case:
     return load_case(path, given)
 
 
-@pytest.mark.parametrize("test", [squeeze, whirl])
+@pytest.mark.parametrize("test", [squeeze, pytest.param(whirl, marks=pytest.mark.nightly)])
 def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
     tmp_path: Path, test: Callable[[Case, Sequence[str]], KinematicTest]
 ) -> None:
