@@ -173,8 +173,9 @@ def _result(
     force = (forces_of or run).error["film_force_relative"]
     onset = onset_speed(run) - onset_speed(reference)
     error = RungError(apart.largest, apart.rms, apart.until_s, onset, math.nan if force is None else float(force))
-    plan = make_plan(load_case_text(run.case_text))
-    work = 1e-6 * float(run.cost["film_solves"]) * plan.form.solve_us(plan)
+    case = load_case_text(run.case_text)
+    plan = make_plan(case)
+    work = 1e-6 * float(run.cost["film_solves"]) * plan.form.solve_us(case, plan)
     march = float(run.cost["cpu_s"])
     return RungResult(rung, run.status, cpu_s + march, error, planned, apart.signals, run.error, work)
 

@@ -59,7 +59,7 @@ class Bubbly(Law):
         Key("absorption_time", 1.0, "time constant with which gas is dissolved again", "1 s", unit="s", least=0.0),
     )  # fmt: skip
     carries_gas = True
-    cost = 1.5
+    cost = 2.2
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:

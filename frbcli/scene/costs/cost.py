@@ -67,7 +67,7 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     films = len(film_places(case))
     iterations = solves / max(steps * STAGES[plan.method] * films, 1e-300) if films else 0.0
     asked = solves if films else steps * STAGES[plan.method]  # without films, what a stage costs beside them
-    loop_s = 1e-6 * asked * plan.form.solve_us(plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
+    loop_s = 1e-6 * asked * plan.form.solve_us(case, plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
     return ExpectedCost(round(steps), round(solves), loop_s, before, after, memory_B(case, plan, samples))

@@ -34,7 +34,7 @@ STAGES = {"trbdf2": 2, "esdirk3": 3, "esdirk4": 5}  # implicit ones of a step
 ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step size in the local error
 
 
-RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring
+RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring that keeps no oil
 # Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
 # 1.3 to 3.4.
 ELASTIC = 1.7
@@ -151,7 +151,7 @@ def _pressing_speed(case: Case) -> float:
 def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_turn: Array) -> Array:
     """(n,) of one film. per_turn: steps per revolution."""
     work = plan.form.work
-    if turning_rings(case):
+    if turning_rings(case) and not any(law_named(name).keeps_oil for name in case.cavitations):
         return np.full_like(per_turn, RING_SOLVES)
     turning = any(turns_with_oil(case, place) for place in film_places(case))
     found = plan.form.solves_of_a_stage(plan, per_turn, turning)

@@ -74,7 +74,7 @@ def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Limited]:
     given = case.accuracy
     coarser = altered(case, {"accuracy": altered(given, {"mesh": None})})
     usual = make_plan(coarser)
-    solves = plan.form.solve_us(plan) / usual.form.solve_us(usual)
+    solves = plan.form.solve_us(case, plan) / usual.form.solve_us(coarser, usual)
     tables = (1.0 + before_s(case, plan)) / (1.0 + before_s(coarser, usual))
     yield _Limited(max(solves, tables), "accuracy.mesh", f"{list(given.mesh or ())}", "Take fewer elements.")
     steps = given.steps_per_revolution

@@ -43,10 +43,15 @@ class CellForm(FilmForm):
     turns_cells: ClassVar[bool] = True
     compiling: ClassVar[tuple[float, float]] = COMPILING
 
-    def solve_us(self, plan: Plan) -> float:
+    def solve_us(self, case: Case, plan: Plan) -> float:
         """See FilmForm."""
-        size = cells_time(*cells_of(plan)) / cells_time(*USUAL)
-        return self.us * (law_named(plan.cavitation).cost * (FIXED + (1.0 - FIXED) * size))
+        size = self.cells_solved(case, plan) / cells_time(*USUAL)
+        law = float(np.mean([law_named(name).cost for name in case.cavitations]))
+        return self.us * (law * (FIXED + (1.0 - FIXED) * size))
+
+    def cells_solved(self, case: Case, plan: Plan) -> float:
+        """The cells of a solve as cells_time counts them, mean of all films."""
+        return cells_time(*cells_of(plan))
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
         """See FilmForm."""

@@ -53,4 +53,4 @@ class InclinedForm(TiltedForm):
     )
 
 
-INCLINED = InclinedForm("cells with the tilt of their shells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 40.0)
+INCLINED = InclinedForm("cells with the tilt of their shells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 30.0)

@@ -148,7 +148,7 @@ class PublishedForm(FilmForm):
     follows_supply: ClassVar[bool] = False
     rules: ClassVar[tuple[Rule, ...]] = RULES
 
-    def solve_us(self, plan: Plan) -> float:
+    def solve_us(self, case: Case, plan: Plan) -> float:
         """See FilmForm."""
         around, along = cells_of(plan)
         return self.us * float((around * along / COUNT) ** POWER)

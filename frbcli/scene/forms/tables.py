@@ -56,7 +56,7 @@ class FieldsForm(TableForm):
 
     solved_each_call: ClassVar[bool] = True
 
-    def solve_us(self, plan: Plan) -> float:
+    def solve_us(self, case: Case, plan: Plan) -> float:
         """See FilmForm: beside films that are cheap."""
         return mean_us(plan.films, self, self.us / FIELD_ELEMENTS)
 
@@ -95,7 +95,7 @@ class ChainForm(FilmForm):
     solved_each_call: ClassVar[bool] = True
     why: ClassVar[str] = "no table: the grooves do not turn with the line of centres"
 
-    def solve_us(self, plan: Plan) -> float:
+    def solve_us(self, case: Case, plan: Plan) -> float:
         """See FilmForm."""
         elements = min(plan.mesh.axial, CHAIN_MODES) * plan.mesh.circumferential
         return self.us * (1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS)

@@ -25,6 +25,7 @@ ALONG = (4, 5, 6, 8, 10)
 FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
 COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction
 FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
+FAST_TILTED = (*ALONG, 12, 16)  # of films that follow a tilt
 CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
 MOST_STATES, FEWEST_STATES = 8, 2
 KNEE = 1.5  # error over the least one that can be had, where the target is out of reach: less costs twice as much
@@ -137,9 +138,9 @@ def given_cells(mesh: tuple[int, int], fewest: tuple[int, int]) -> tuple[tuple[i
     return found, f"[{along}, {around}] is set in the case, fewer than a film needs"
 
 
-def cells_time(around: int, along: int) -> float:
-    """Time of a film solve by its cells, in any unit."""
-    return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2) * (1.0 if along in FAST else SLOW)
+def cells_time(around: int, along: int, fast: tuple[int, ...] = FAST) -> float:
+    """Time of a film solve by its cells, in any unit. fast: lengths of columns that have a fast elimination."""
+    return around * along * (1.0 + (along / CELLS_DOUBLE) ** 2) * (1.0 if along in fast else SLOW)
 
 
 def coarser_cells(worst: WorstFilm, cells: tuple[int, int]) -> tuple[int, int] | None:
