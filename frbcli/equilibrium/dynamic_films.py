@@ -74,7 +74,7 @@ def dynamic_film(film: VolumeFilm, place: Array, total: float, omega: float) -> 
         start: Array | None = None
         for number in range(PLACES):
             linear = linear_film(lying(mesh, number / PLACES), place, total, start)
-            start = linear.w
+            start = linear.field
             parts.append((dynamic_stiffness(linear, frequencies), 1.0 / PLACES))
             begun.append((parts[-1][0], linear))
         means.append(weighted(parts))

@@ -91,6 +91,11 @@ def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
     """(n, 2) changes of the cells for a unit motion of the journal, and what the force takes of their balances."""
     from scipy.sparse.linalg import splu  # takes long to load
 
-    solver = splu((film.flow + s * film.storage).astype(complex).tocsc())
+    solver = splu(
+        (film.flow + s * film.storage).astype(complex).tocsc(),
+        permc_spec="NATURAL" if film.ordered else "COLAMD",
+        diag_pivot_thresh=0.0 if film.ordered else None,
+        options={"SymmetricMode": film.ordered},
+    )
     right = solver.solve((film.by_place + s * film.by_rate).astype(complex))
     return right, solver.solve(film.push.T.astype(complex), "T")

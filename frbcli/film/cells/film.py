@@ -58,7 +58,8 @@ class Flows:
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
     before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
-    oil carries any; filling: of openings whose supply gives a flow at the most, see feed.py."""
+    oil carries any; filling: of openings whose supply gives a flow at the most, see feed.py; stages: (n, 3, m, k) w,
+    c_in and r of a steady film with gas, first solved upwind, then each time with second order."""
 
     w: Array
     state: CellState
@@ -67,6 +68,12 @@ class VolumeSolution:
     before: Array
     gas: FreeGas | None = None
     filling: float = 1.0
+    stages: Array | None = None
+
+    @property
+    def field(self) -> Array:
+        """What a steady film near by begins from: w, or the stages."""
+        return self.w if self.stages is None else self.stages
 
 
 def reference_pressure(section: Section, motion: Motion) -> float:

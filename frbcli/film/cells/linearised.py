@@ -40,15 +40,16 @@ NEIGHBOURS = ((CENTRE, 0, 0), (BEFORE, 1, 0), (BEHIND, -1, 0), (BELOW, 0, 1), (A
 @dataclass(frozen=True)
 class LinearFilm:
     """A film of n states at rest, see above. SI units but for the cells' own: flow and storage (n, n) sparse;
-    by_place (n, 2) per m; by_rate (n, 2) per m/s; push (2, n) N on the journal; w: (m, k) unknown of the settled
-    film."""
+    by_place (n, 2) per m; by_rate (n, 2) per m/s; push (2, n) N on the journal; field: of the settled
+    film; ordered: whether the states stand in the order of their elimination, each with its own equation."""
 
     flow: csc_matrix
     storage: csc_matrix
     by_place: Array
     by_rate: Array
     push: Array
-    w: Array
+    field: Array
+    ordered: bool = False
 
 
 def lying(film: VolumeFilm, share: float) -> VolumeFilm:
@@ -60,7 +61,7 @@ def lying(film: VolumeFilm, share: float) -> VolumeFilm:
 
 def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | None = None) -> LinearFilm:
     """The film with its journal at rest at `place` (2,) in m. film: of a law whose forces are the pressures of its
-    cells; total: omega_J + omega_S in rad/s; start: (m, k) unknown to begin from. Raises NotConverged."""
+    cells; total: omega_J + omega_S in rad/s; start: field to begin from. Raises NotConverged."""
     from scipy.sparse import csc_matrix, diags  # takes long to load
 
     clearance = film.section.clearance
@@ -71,7 +72,7 @@ def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | Non
     if at.law.carries_gas:
         found = linear_states(at, motion, solution)
         moved = found.by_place / clearance, found.by_rate / clearance
-        return LinearFilm(found.flow, found.storage, *moved, found.push, solution.w)
+        return LinearFilm(found.flow, found.storage, *moved, found.push, solution.field, ordered=True)
     data, (m, k) = volume_films([at]), film.grid.shape
     own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
     states, nothing = np.zeros((STATES, m, k)), np.zeros((m, k))
@@ -99,5 +100,5 @@ def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | Non
         by_place=by_place / clearance,
         by_rate=by_rate / clearance,
         push=np.stack([(ring[row][:, None] * weight).ravel() for row in (PUSH_X, PUSH_Y)]),
-        w=solution.w,
+        field=solution.field,
     )

@@ -99,7 +99,8 @@ class FilmSolver:
         law draws oil in, the pressure in the cavity follows from that oil: then it is carried with second order, each
         of REPEATED solutions holding the oil fractions of the one before.
 
-        start: (m, k) unknown to begin from, else a full film; upwind: whether oil is carried upwind by every law.
+        start: field of a solution to begin from, else a full film; upwind: whether oil is carried upwind by every law.
+        Gas that goes with the oil from the start needs no solution without it before.
         Where the supply gives a flow at the most, the openings are filled accordingly. Raises FilmUnsolved.
         """
         if not is_limited(self.film.section):
@@ -128,17 +129,48 @@ class FilmSolver:
         self._before = np.full(grid.shape, UPWIND)
         rate = gap_rate(motion.velocity_at(grid.height), grid.centre[:, None])
         storage = Storage(rate, np.zeros(grid.shape))
-        self._settle_gas()
-        solution = self._solve(motion, self.film.full() if start is None else start, storage)
         repeated = REPEATED if law.keeps_oil and not (law.starves or upwind) else 0
         if law.carries_gas:
-            self._hold_gas(self.film.gaps(motion), storage, 0.0)
-            solution = self._again(motion, solution, storage, BEGUN)
-            solution = self._again(motion, solution, storage)
+            return self._steady_with_gas(motion, start, storage, repeated)
+        self._settle_gas()
+        solution = self._solve(motion, self.film.full() if start is None else start, storage)
         for _ in range(repeated):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             solution = self._again(motion, solution, storage)
         return solution
+
+    def _steady_with_gas(
+        self, motion: Motion, start: Array | None, storage: Storage, repeated: int
+    ) -> VolumeSolution:
+        """See steady. Each stage begins from that of a film near by, if `start` has it; else the gas is in equilibrium
+        first, and then begins to go with the oil."""
+        begun = start if start is not None and start.ndim > self._area.ndim else np.zeros((0, 0))
+        self._settle_gas()
+        if len(begun) == 0:
+            solution = self._solve(motion, self.film.full() if start is None else start, storage)
+            self._hold_gas(self.film.gaps(motion), storage, 0.0)
+            solution = self._again(motion, solution, storage, BEGUN)
+            solution = self._again(motion, solution, storage)
+        else:
+            self._hold_gas(self.film.gaps(motion), storage, 0.0)
+            solution = self._solve(motion, self._taken(begun[0]), storage)
+        stages = [self._stage(solution)]
+        for number in range(1, repeated + 1):
+            self._before = before_upstream(solution.state.fraction, motion.omega)
+            near = self._taken(begun[number]) if number < len(begun) else solution.w
+            found = self._solve(motion, near, storage)
+            solution = replace(found, iterations=solution.iterations + found.iterations)
+            stages.append(self._stage(solution))
+        return replace(solution, stages=np.array(stages))
+
+    def _taken(self, stage: Array) -> Array:
+        """(m, k) w of a stage; the gas of the states <- that of the stage."""
+        w, self._states[CARRIED_GAS], self._states[TURNOVER] = stage
+        return np.asarray(w)
+
+    def _stage(self, solution: VolumeSolution) -> Array:
+        """(3, m, k) of a solution that the states hold."""
+        return np.stack([solution.w, self._states[CARRIED_GAS], self._states[TURNOVER]])
 
     def keep(
         self, motion: Motion, flowing: Motion, w: Array, rate: float, past: Array, gas: KeptGas | None = None

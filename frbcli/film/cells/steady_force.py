@@ -38,7 +38,7 @@ def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None
 def steady_force(
     film: VolumeFilm, displacement: Array, velocity: Array, omega: float, start: Array | None = None
 ) -> FilmForce:
-    """Force and derivatives of a film whose oil has settled, in SI units. start: (m, k) field of a motion near by, if
+    """Force and derivatives of a film whose oil has settled, in SI units. start: field of a motion near by, if
     one is known. Raises NotConverged."""
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
@@ -72,7 +72,7 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.w)
+    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field)
 
 
 def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:

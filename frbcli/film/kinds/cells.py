@@ -91,7 +91,8 @@ class CellFilms(Films):
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """See Films.force."""
-        start = None if near is None or self.remembering[i] else near.field
+        follows = not self.remembering[i] or self.own[i].law.carries_gas
+        start = near.field if near is not None and follows else None
         return steady_force(self.own[i], place, rate, total, start)
 
     @property

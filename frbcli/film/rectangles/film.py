@@ -73,7 +73,7 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 @dataclass(frozen=True)
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
-    field: (m, k) the unknown of a film on cells, from which a film near by is sought."""
+    field: of a film on cells, from which a film near by is sought, see VolumeSolution."""
 
     force: Array
     by_displacement: Array

@@ -49,7 +49,7 @@ def test_it_is_what_a_small_step_in_time_does(law: str) -> None:
     linear, clearance = linear_film(film, PLACE, OMEGA), film.section.clearance
     d = PLACE / clearance
     solver = FilmSolver(film)
-    content = film.content(Motion((float(d[0]), float(d[1])), (0.0, 0.0), OMEGA), linear.w)
+    content = film.content(Motion((float(d[0]), float(d[1])), (0.0, 0.0), OMEGA), linear.field)
     found = np.empty((2, 2))
     for column, unit in enumerate(np.eye(2)):
         forces = []
@@ -58,7 +58,7 @@ def test_it_is_what_a_small_step_in_time_does(law: str) -> None:
             moved = Motion((x, y), (0.0, 0.0), OMEGA)
             solver._before = np.full(film.grid.shape, UPWIND)
             gap = film.gap(moved.d, film.grid.centre)[:, None]
-            solution = solver._solve(moved, linear.w, Storage(s * gap, s * content))
+            solution = solver._solve(moved, linear.field, Storage(s * gap, s * content))
             forces.append(np.array(force(film, film.mean_pressure(solution.state))))
         found[:, column] = -(forces[0] - forces[1]) / (2.0 * step * clearance)
     expected = stiffness_at(linear, s).real

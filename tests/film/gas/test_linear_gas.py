@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.sparse import csc_matrix
+from scipy.sparse.linalg import splu
 from volume_films import section_of
 
 from frbcli.bearing_tests.march import march
@@ -85,6 +88,20 @@ def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_ta
     expected = -mode * pushed(film, unit)[1]
     whole = LinearFilm(found.flow, found.storage, found.by_place, found.by_rate, found.push, settled.w)
     assert stiffness_at(whole, s)[1, 1] == pytest.approx(expected, rel=1e-6)
+
+
+def test_cells_in_order_fill_less_of_their_elimination_and_change_nothing() -> None:
+    """Against columns as SuperLU orders them, with partial pivoting."""
+    section, s = section_of("circumferential-groove", 2e5), 300j
+    law, grid = Bubbly(0.1, 0.0, air(section), 1e-3, 1.0), fitted_grid(section, (0.0, 0.0), 72, 10)
+    mesh = VolumeFilm(section, grid, law, 500.0)
+    film = linear_film(mesh, section.clearance * np.array(PLACE), OMEGA)
+    exact = stiffness_at(replace(film, ordered=False), s)
+    assert stiffness_at(film, s) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
+    matrix = csc_matrix(film.flow + s * film.storage)
+    own = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    other = splu(matrix)
+    assert own.L.nnz + own.U.nnz < 0.6 * (other.L.nnz + other.U.nnz)
 
 
 def test_projection_is_exact_where_it_is_made() -> None:

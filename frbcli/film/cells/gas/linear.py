@@ -6,14 +6,14 @@ The unknowns are w and the free gas c of the cells. The balance of the gas less 
 
 which is multiplied by tau / (1 + tau r), so that no rate is too fast or too slow for it (r: see balance.py). Both
 balances are sums over next neighbours: cells that are not neighbours of one are moved at the same time for their
-derivatives.
+derivatives. Both states of a cell stand beside each other, the cells in an order of which an elimination fills little.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -35,11 +35,12 @@ if TYPE_CHECKING:
     from scipy.sparse import csc_matrix
 
 At = tuple[Array, Array, Motion]  # w, c and the motion of the journal
+Entries = tuple[Array, NDArray[np.int64], NDArray[np.int64]]  # of a matrix, with their rows and columns
 STEP = 1e-6  # of the differences: balances are nearly linear in it
 
 
 class LinearStates(NamedTuple):
-    """Derivatives of a film of n cells by its states, w and c of all cells: of its balances, flow (2 n, 2 n) and, by
+    """Derivatives of a film of n cells by its states, w and c of each cell: of its balances, flow (2 n, 2 n) and, by
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
     (2 n, 2); of the force in N on the journal, push (2, 2 n)."""
 
@@ -52,21 +53,21 @@ class LinearStates(NamedTuple):
 
 def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> LinearStates:
     """The film linearised about a settled solution, its journal being at rest."""
-    from scipy.sparse import bmat, coo_matrix, diags  # takes long to load
+    from scipy.sparse import coo_matrix  # takes long to load
 
     assert solution.gas is not None
     grid, w, free = film.grid, solution.w, solution.gas.free
-    settled = _Settled(film, solution.gas, solution.state.pressure)
-    flow: list[list[Any]] = [[0, 0], [0, 0]]
+    settled, (w_at, c_at) = _Settled(film, solution.gas, solution.state.pressure), _numbers(grid.shape)
+    size, at = 2 * w.size, np.concatenate([w_at, c_at])
+    given = at[np.tile(grid.fixed.ravel(), 2)]  # their states stay as they are
+    flow = [(np.ones(given.size), given, given)]
     for cells in _apart(grid.shape):
-        step, near, nothing = STEP * np.where(grid.fixed, 0.0, cells), _nearest(cells), np.zeros(grid.shape)
-        for column, (by_w, by_free) in enumerate(((step, nothing), (nothing, step))):
+        near, near_numbers = _nearest(cells)
+        step, nothing = STEP * np.where(grid.fixed, 0.0, cells), np.zeros(grid.shape)
+        for by, by_w, by_free in ((w_at, step, nothing), (c_at, nothing, step)):
             changes = settled.change((w + by_w, free + by_free, motion), (w - by_w, free - by_free, motion))
-            for row, change in enumerate(changes):
-                entries = change.ravel(), (np.arange(w.size), near.ravel())
-                flow[row][column] = flow[row][column] + coo_matrix(entries, shape=(w.size, w.size)).tocsc()
-    given = diags(grid.fixed.ravel().astype(np.float64))  # their states stay as they are
-    flow[0][0], flow[1][1] = flow[0][0] + given, flow[1][1] + given
+            for row, change in zip((w_at, c_at), changes, strict=True):
+                flow.append((change[near], row[near.ravel()], by[near_numbers]))
     places = [
         settled.change((w, free, _moved(motion, axis, STEP)), (w, free, _moved(motion, axis, -STEP))) for axis in (0, 1)
     ]
@@ -74,16 +75,37 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     high, low = settled.state(w, free + STEP), settled.state(w, free - STEP)
     fraction, pressure = (high.fraction - low.fraction) / (2.0 * STEP), (high.pressure - low.pressure) / (2.0 * STEP)
     area = np.where(grid.fixed, 0.0, grid.area)
-    oil, mixed = (diags((area * gap * slope).ravel()) for slope in (state.fraction_slope, fraction))
-    gas = diags((area * gap * state.fraction * settled.rated * settled.time).ravel())
+    stored = ((state.fraction_slope, w_at, w_at), (fraction, w_at, c_at))
+    storage = [((area * gap * slope).ravel(), row, by) for slope, row, by in stored]
+    storage.append(((area * gap * state.fraction * settled.rated * settled.time).ravel(), c_at, c_at))
     rate = [(area * state.fraction * side[:, None]).ravel() for side in (np.sin(grid.centre), -np.cos(grid.centre))]
-    return LinearStates(
-        bmat(flow, format="csc"),
-        bmat([[oil, mixed], [None, gas]], format="csc"),
-        np.stack([np.concatenate([each.ravel() for each in place]) for place in places], axis=1),
-        np.concatenate([np.stack(rate, axis=1), np.zeros((w.size, 2))]),
-        np.concatenate([_push(film, state.pressure_slope), _push(film, pressure)], axis=1),
-    )
+    by_place, by_rate, push = np.zeros((size, 2)), np.zeros((size, 2)), np.zeros((2, size))
+    by_place[at] = np.stack([np.concatenate([each.ravel() for each in place]) for place in places], axis=1)
+    by_rate[w_at] = np.stack(rate, axis=1)
+    push[:, at] = np.concatenate([_push(film, state.pressure_slope), _push(film, pressure)], axis=1)
+
+    def matrix(parts: Sequence[Entries]) -> csc_matrix:
+        values, rows, columns = (np.concatenate(each) for each in zip(*parts, strict=True))
+        found = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        found.eliminate_zeros()  # nothing comes back against the flow
+        return found
+
+    return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, push)
+
+
+def _numbers(shape: tuple[int, int]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """(n,) each: the number of w and c of each cell among the states, the cells ordered by the degree of their graph,
+    lowest first (minimum degree)."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.linalg import splu
+
+    number, (m, k) = np.arange(shape[0] * shape[1]).reshape(shape), shape
+    rows = np.concatenate([number.ravel(), number[:, 1:].ravel()])
+    near = np.concatenate([np.roll(number, 1, axis=0).ravel(), number[:, :-1].ravel()])
+    one = coo_matrix((np.ones(rows.size), (rows, near)), shape=(m * k, m * k))
+    graph = (one + one.T + coo_matrix((np.full(m * k, 5.0), (number.ravel(),) * 2))).tocsc()
+    first = 2 * splu(graph, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True}).perm_c.astype(np.int64)
+    return first, first + 1
 
 
 class _Settled:
@@ -139,14 +161,14 @@ def _apart(shape: tuple[int, int]) -> Iterator[NDArray[np.bool_]]:
             yield (column == around)[:, None] & (np.arange(k) % 3 == along)[None, :]
 
 
-def _nearest(cells: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """(m, k) number of the cell of a set of _apart that is a cell or next to it, 0 where there is none."""
-    numbers = np.where(cells, np.arange(cells.size).reshape(cells.shape), 0)
+def _nearest(cells: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
+    """Which cells (m, k) are cells of a set of _apart or next to one, and the numbers of these."""
+    numbers = np.where(cells, np.arange(cells.size).reshape(cells.shape), -1)
     numbers = np.maximum(numbers, np.maximum(np.roll(numbers, 1, axis=0), np.roll(numbers, -1, axis=0)))
     found = numbers.copy()
     found[:, 1:] = np.maximum(found[:, 1:], numbers[:, :-1])
     found[:, :-1] = np.maximum(found[:, :-1], numbers[:, 1:])
-    return found
+    return found >= 0, found[found >= 0]
 
 
 def _moved(motion: Motion, axis: int, step: float) -> Motion:
