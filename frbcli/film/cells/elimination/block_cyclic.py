@@ -163,9 +163,11 @@ def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     inverse, border and right of each, the two latter first without and then with what the columns behind it bring.
     """
     m, k, r, sizes = stencil.shape[1], len(column), len(sides), (column, sides)
-    last, rows = m - 1, np.zeros((m, k, row_length(k, r)))
+    last, rows = m - 1, np.empty((m, k, row_length(k, r)))
     for i in range(0, m, last):  # the first and the last column
         for a in range(k):
+            for c in range(row_length(k, r)):
+                rows[i, a, c] = 0.0
             rows[i, a, a] = stencil[CENTRE, i, a]
             if a > 0:
                 rows[i, a, a - 1] = stencil[BELOW, i, a]

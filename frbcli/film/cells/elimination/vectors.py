@@ -8,6 +8,7 @@ up with zeros to a multiple of four. k and r are told by tuples of that length.
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from llvmlite import ir
@@ -80,19 +81,32 @@ class _Code:
         taken = [self.builder.fmul(factor, b, flags=_FUSED) for b in y]
         return [self.builder.fsub(a, b, flags=_FUSED) for a, b in zip(x, taken, strict=True)]
 
-    def eliminate(self, rows: list[list[Any]]) -> list[list[Any]]:
-        """Rows that begin with a square matrix: its inverse, and the inverse times the rest (Gauss and Jordan)."""
-        for p in range(len(rows)):
+    def eliminate(self, rows: Iterable[list[Any]]) -> Iterator[list[Any]]:
+        """Rows that begin with a square matrix: its inverse, and the inverse times the rest (Gauss and Jordan).
+
+        Row by row, first with the pivots before and then with those behind its own: so that one row at a time changes,
+        in registers, and the others are only read.
+        """
+        pivots: list[list[Any]] = []
+        for p, given in enumerate(rows):
+            row = given
+            for q, other in enumerate(pivots):
+                row = self.without(row, q, other)
             group, lane = divmod(p, LANES)
-            pivot = self.all_lanes(self.builder.fdiv(_ONE, self.lane(rows[p][group], lane)))
-            rows[p][group] = self.with_lane(rows[p][group], lane, _ONE)
-            rows[p] = self.times(rows[p], [pivot] * len(rows[p]))
-            for i in range(len(rows)):
-                if i != p:
-                    factor = self.all_lanes(self.lane(rows[i][group], lane))
-                    rows[i][group] = self.with_lane(rows[i][group], lane, _ZERO)
-                    rows[i] = self.less(rows[i], factor, rows[p])
-        return rows
+            pivot = self.all_lanes(self.builder.fdiv(_ONE, self.lane(row[group], lane)))
+            row[group] = self.with_lane(row[group], lane, _ONE)
+            pivots.append(self.times(row, [pivot] * len(row)))
+        for p, row in enumerate(pivots):
+            for q in range(p + 1, len(pivots)):
+                row = self.without(row, q, pivots[q])
+            yield row
+
+    def without(self, row: list[Any], p: int, other: list[Any]) -> list[Any]:
+        """A row without the unknown p, of which another row has one."""
+        group, lane = divmod(p, LANES)
+        factor, rest = self.all_lanes(self.lane(row[group], lane)), list(row)
+        rest[group] = self.with_lane(row[group], lane, _ZERO)
+        return self.less(rest, factor, other)
 
 
 def _eliminate_column(typing, rows, sizes):  # type: ignore[no-untyped-def]
@@ -102,7 +116,7 @@ def _eliminate_column(typing, rows, sizes):  # type: ignore[no-untyped-def]
     def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]
         code = _Code(context, builder, signature, arguments)
         base = code.arrays[0]
-        filled = [[code.vector(base, w * i + c) for c in range(0, w, LANES)] for i in range(k)]
+        filled = ([code.vector(base, w * i + c) for c in range(0, w, LANES)] for i in range(k))
         for i, row in enumerate(code.eliminate(filled)):
             for c in range(0, w, LANES):
                 code.put_vector(base, w * i + c, row[c // LANES])
@@ -121,8 +135,8 @@ def _next_column(typing, centre, below, above, before, behind, right, last, rows
         centre, below, above, before, behind, right, last, rows, _ = code.arrays
         passed = [code.number(behind, j) for j in range(k)] + [_ONE] * (w - k)
         passes = code.vectors(passed)
-        filled = []
-        for i in range(k):
+
+        def filled(i):  # type: ignore[no-untyped-def]
             own: list[Any] = [None] * w
             own[i] = code.number(centre, i)
             if i > 0:
@@ -131,8 +145,9 @@ def _next_column(typing, centre, below, above, before, behind, right, last, rows
                 own[i + 1] = code.number(above, i)
             own[2 * k : 2 * k + r] = [code.number(right, (k + r) * i + k + side) for side in range(r)]
             back = code.times([code.vector(last, w * i + c) for c in range(0, w, LANES)], passes)
-            filled.append(code.less(code.vectors(own), code.all_lanes(code.number(before, i)), back))
-        for i, row in enumerate(code.eliminate(filled)):
+            return code.less(code.vectors(own), code.all_lanes(code.number(before, i)), back)
+
+        for i, row in enumerate(code.eliminate(map(filled, range(k)))):
             for c in range(0, w, LANES):
                 code.put_vector(rows, w * i + c, row[c // LANES])
         return context.get_dummy_value()
