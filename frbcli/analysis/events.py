@@ -1,5 +1,5 @@
 """Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
-contact, touch and lift-off of rough surfaces; and when a clearance changed.
+contact, touch and lift-off of rough surfaces and of pins; and when a clearance changed.
 
 The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -46,6 +46,7 @@ SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies
 
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
 COLLAR_FILM, COLLAR_TOUCHES = "thrust_film_thickness_m", 1e-6 * (1.0 + 1e-9)  # m: the roughness of surfaces
+PIN, PIN_UNIT, PUSHES = "pin_torque", "_N_m", 1e-300  # N m: a pin that has any torque touches its ring
 CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
 TOUCHES, LIFTED = 0.01, 0.001  # share of the force from which asperities count as touching, and below which as apart
 
@@ -95,7 +96,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     -------
     tuple of Event
         Critical speeds, self-excited vibrations, onsets and offsets of whirl, lock-in, contact, touch and lift-off of
-        rough surfaces, in the order of time.
+        rough surfaces and of rings and their pins, in the order of time.
 
     Examples
     --------
@@ -134,7 +135,10 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     on_pads = list(_collar_contact(run))
     for film in named:
         events += _contacts(run, film, run.status == "contact" and film == touching and not on_pads)
-        events += _touches(run, film)
+        events += _touches(run, joined("asperity_share", film), film or None)
+    for signal in [name for name in run.signals if name.startswith(PIN)]:
+        ring = joined("ring", signal.removeprefix(PIN).removesuffix(PIN_UNIT).strip("_"))
+        events += _touches(run, signal, None, ring, (PUSHES, PUSHES))
     changes = _clearance_steps(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events, *on_pads], key=lambda event: event.t_s))
 
@@ -309,24 +313,27 @@ def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
         touched = float(times[-1])
 
 
-def _touches(run: RunLike, film: str) -> Iterator[Event]:
-    """When rough surfaces touch, and when they have come apart for longer than a pause; a run may begin touching."""
-    name, together, parted, last = joined("asperity_share", film), False, None, (0.0, 0.0)
+def _touches(
+    run: RunLike, name: str, film: str | None, point: str | None = None, levels: tuple[float, float] = (TOUCHES, LIFTED)
+) -> Iterator[Event]:
+    """When surfaces touch by the size of a signal, from the first of its levels on, and when they have come apart,
+    below the second, for longer than a pause; a run may begin touching."""
+    together, parted, last, (touches, lifted) = False, None, (0.0, 0.0), levels
     if name not in run.signals:
         return
     for start, stop in pieces(len(run)):
         shares, times, speeds = (signals.piece(run, each, start, stop) for each in (name, "time_s", "speed_Hz"))
         for share, t, speed in zip(shares.tolist(), times.tolist(), speeds.tolist(), strict=True):
             last = t, speed
-            if not together and share >= TOUCHES:
+            if not together and abs(share) >= touches:
                 together = True
-                yield Event("touch", film or None, t, speed, None, None)
-            elif together and share >= LIFTED:
+                yield Event("touch", film, t, speed, None, None, point)
+            elif together and abs(share) >= lifted:
                 parted = None
             elif together and parted is None:
                 parted = t, speed
             if parted is not None and t - parted[0] > CONTACT_PAUSE_s:
-                yield Event("lift-off", film or None, *parted, None, None)
+                yield Event("lift-off", film, *parted, None, None, point)
                 together, parted = False, None
     if parted is not None and last[0] > parted[0]:  # the run has ended within the pause
-        yield Event("lift-off", film or None, *parted, None, None)
+        yield Event("lift-off", film, *parted, None, None, point)

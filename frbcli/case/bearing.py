@@ -13,13 +13,16 @@ from frbcli.case.elements import CoefficientsBearing
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import AlsoAs, Model, altered
 from frbcli.case.quantities import (
+    Damping,
     Expansion,
     Identifier,
     Length,
     Mass,
+    Play,
     Position,
     RingInertia,
     SpecificHeat,
+    Stiffness,
     ThermalConductivity,
     Tilt,
 )
@@ -58,6 +61,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
     misalignment: Misalignment = None
+    pin: ClassVar[None] = None
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
@@ -117,6 +121,19 @@ class Ring(Model):
         return replace(SOLIDS[self.material], **{name: value for name, value in own.items() if value is not None})
 
 
+class Pin(Model):
+    """A pin in the housing that reaches into a hole of a ring, which turns within its play and then pushes against it.
+    It acts on the turning of the ring alone."""
+
+    radius: Length = Field(description="at which ring and pin touch, from the axis")
+    play: Play = Field(description="distance at this radius by which the ring turns to either side before they touch")
+    stiffness: Stiffness = Field(description="of pin and hole, across the radius")
+    damping: Damping = Field(default=0.0, description="while they touch; they do not pull at each other")
+
+
+GivenPin = Annotated[
+    Pin | None, Field(description="semi-floating: keeps the ring from turning further than its play; in runs")
+]
 CentrifugalPressure = Annotated[
     bool, Field(description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")
 ]
@@ -140,6 +157,7 @@ class FloatingRingBearing(BearingWalls):
     outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer one of the ring")
     centrifugal_pressure: CentrifugalPressure = True
     channels: Channels = "pressure"
+    pin: GivenPin = None
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
     misalignment: Misalignment = None
@@ -215,6 +233,7 @@ class CartridgeBearing(BearingWalls):
     outer: _Films = Field(description="films between ring and shells, as inner; diameter: the outer one of the ring")
     centrifugal_pressure: CentrifugalPressure = True
     channels: Channels = "pressure"
+    pin: GivenPin = None
     damper: ClassVar[None] = None
     support: ClassVar[None] = None
 
@@ -243,7 +262,7 @@ class CartridgeBearing(BearingWalls):
     @property
     def parts(self) -> tuple[FloatingRingBearing, ...]:
         """Its two ends, each a floating ring with half of the mass and of the inertia: what joins them is theirs as one
-        body."""
+        body, and so is its pin."""
         mass, inertia, _ = self.body
         half = {"given_mass": 0.5 * mass, "given_inertia": 0.5 * inertia}
         ring = altered(self.ring, {**half, "tilt_inertia": None})
@@ -252,7 +271,7 @@ class CartridgeBearing(BearingWalls):
             FloatingRingBearing(
                 kind="floating-ring", name="_".join(word for word in (self.name, side) if word), position=position,
                 ring=ring, inner=inner, outer=outer, centrifugal_pressure=self.centrifugal_pressure,
-                channels=self.channels, **walls,
+                channels=self.channels, pin=self.pin, **walls,
             )
             for side, position, inner, outer in zip(SIDES, self.positions, self.inner, self.outer, strict=True)
         )  # fmt: skip

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
@@ -99,6 +99,7 @@ class CoefficientsBearing(Model):
     )
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
     support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    pin: ClassVar[None] = None
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:

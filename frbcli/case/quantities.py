@@ -153,6 +153,7 @@ Label = Annotated[str, AfterValidator(_printable)]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 
 Length = Annotated[float, Quantity("m", "20 mm", above=0)]
+Play = Annotated[float, Quantity("m", "0.1 mm", least=0)]
 Clearance = Annotated[float, Quantity("m", "35 um", above=0)]
 Position = Annotated[float, Quantity("m", "80 mm")]
 InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0)]

@@ -12,11 +12,12 @@ from frbcli.elements.element import MachineElement
 from frbcli.elements.force import ForceElement
 from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
+from frbcli.elements.pin import PinElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
-    GivenCoefficients, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
+    GivenCoefficients, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
     MagneticPullElement, BaseElement,
 )  # fmt: skip
 

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.elements.pin import PinElement
 from frbcli.equilibrium.resting import RestingPosition, resting_position
+from frbcli.errors import NotConverged
 from frbcli.film.grid import Array
 from frbcli.scene.gate.analysis import HEAT
 from frbcli.scene.gate.gate import require
@@ -82,7 +84,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     InputError
         For a case that cannot be modelled or has no heat.
     NotConverged
-        Where its heat does not balance.
+        Where its heat does not balance, or a ring has a pin.
 
     Examples
     --------
@@ -90,6 +92,8 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     >>> found = frbcli.warm_machine(frbcli.load_case("floating-ring-heat"))  # doctest: +SKIP
     """
     require(case, HEAT)
+    if any(True for _ in PinElement.of(case)):
+        raise NotConverged("a pin holds a ring, and no position of rest is found with it.")
     plan = make_plan(case)
     top = max(abs(case.speed.start), abs(case.speed.end)) if speed_Hz is None else speed_Hz
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)

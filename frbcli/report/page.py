@@ -26,6 +26,7 @@ from frbcli.plot.run.film_signals import film_signal_figure
 from frbcli.plot.run.heat import heat_figure
 from frbcli.plot.run.oil_content import SIGNAL as OIL_CONTENT
 from frbcli.plot.run.oil_content import oil_content_figure
+from frbcli.plot.run.pin import pin_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
 from frbcli.plot.run.summary import FEWEST_SAMPLES
@@ -240,6 +241,8 @@ def _courses(run: Run) -> list[ShownRun]:
         figures = [(eccentricity_figure([run]), "Eccentricity.")]
     if any(name.startswith("ring_speed") for name in run.signals):
         figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
+    if any(name.startswith("pin_angle") for name in run.signals):
+        figures.append((pin_figure([run]), "Angle of the rings with a pin, and its torque on them."))
     if any(name.startswith(OIL_CONTENT) for name in run.signals):
         figures.append((oil_content_figure([run]), "Oil fraction of the films."))
     if any(name.startswith("temperature") for name in run.signals):

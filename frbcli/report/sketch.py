@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
-from frbcli.case.bearing import FilmBearing
+from frbcli.case.bearing import FilmBearing, GivenBearing
 from frbcli.case.elements import Element
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
@@ -32,6 +32,7 @@ HOUSING = 0.45  # thickness of a shell over the radius of its film
 SPAN, DISK = 5.0, 2.2  # of a rotor without a shaft: distance of its bearings over their width, disk over their journal
 ROUND, SHOWN = 200.0, 0.16  # size of a film around the axis; clearance there over the radius
 AROUND = 181  # points of a circle
+PIN = 4.0  # width of a pin, and how far it stands out of a shell, in the drawing's units
 NAMES = 24.0  # room for a line of names above a disk, in the drawing's units
 FORCE = 30.0  # length of the arrow of a force, in the drawing's units
 GROUND = 32.0  # room for the ground, where it moves
@@ -118,6 +119,15 @@ def _bearings(case: Case) -> Iterator[_Bearing]:
         if films and bearing.damper is not None:  # which has the dimensions of a film around others
             films, symbols = (*films, bearing.damper), tuple(each for each in symbols if each != DamperElement.symbol)
         yield _Bearing(bearing.name, bearing.position or 0.0, films, symbols)
+
+
+def _pin(bearing: GivenBearing, at: float, scale: _SketchScale) -> Iterator[str]:
+    """The pin of a ring at z = at, in m, from outside of its shell to where it touches."""
+    if bearing.pin is not None:
+        film = bearing.films[-1]
+        outer = (1.0 + HOUSING) * (0.5 * film.diameter + film.clearance)
+        top, tip = scale.middle - scale.per_m * outer - PIN, scale.middle - scale.per_m * bearing.pin.radius
+        yield box(scale.left + scale.per_m * at - 0.5 * PIN, top, PIN, tip - top, "shaft")
 
 
 def _film_parts(films: tuple[FilmGeometry, ...], at: float, scale: _SketchScale) -> Iterator[str]:
@@ -208,6 +218,8 @@ def _of_sections(case: Case) -> str:
         parts += stack(bearing.symbols, scale.left + per_m * at, scale.middle, per_m * radius, inner if held else None)
         parts += _film_parts(bearing.films, at, scale)
         parts.append(_named(bearing.name, at, scale, half + 16.0))
+    for each in case.given_bearings:
+        parts += _pin(each, sum(part.position or 0.0 for part in each.parts) / len(each.parts), scale)
     places = {f"disk_{disk.name or number}": disk.position for number, disk in enumerate(case.disks, start=1)}
     for given in case.placed_bearings:
         at = given.position or 0.0
@@ -242,6 +254,8 @@ def _symmetric(case: Case) -> str:
             carried = None if case.housing is None else inner
             parts += stack(bearing.symbols, scale.left + per_m * place, scale.middle, per_m * radius, carried)
             parts += _film_parts(bearing.films, at, scale)
+        for given in case.given_bearings:
+            parts += _pin(given, at, scale)
         parts.append(_named("bearing", at, scale, half + 16.0))
     one = {"disk": (0.5 * span,), "housing": (0.25 * span,)}
     parts += _forces(case, scale, inner, lambda node: one.get(node, (0.0, span)))

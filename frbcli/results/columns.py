@@ -82,6 +82,8 @@ PART_SIGNALS = (
     Column("housing", "m", "displacement of the housing, at its centre of mass or at a bearing", shape=(2,)),
     Column("ring", "m", "displacement of a ring", shape=(2,)),
     Column("ring_speed", "Hz", "speed of a ring"),
+    Column("pin_angle", "rad", "angle by which a ring with a pin has turned from the middle of its play"),
+    Column("pin_torque", "N m", "torque of a pin on its ring"),
     Column("temperature", "K", "temperature of a film, a ring or a wall"),
     Column("viscosity", "Pa*s", "viscosity of the oil of a film"),
     Column("clearance", "m", "clearance of a film"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -20,6 +21,7 @@ from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.system import System
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs
+from frbcli.solve.pin import RADIUS, STIFFNESS
 from frbcli.solve.stage.cones import make_cones
 from frbcli.solve.stage.loads import varying_loads
 from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
@@ -35,6 +37,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
     observed = [points / system.length for _, points in rotor.points]
     if stations > 1:
         observed += _half_tilts(system)
+    observed += list(_turns_at_pins(system))
     standing = system.films.seen(system.films.standing)
     return RotorData(
         mass=rotor.mass,
@@ -55,6 +58,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         turning=np.repeat(system.turning, stations, axis=0),
         spins=np.array(system.spins, dtype=np.int64),
         ring_of=np.repeat(system.bodies, stations, axis=0),
+        pins=system.pins,
         drag=np.repeat(system.drags, stations),
         torque_terms=np.array([int(system.torque == "all"), _factor(system)], dtype=np.int64),
         table_speeds=table.speeds,
@@ -73,6 +77,13 @@ def _half_tilts(system: System) -> list[Array]:
     """(2, n) of each film: by how much its ends move against each other, over twice the clearance."""
     ends = system.films.seen(system.rotor.journals).reshape(len(system.names), -1, len(PLANE), system.rotor.size)
     return [0.5 * (far - near) / c for (near, far), c in zip(ends, system.clearances, strict=True)]
+
+
+def _turns_at_pins(system: System) -> Iterator[Array]:
+    """(1, n) of each ring with a pin: how far it turns at the radius of the pin."""
+    for spin, pin in zip(system.spins, system.pins, strict=False):
+        if pin[STIFFNESS] > 0.0:
+            yield pin[RADIUS] / system.length * np.eye(1, system.rotor.size, spin)
 
 
 def _factor(system: System) -> int:

@@ -60,6 +60,10 @@ def _cartridge(case: Case) -> str | None:
     return case.film.coupling if turning_cartridges(case) else None
 
 
+def _pin(case: Case) -> str | None:
+    return case.film.coupling if any(bearing.pin for bearing in case.given_bearings) else None
+
+
 def _signals(case: Case) -> str | None:
     signals = case.output.signals
     return ", ".join(signals) if any(kind != "film-thickness" for kind in signals) else None
@@ -100,6 +104,9 @@ APART = Coupling(
             (RUN,), KEY, _cartridge,
             "solves a rotor with constant coefficients, and a cartridge has gyroscopic moments by its own speed",
             "Write auto.",
+        ),
+        refusal(
+            (RUN,), KEY, _pin, "turns rings by the torques of their films alone, and one has a pin", "Write auto."
         ),
         refusal(
             (RUN,), KEY, _over_time, "takes the pressure and the temperatures of the supply as constant", "Write auto."

@@ -9,6 +9,7 @@ import numpy as np
 from frbcli.compiled import Array, Indices, compiled
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.forces import drag_integral
+from frbcli.solve.pin import pinned
 from frbcli.solve.scratch import Scratch
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, Q, U, V
@@ -100,7 +101,10 @@ def spin_up(
     for r in range(count):
         i = rotor.spins[r]
         pulled = torque[r] + held[r] * (bodies[1 + r] - at[V, i])
-        scratch.stage_a[i, s] = pulled / (rotor.mass[i, i] + g * held[r])
+        inertia = rotor.mass[i, i] + g * held[r]
+        scratch.stage_a[i, s] = pulled / inertia
+        if rotor.pins.shape[0] > 0:
+            scratch.stage_a[i, s] = pinned(rotor.pins[r], at[Q, i], at[V, i], g, inertia, pulled)
         speed = at[V, i] + g * scratch.stage_a[i, s]
         off = max(off, abs(g * (speed - bodies[1 + r])))
         scratch.stage_v[i, s] = bodies[1 + r] = speed

@@ -35,6 +35,7 @@ class RotorData(NamedTuple):
     turning: Array  # (films, 3, 1 + rings) shares of the speeds of rotor and rings, see TURNING
     spins: NDArray[np.int64]  # (rings,) degrees of freedom that the rings turn in
     ring_of: NDArray[np.int64]  # (films, 2) ring inside and outside of each film, -1: the rotor or the housing
+    pins: Array  # (rings or 0, PIN) of the rings, see pin.py
     drag: Array  # (films,) N m s: eta R^3 B / C of the whole bearing, see drag_integral
     torque_terms: NDArray[np.int64]  # (2,) whether Poiseuille's term counts; cavitation factor of Couette's
     table_speeds: Array  # (s,) rad/s of what joins the next three, see LinearPart; none without

@@ -162,6 +162,7 @@ def test_a_line_runs(line: str, folder: Path, heated: Path, tmp_path: Path) -> N
     for word, name, shipped, more in (
         ("engine.h5", "engine.h5", "turbocharger-engine", ()),
         ("axial", "run.h5", "turbocharger-car-thrust", ()),
+        ("pin", "run.h5", "floating-ring", ('bearing.pin={radius="16 mm", play="0.1 mm", stiffness="1e6 N/m"}',)),
         ("film", "onset.h5", "turbocharger-low-supply", ('output.films={ from="5 ms", to="0.2 s" }', "speed.to=60 Hz")),
     ):
         if word in words and words[0] != "runup":

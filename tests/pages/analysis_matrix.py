@@ -50,6 +50,7 @@ DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
     'cavitation="sommerfeld"}'
 )
+PIN = 'bearing.pin={radius="16 mm", play="0.1 mm", stiffness="1e6 N/m"}'
 SUPPORT = 'bearing.support={mass="2 kg", stiffness="1e7 N/m"}'
 THRUST = (
     'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
@@ -86,6 +87,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
+    "floating ring with a pin": ("floating-ring", ("film.cavitation=half-sommerfeld", PIN)),
     "cartridge": ("turbocharger-car-cartridge", ()),
     "cartridge that does not turn": ("turbocharger-car-cartridge", ("bearing.ring.spin=blocked",)),
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),

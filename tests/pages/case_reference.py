@@ -69,6 +69,7 @@ TABLES = {
     "[base]": "Base",
     "over_time = { ... }": "OverTime",
     "[bearing.ring]": "Ring",
+    "[bearing.pin]": "Pin",
     "[bearing.inner], [bearing.outer]": "RingFilm",
     "clearance = { cold = ... }": "ColdClearance",
     "ends = { sealed = ... }": "SealedEnds",

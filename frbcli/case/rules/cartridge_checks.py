@@ -1,4 +1,4 @@
-"""Rules of a cartridge, its two places and its body, and of the inertias of rings. See checks.py."""
+"""Rules of a cartridge, its two places and its body, and of the inertias and pins of rings. See checks.py."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table
+from frbcli.case.reading.tables import Breach, number, ring_films, table
 from frbcli.units import display
 
 BODY = {"mass": "9 g", "inertia": "0.2 kg*mm^2", "tilt_inertia": "1 kg*mm^2"}
@@ -35,6 +35,21 @@ def tilt_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if polar and tilt and tilt < 0.5 * polar * (1.0 - 1e-9):
         problem = f"is less than half of ring.inertia, {display(polar, 'kg*m^2')}, which is not possible."
         yield Breach((*path, "ring", "tilt_inertia"), problem, "Exchange or correct the two.")
+
+
+def pin_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    """A pin of a ring that does not turn, and one beside the ring."""
+    if table(bearing, "ring").get("spin") == "blocked" and "pin" in bearing:
+        remedy = 'Remove it, or write ring.spin = "free".'
+        yield Breach((*path, "pin"), "has no effect: the ring is blocked, as by a pin without play.", remedy)
+    radius = number(table(bearing, "pin"), "radius", "m")
+    for (_, inside), (_, outside) in ring_films(bearing)[:1]:
+        inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
+        if radius and inner and outer and not inner <= 2.0 * radius <= outer:
+            within = f"{display(0.5 * inner, 'm')} and {display(0.5 * outer, 'm')}"
+            problem = f"is {display(radius, 'm')}, and the ring lies between {within} from the axis."
+            remedy = f'Write e.g. "{display(0.25 * (inner + outer), "m")}", the middle of the ring.'
+            yield Breach((*path, "pin", "radius"), problem, remedy)
 
 
 def positions(path: Path, bearing: Mapping[str, Any]) -> list[tuple[Path, float | None]]:

@@ -16,7 +16,7 @@ from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
-from frbcli.case.rules.cartridge_checks import cartridge_breaches, positions, tilt_breaches
+from frbcli.case.rules.cartridge_checks import cartridge_breaches, pin_breaches, positions, tilt_breaches
 from frbcli.case.rules.contact_checks import contact_breaches
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
@@ -92,6 +92,7 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
             problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
             yield Breach((*path, *at, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
     ring = bearing.get("ring")
+    yield from pin_breaches(path, bearing)
     if bearing.get("kind") == "cartridge":
         yield from cartridge_breaches(path, bearing)
         return

@@ -1,5 +1,5 @@
-"""`frb plot`: eccentricities, ring speeds, oil content, heat, what a run records and keeps of its films, orbits,
-displacements, or the summary of a run; the cavitation laws of a case."""
+"""`frb plot`: eccentricities, ring speeds and pins, oil content, heat, what a run records and keeps of its films,
+orbits, displacements, or the summary of a run; the cavitation laws of a case."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 LAW = "law"  # of a case, the others of runs
 FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow", "tilt", "supply-pressure")
-CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", *FILM_SIGNALS)
+CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", "pin", *FILM_SIGNALS)
 MOVING = ("orbit", "film")
 SUBJECTS = (*CURVES, *MOVING, "displacement", "summary", LAW)
 
@@ -153,6 +153,7 @@ def _figure(
     from frbcli.plot.run.heat import heat_figure
     from frbcli.plot.run.oil_content import oil_content_figure
     from frbcli.plot.run.orbit import orbit_figure
+    from frbcli.plot.run.pin import pin_figure
     from frbcli.plot.run.ring_speed import ring_speed_figure
     from frbcli.plot.run.summary import summary_figure
 
@@ -167,5 +168,5 @@ def _figure(
     if what in FILM_SIGNALS:
         return film_signal_figure(runs, what, *span, over)
     known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure,
-             "axial": axial_figure}  # fmt: skip
+             "axial": axial_figure, "pin": pin_figure}  # fmt: skip
     return known.get(what, eccentricity_figure)(runs, *span, over)

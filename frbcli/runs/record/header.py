@@ -7,7 +7,10 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
+from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
+from frbcli.elements.pin import pin_torque
+from frbcli.film.grid import Array
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.rotor.body import PLANE
@@ -16,6 +19,7 @@ from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.bearing_model_films import model_record
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
+from frbcli.solve.pin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
@@ -42,12 +46,15 @@ def named(quantity: str, film: str) -> str:
     return f"{quantity}_{film}" if film else quantity
 
 
-def ring_names(system: System) -> dict[str, int]:
-    """The signals of the rings' speeds with the degree of freedom of each, which both ends of a cartridge share."""
+def turning_rings(system: System) -> list[tuple[str, int]]:
+    """The names of the rings that turn and their numbers, which both ends of a cartridge share."""
     around = zip(system.names, system.bodies[:, 0].tolist(), strict=True)
-    outer = [(name, ring) for name, ring in around if ring >= 0]
-    names = {name: f"{named('ring_speed', name.removesuffix('outer').rstrip('_'))}_Hz" for name, _ in outer}
-    return {names[name]: system.spins[ring] for name, ring in outer}
+    return [(name.removesuffix("outer").rstrip("_"), ring) for name, ring in around if ring >= 0]
+
+
+def ring_names(system: System) -> dict[str, int]:
+    """The signals of the rings' speeds with the degree of freedom of each."""
+    return {f"{named('ring_speed', name)}_Hz": system.spins[ring] for name, ring in turning_rings(system)}
 
 
 def signal_names(kind: str, film: str) -> list[str]:
@@ -74,6 +81,32 @@ def signal_units(system: System, kinds: Sequence[str]) -> dict[str, str]:
     return {name: FILM_SIGNALS[kind][2] for film in system.names for kind in kinds for name in signal_names(kind, film)}
 
 
+def pin_names(system: System) -> dict[int, tuple[str, str]]:
+    """The signals of the angle and of the torque of each ring with a pin by its number: one pair of a cartridge."""
+    found: dict[int, list[str]] = {}
+    for name, ring in turning_rings(system):
+        if ring < len(system.pins) and system.pins[ring, STIFFNESS] > 0.0:
+            found.setdefault(ring, []).append(name)
+    own = {
+        ring: ends[0] if len(ends) == 1 else ends[0].removesuffix(SIDES[0]).rstrip("_") for ring, ends in found.items()
+    }
+    return {ring: (f"{named('pin_angle', name)}_rad", f"{named('pin_torque', name)}_N_m") for ring, name in own.items()}
+
+
+def pin_units(system: System) -> dict[str, str]:
+    """Names and units of the signals of pins."""
+    return {name: unit for pair in pin_names(system).values() for name, unit in zip(pair, ("rad", "N m"), strict=True)}
+
+
+def pin_signals(system: System, q: Array, v: Array) -> dict[str, Array]:
+    """The signals (k,) of pins, of displacements q and velocities v (k, n)."""
+    found: dict[str, Array] = {}
+    for ring, (angle, torque) in pin_names(system).items():
+        found[angle] = q[:, system.spins[ring]].copy()
+        found[torque] = pin_torque(system.pins[ring], found[angle], v[:, system.spins[ring]])
+    return found
+
+
 def header(
     command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
 ) -> Header:
@@ -89,6 +122,7 @@ def header(
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
+    units |= pin_units(system)
     units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))

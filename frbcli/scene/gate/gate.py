@@ -99,6 +99,8 @@ RULES = (
     Rule(static.chart_heat_faults, (CHART,)),
     Rule(static.missing_heat_faults, (HEAT,)),
     Rule(static.still_ring_faults, (BEARING, LOADED, STABILITY, *EVERY_CYCLE)),
+    Rule(static.pin_faults, (*SHEETS, STABILITY, RANGE, *EVERY_CYCLE)),
+    Rule(static.pinned_start_faults, (RUN,), moving=True),
     Rule(dampers.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
     Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
+from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
@@ -71,6 +72,22 @@ def still_ring_faults(case: Case) -> Iterator[Fault]:
     for index, bearing in enumerate(case.bearings):
         if isinstance(bearing, FloatingRingBearing) and bearing.ring.spin == "blocked":
             yield Fault(f"{bearing_key(case, index)}.ring.spin", "blocked", None, problem, remedy)
+
+
+def pin_faults(case: Case) -> Iterator[Fault]:
+    """A ring at its pin neither turns with the balance of its torques nor is it held without a spring."""
+    problem = "holds a ring that turns within its play: no position of rest is found with it."
+    remedy = 'Take a run, which follows it; or remove it and write ring.spin = "blocked".'
+    for each in PinElement.of(case):
+        yield Fault(each.key, "", None, problem, remedy)
+
+
+def pinned_start_faults(case: Case) -> Iterator[Fault]:
+    """A run does not begin at rest with a pin."""
+    if case.start.position == "resting":
+        for _ in PinElement.of(case):
+            problem = "is not known of a ring with a pin."
+            yield Fault("start.position", "resting", None, problem, 'Write "centre", or remove the pin.')
 
 
 def loaded_heat_faults(case: Case) -> Iterator[Fault]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.elements.pin import pin_rows
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.film.rectangles.film import FilmForce
@@ -31,7 +32,8 @@ class System:
     rotor: the linear system; films: see Films; names: of the films. bodies: (films, 2) what lies inside and outside of
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
-    torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces.
+    torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces;
+    pins: (rings or 0, PIN) of the rings, see solve/pin.py.
     """
 
     rotor: LinearRotor
@@ -45,6 +47,7 @@ class System:
     torque: str = "all"
     own_length: float = 0.0
     asperities: Asperities | None = None
+    pins: Array = field(default_factory=lambda: pin_rows(()))
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """Force and derivatives of film i, see Films, and of rough surfaces beside it. Their friction has the sense of
@@ -124,6 +127,7 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         torque=case.film.torque,
         own_length=plan.length,
         asperities=rough_surfaces(case),
+        pins=pin_rows([around[0].pin for around in ringed]),
     )
 
 

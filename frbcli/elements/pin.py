@@ -1,0 +1,63 @@
+"""Pins of semi-floating rings and cartridges: they act on the turning of a ring alone, and in runs.
+
+M = -(K (phi - phi_0) + C phi') beyond the play phi_0 to one side, K = k r^2 and C = c r^2 of a pin at the radius r, as
+long as it pushes the ring back, and 0 within the play; solve/pin.py has it in a stage of the time loop.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Self
+
+import numpy as np
+
+from frbcli.case.bearing import Pin
+from frbcli.case.schema import Case
+from frbcli.elements.element import Line, MachineElement, Site
+from frbcli.rotor.linear import Array
+from frbcli.units import display
+
+
+@dataclass(frozen=True)
+class PinElement(MachineElement):
+    """The pin of a ring or cartridge. bearing: its name."""
+
+    bearing: str
+    given: Pin
+
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        """See MachineElement."""
+        for key, bearing in zip(case.given_keys, case.given_bearings, strict=True):
+            if bearing.pin is not None:
+                yield cls(f"{key}.pin", bearing.name, bearing.pin)
+
+    def told(self, site: Site) -> Line:
+        """See MachineElement."""
+        pin = self.given
+        value = f"{self.bearing}: play {display(pin.play, 'm')}".removeprefix(": ")
+        free = f"{math.degrees(pin.play / pin.radius):.3g} deg to either side"
+        damped = f" and {display(pin.damping, 'N*s/m')}" if pin.damping else ", undamped"
+        return "pin", value, f"the ring turns by {free}, then touches {display(pin.stiffness, 'N/m')}{damped}"
+
+
+def pin_rows(pins: Sequence[Pin | None]) -> Array:
+    """(rings, 4) PLAY, STIFFNESS, DAMPING and RADIUS of solve/pin.py of the pins of all rings; without rows if there is
+    none."""
+    if not any(pins):
+        return np.zeros((0, 4))
+    return np.array([(0.0,) * 4 if pin is None else _row(pin) for pin in pins])
+
+
+def _row(pin: Pin) -> tuple[float, float, float, float]:
+    return pin.play / pin.radius, pin.stiffness * pin.radius**2, pin.damping * pin.radius**2, pin.radius
+
+
+def pin_torque(row: Array, angle: Array, speed: Array) -> Array:
+    """Torque in N m on a ring of its pin, a row of pin_rows, at angles in rad and speeds in rad/s."""
+    play, stiffness, damping, _ = row
+    beyond = angle - np.clip(angle, -play, play)
+    pushes = np.sign(beyond) * np.maximum(np.sign(beyond) * (stiffness * beyond + damping * speed), 0.0)
+    return np.asarray(-pushes)
