@@ -119,11 +119,16 @@ def test_errors_over_the_viscosity_are_those_of_films_that_make_it_larger() -> N
     branch = follow_branch(walk.follower, start, until=lambda cycle: cycle.kind == "fold")
     (fold,) = (cycle for cycle in branch.cycles if cycle.kind == "fold")
     off = SHARE * (1.0 - 1.0 / WIDER)
+    before = other.machine.cache_info().misses
     found = point_of(walk, fold)
+    assert other.machine.cache_info().misses == before + 3
     assert found.value_uncertainty == pytest.approx(off * found.value, rel=1e-3)
     assert found.frequency_uncertainty_Hz < 2e-4 * found.frequency_Hz
     assert found.eccentricity_max_uncertainty is not None
     assert found.eccentricity_max_uncertainty[0] < 1e-3
+    cycle = next(each for each in branch.cycles if each is not fold)
+    point_of(walk, cycle)
+    assert other.machine.cache_info().misses == before + 4, (cycle.y[-1], len(branch.cycles))
     value, frequency = hopf_error(own, meshes, resting.hopf[0])
     assert value == pytest.approx(off * resting.hopf[0].equilibrium.value, rel=0.02)  # to first order
     assert frequency < 2e-4 * resting.hopf[0].nu

@@ -19,6 +19,7 @@ Array = NDArray[np.float64]
 MachineAt = Callable[[float], Machine]  # by the last unknown
 
 DIFFERENCE = 1e-5  # of the last unknown, which is of the order of 1
+NEAR = 1e-3  # of it: between the three machines that stand for all next to a value
 KEPT = 64  # machines
 
 
@@ -64,6 +65,27 @@ class ChangingFollower(Follower):
             return lambda y: self._staying(Balance(machine, reference), y)
 
         return lambda y: by_difference(self._machine, of, y)
+
+    def equations_at(self, place: Place) -> Equations:
+        """See Follower: those of one machine."""
+        balance = Balance(self.machine_at(place.y), self.reference(place))
+        return lambda y: self._staying(balance, y)
+
+    def equations_near(self, place: Place) -> Equations:
+        """See Follower: parabolas through those of three machines, at the value of the place and on both sides."""
+        reference, last = self.reference(place), float(place.y[-1])
+        balances = [Balance(self._machine(last + off), reference) for off in (-NEAR, 0.0, NEAR)]
+
+        def at(y: Array) -> tuple[Array, Array]:
+            off = (float(y[-1]) - last) / NEAR
+            weights = np.array([0.5 * off * (off - 1.0), 1.0 - off**2, 0.5 * off * (off + 1.0)])
+            changes = np.array([off - 0.5, -2.0 * off, off + 0.5]) / NEAR
+            residuals, slopes = map(np.array, zip(*(self._staying(each, y) for each in balances), strict=True))
+            slope = np.tensordot(weights, slopes, 1)
+            slope[:, -1] += changes @ residuals
+            return weights @ residuals, slope
+
+        return at
 
     def _staying(self, balance: Balance, y: Array) -> tuple[Array, Array]:
         """Residual and derivative at y while the machine stays."""

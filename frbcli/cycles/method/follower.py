@@ -109,6 +109,14 @@ class Follower:
         """Those of the cycles about a place."""
         return Balance(self.machine, self.reference(place), self.omega)
 
+    def equations_at(self, place: Place) -> Equations:
+        """Those of the cycles about a place with its last unknown; by it alone they may change in another way."""
+        return self.equations(place)
+
+    def equations_near(self, place: Place) -> Equations:
+        """Those of the cycles about a place, next to its last unknown."""
+        return self.equations(place)
+
     def reference(self, place: Place) -> Complex:
         """The motion that the phase of cycles about a place is compared with."""
         moving = self.moves(place.y)  # at a Hopf point only the tangent has a phase

@@ -9,7 +9,7 @@ other films at its value, and from how the eigenvalue changes with the number.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,13 +27,15 @@ from frbcli.cycles.method.continuation import (
 from frbcli.cycles.method.cycle import FOLD, Cycle, eccentricities, passed_rest
 from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint
 from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.parts.machine import Machine
 from frbcli.equilibrium.coefficients import LEAST
 
 Array = NDArray[np.float64]
+Seek = Callable[[Equations, Place], Place | None]
 
 TAIL_SHARE = 10.0  # of the tail of cycles, which have more harmonics for their multipliers
 REACHES = (0.02, 0.1)  # along the branch, within which the fold on the other films is sought
-LOCATED = 1e-6  # of it: how closely
+LOCATED = 1e-5  # of it: how closely
 STAGES = 4  # from one film to another, where Newton's method does not lead there at once
 AHEAD = 1e-3  # of the value of a Hopf point, for the derivative of its eigenvalue
 
@@ -64,13 +66,11 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
     number. own: the follower of its branch."""
     here = np.array([*cycle.place.y[[-1, -2]], *cycle.eccentricity_max])
     errors = [LEAST * here]
-    for mesh in meshes:
-        found = _found_again(own, mesh.follower, cycle)
+    for found in _found_again(own, [mesh.follower for mesh in meshes], cycle):
         if found is None:
             return CycleError(np.nan, np.nan, np.full(cycle.machine.film_count, np.nan))
-        machine, y = mesh.follower.machine_at(found.y), mesh.follower.as_cycle(found.y)
-        there = np.array([*found.y[[-1, -2]], *eccentricities(machine, y)])
-        errors.append(mesh.share * np.abs(there - here))
+        there = np.array([*found.y[[-1, -2]], *eccentricities(cycle.machine, found.y)])
+        errors.append(meshes[len(errors) - 1].share * np.abs(there - here))
     last, frequency, *eccentricity = np.max(errors, axis=0)
     return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
@@ -99,24 +99,28 @@ def _whirl(course: EquilibriumCourse, hopf: HopfPoint, value: float) -> complex:
     return complex(values[np.argmin(np.abs(values - 1j * hopf.nu))])
 
 
-def _found_again(own: Follower, follower: Follower, cycle: Cycle) -> Place | None:
-    """The fold on the films of a follower that a fold is there, or the cycle of the same speed; None without one. Films
-    that differ much, such as those of two theories, are changed into each other in stages. own: the follower of its
-    branch."""
-    seek = _fold if cycle.kind == FOLD else _same_speed
-    try:
-        near = follower.refitted(cycle.place, TAIL_SHARE)
-    except Unreachable:
-        return None
-    if near is None:
-        return None
-    here, there = own.equations(near), follower.equations(near)
+def _found_again(own: Follower, followers: Sequence[Follower], cycle: Cycle) -> Iterator[Place | None]:
+    """The fold on the films of each follower that a fold is there, or the cycle of the same speed; None without one.
+    own: the follower of its branch."""
+    near = own.refitted(cycle.place, TAIL_SHARE) or cycle.place
+    if cycle.kind == FOLD:
+        here = own.equations_near(near)
+        yield from (_in_stages(_fold, here, each.equations_near(near), near, cycle.machine) for each in followers)
+    else:
+        here = own.equations_at(near)
+        near = _with_side(here, near)
+        yield from (_in_stages(_same_speed, here, each.equations_at(near), near, cycle.machine) for each in followers)
+
+
+def _in_stages(seek: Seek, here: Equations, there: Equations, near: Place, machine: Machine) -> Place | None:
+    """What is sought on other films. Those that differ much, such as those of two theories, are changed into each other
+    in stages."""
     for stages in (1, STAGES):
         found: Place | None = near
         for stage in range(1, stages + 1):
             if found is not None:
                 before, found = found, seek(_between(here, there, stage / stages), found)
-                found = None if found is None or passed_rest(follower.machine, before, found) else found
+                found = None if found is None or passed_rest(machine, before, found) else found
         if found is not None:
             return found
     return None
@@ -134,12 +138,16 @@ def _between(own: Equations, other: Equations, share: float) -> Equations:
     return equations
 
 
+def _with_side(equations: Equations, place: Place) -> Place:
+    """The place with the sign of the determinant that belongs to the plane in which the last unknown stays: another one
+    on the other side of a fold."""
+    _, slope = equations(place.y)
+    return replace(place, side=int(np.linalg.slogdet(slope[:, :-1])[0]))
+
+
 def _same_speed(equations: Equations, near: Place) -> Place | None:
-    upwards = unit_vector(len(near.y))
-    found = corrected(equations, near.y, upwards)
-    # Both tangents rise in speed; on the other side of a fold that one would lead away from it, this one towards it.
-    same_side = found is not None and found.tangent @ oriented(near, upwards).tangent > 0.0
-    return found if same_side else None
+    found = corrected(equations, near.y, unit_vector(len(near.y)))
+    return found if found is not None and found.side == near.side else None
 
 
 def _fold(equations: Equations, near: Place) -> Place | None:
