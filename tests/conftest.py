@@ -19,10 +19,12 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-# Files that take longest, first: a worker that began one of them last would be waited for alone.
+# Files that take longest, first: a worker that began one of them last would be waited for alone. Neighbours begin at
+# the same time: they compile no time loop for the same machine.
 LONGEST = (
-    "test_oil_cycles", "test_command_line", "test_two_frequencies", "test_heat_run", "test_coefficients_element",
-    "test_sweep", "test_heat", "test_work_lost", "test_streams", "test_pressed_contact", "test_limit_cycles",
+    "test_heat_run", "test_command_line", "test_oil_cycles", "test_inputs", "test_given_flow_run", "test_limit_cycles",
+    "test_streams", "test_resumed_machines", "test_published_run", "test_coefficients_element", "test_two_frequencies",
+    "test_work_lost", "test_pressed_contact", "test_own_bearing", "test_cosimulation", "test_film_signals",
 )  # fmt: skip
 
 

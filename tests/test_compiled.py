@@ -164,7 +164,10 @@ def test_arrays_that_kernels_make_have_one_who_counts_their_references() -> None
             assert counts[given] == {"makes_arrays=True" in decorator}, f"{name} calls {given}"
 
 
-@pytest.mark.parametrize("name", ["jeffcott", "floating-ring", "rigid-two-phase"])
+MORE = [pytest.param(name, marks=pytest.mark.nightly) for name in ("floating-ring", "rigid-two-phase")]
+
+
+@pytest.mark.parametrize("name", ["jeffcott", *MORE])
 def test_a_run_leaves_no_array_behind(name: str, tmp_path: Path) -> None:
     """Of a longer run as many live on as of a short one."""
     _nrt_python.memsys_enable_stats()

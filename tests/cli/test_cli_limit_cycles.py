@@ -117,6 +117,7 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert "a memory in its oil" in " ".join(capsys.readouterr().err.split())
 
 
+@pytest.mark.nightly  # a whole diagram for one line of text
 def test_speeds_without_a_cycle_are_told() -> None:
     near = ["speed.from=150 Hz", "speed.to=185 Hz"]
     case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm", *near])

@@ -81,6 +81,7 @@ def test_pockets_slots_and_lobes_rest_and_begin_to_whirl_as_their_coefficients_d
     assert (growths[1] > 0.0) == begins
 
 
+@pytest.mark.nightly  # 9 s; pockets, slots and lobes below
 def test_the_hopf_point_is_the_threshold_of_the_coefficients() -> None:
     """Disturbances of 2 % of the clearance cross cells: the growth differs by what the kinks leave."""
     (hopf,) = diagram().of("hopf")

@@ -191,7 +191,7 @@ def test_the_circle_without_gravity_solves_its_algebraic_equation(damping: float
     np.testing.assert_allclose(np.hypot(*cycle.orbit().T), eccentricity, atol=1e-7)
 
 
-@pytest.mark.parametrize("speed_Hz", [190.0, 220.0])
+@pytest.mark.parametrize("speed_Hz", [190.0, pytest.param(220.0, marks=pytest.mark.nightly)])
 def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Jeffcott rotor, half-Sommerfeld, tabulated film: a run at constant speed after its transients."""
     settings = [f"speed.from={speed_Hz} Hz", f"speed.to={speed_Hz} Hz", "speed.duration=2 s", "output.step=2e-5 s"]

@@ -111,6 +111,7 @@ def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: fl
     assert cycle.frequency_Hz == pytest.approx(frequency, rel=rtol)
 
 
+@pytest.mark.nightly  # 70 s; cycles that are shot, in a plane: solve/test_tilted_cycles.py
 def test_the_cycle_is_what_the_time_loop_ends_in() -> None:
     """At 82 Hz, where disturbances lose 6 % in a period: after 160 periods, the mean over 80."""
     check_time_loop_ends_in_the_cycle(diagram(), 240, 1e-4)
@@ -147,6 +148,7 @@ def test_oil_that_stays_for_many_periods_does_not_end_the_branch() -> None:
     assert all(point.stable for point in branch.points[1:])
 
 
+@pytest.mark.nightly  # most of 70 s, see above
 def test_the_branch_begins_in_its_hopf_point_and_closes_its_orbits() -> None:
     found = diagram()
     (hopf,) = found.of("hopf")

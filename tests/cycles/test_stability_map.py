@@ -59,6 +59,7 @@ def gamma_of(value: float) -> float:
     return value / viscosity
 
 
+@pytest.mark.nightly  # 13 s; points of diagrams by themselves: test_limit_cycles.py
 def test_curves_of_a_map_are_those_of_the_diagrams() -> None:
     """One curve of Hopf points and one of folds; Hopf points of both known values of Gamma lie on the first (by
     the parabola through three points), and the folds of a diagram that the map has not seen on the second."""

@@ -564,6 +564,7 @@ def test_studies_of_films_are_refused_without_films() -> None:
         _ = case.oil
 
 
+@pytest.mark.nightly  # 10 s; Hopf point and threshold: test_support.py
 def test_limit_cycles_of_a_film_beside_an_element() -> None:
     """A seal that takes some of the damping away lowers the Hopf point to the threshold of stability."""
     seal = {"kind": "coefficients", "name": "seal", "stiffness": matrix(1e5, 5e4, "N/m")}

@@ -84,7 +84,14 @@ def test_stated_error_bounds_the_true_one(settings: tuple[str, ...], tmp_path: P
 STARVING = ("accuracy.target=1e-3", "speed.duration=0.2 s", "speed.from=20 Hz", "speed.to=40 Hz", "output.step=1e-3 s")
 
 
-@pytest.mark.parametrize("settings", [(), ("accuracy.mesh=[4, 32]",), ("accuracy.mesh=[8, 64]",)])
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ("accuracy.mesh=[4, 32]",),
+        pytest.param((), marks=pytest.mark.nightly),
+        pytest.param(("accuracy.mesh=[8, 64]",), marks=pytest.mark.nightly),
+    ],
+)
 def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tmp_path: Path) -> None:
     """A film that loses oil; against more than twice the cells of the plan."""
     run = runup(load_case("jeffcott-two-phase", [*STARVING, *settings]), tmp_path / "run.h5")

@@ -91,8 +91,8 @@ def test_at_rest_films_carry_the_weight_and_lose_what_the_sheet_says(case: str, 
     ("case", "bound"),
     [
         ("jeffcott", 1e-3),
-        ("jeffcott-supply-2bar", 1e-3),
-        # chains leave out the ends of the grooves; a time loop of their own
+        pytest.param("jeffcott-supply-2bar", 1e-3, marks=pytest.mark.nightly),  # a time loop of its own
+        # likewise; chains leave out the ends of the grooves
         pytest.param("axial-groove", 0.02, marks=pytest.mark.nightly),
     ],
 )

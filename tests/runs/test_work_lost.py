@@ -289,7 +289,14 @@ March.compile = compile
 """
 
 
-@pytest.mark.parametrize(("number", "after_s"), [(signal.SIGINT, 0.0), (signal.SIGTERM, 0.3), (signal.SIGHUP, 0.7)])
+@pytest.mark.parametrize(
+    ("number", "after_s"),
+    [
+        (signal.SIGTERM, 0.3),
+        pytest.param(signal.SIGINT, 0.0, marks=pytest.mark.nightly),
+        pytest.param(signal.SIGHUP, 0.7, marks=pytest.mark.nightly),
+    ],
+)
 def test_an_interruption_while_kernels_compile_is_quiet(number: signal.Signals, after_s: float) -> None:
     with process(COMPILING, "runup", *QUICK, "-o", "run.h5") as one:
         assert one.stdout is not None
@@ -318,7 +325,7 @@ def test_an_interruption_while_modules_are_imported_is_quiet(after_s: float) -> 
     assert "Exception" not in err
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.nightly)])
 def test_an_interruption_that_a_library_drops_comes_again(number: signal.Signals) -> None:
     dropping = """
 import time
@@ -392,7 +399,7 @@ def test_a_table_on_a_full_disk_is_not_left_in_part() -> None:
         assert os.listdir() == ["run.h5"]
 
 
-@pytest.mark.parametrize("backend", ["nonsense", "gtk4agg"])
+@pytest.mark.parametrize("backend", ["nonsense", pytest.param("gtk4agg", marks=pytest.mark.nightly)])
 def test_a_window_system_is_nobody_s_business(backend: str) -> None:
     with process("", "runup", *QUICK, "-o", "run.h5", variables={"MPLBACKEND": backend}) as one:
         _, err = one.communicate(timeout=120.0)

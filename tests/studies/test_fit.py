@@ -125,6 +125,7 @@ def test_what_cannot_vary_is_refused(measurement: Run) -> None:
             fit(case, measurement, keys, bounds)  # type: ignore[arg-type]
 
 
+@pytest.mark.nightly  # one more fit
 def test_a_number_at_its_bound_says_so(measurement: Run) -> None:
     case = frbcli.load_case("jeffcott", BASE)
     (number,) = fit(case, measurement, ["bearing.clearance"], {"bearing.clearance": (34e-6, 36e-6)}).numbers

@@ -285,6 +285,7 @@ class Bomb:
         return os._exit, (1,)
 
 
+@pytest.mark.nightly  # a worker that dies: test_hard_cases.py
 def test_a_process_that_dies_takes_no_other_point_with_it(case: Case) -> None:
     bomb: Any = Bomb()
     stability(case, [100.0])  # compiled once, not in each process

@@ -45,6 +45,7 @@ def cold(words: list[str], cache: Path) -> Any:
     return json.loads(done.stdout)
 
 
+@pytest.mark.nightly  # compiles a time loop in a process of its own
 def test_kernels_are_compiled_once(tmp_path: Path) -> None:
     """The machine without films has the fewest kernels. Afterwards nothing is missing, also not in a longer run."""
     cache = tmp_path / "cache"

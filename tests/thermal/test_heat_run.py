@@ -175,8 +175,8 @@ def test_films_in_balance_gain_nothing() -> None:
 @pytest.mark.parametrize(
     ("settings", "duration"),
     [
-        ([], 0.6),
-        (["thermal.mixing=1", "thermal.housing=75 degC"], 0.4),
+        (["film.theory=short"], 0.6),
+        (["film.theory=short", "thermal.mixing=1", "thermal.housing=75 degC"], 0.4),
         (["film.cavitation=reynolds"], 0.4),
         (["film.cavitation=two-phase"], 0.8),
         (["film.cavitation=penalty"], 0.4),

@@ -291,6 +291,7 @@ def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
     assert full.force_error < 4e-2  # of a whirl whose force falls from the first step on
 
 
+@pytest.mark.nightly  # 6 s beside the squeeze above
 def test_a_squeeze_of_the_published_form_is_symmetric(tmp_path: Path) -> None:
     """The journal moves along y only; and it returns what the film has kept."""
     result = squeeze(moved(tmp_path / "case.toml")).results[0]
