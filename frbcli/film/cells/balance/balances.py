@@ -146,6 +146,21 @@ def _between_rough(
     return factor * through, factor * by_x + rises * s * through, factor * by_y - rises * c * through
 
 
+@compiled(inline=True)
+def _carried(states: Array, i: int, n: int, j: int, forward: bool) -> tuple[float, float, float]:
+    """The oil fraction that the surfaces carry through the face between cell (i, j) and the next one around, (n, j),
+    see carried.py, and its derivatives by the oil fractions of the two. Of compressed oil it is the mean."""
+    t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+    over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
+    loose, loose_n = t - over, t_n - over_n
+    upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
+    more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
+    theta = upstream + more + 0.5 * (over + over_n)
+    by_upstream = 1.0 + by_before - by_across
+    here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
+    return theta, 0.5 if t > 1.0 else here, 0.5 if t_n > 1.0 else next_
+
+
 @compiled()
 def _flow_around(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
@@ -155,7 +170,7 @@ def _flow_around(
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     bored, half, roughness = film.bored, 0.5 * omega, film.roughness
     sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
-    forward = omega >= 0.0
+    forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
     taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -183,21 +198,21 @@ def _flow_around(
                 through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
                 if roughness > 0.0:
                     through, by_x, by_y = _between_rough(at, at_s, at_c, roughness, through, by_x, by_y)
-            p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
-            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+            fall, slope, slope_n = (
+                states[PRESSURE, i, j] - states[PRESSURE, n, j],
+                states[PRESSURE_SLOPE, i, j],
+                states[PRESSURE_SLOPE, n, j],
+            )
+            if still and fall == 0.0 and slope == 0.0 and slope_n == 0.0:
+                continue  # in a cavity at p_cav
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
-            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
-            loose, loose_n = t - over, t_n - over_n
-            upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
-            more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
-            theta = upstream + more + 0.5 * (over + over_n)
-            by_upstream = 1.0 + by_before - by_across
-            here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
-            fall = p - p_n
+            theta, own, other = 0.0, 0.0, 0.0
+            if not still:
+                theta, here, next_ = _carried(states, i, n, j, forward)
+                own = swept * here * states[FRACTION_SLOPE, i, j]
+                other = swept * next_ * states[FRACTION_SLOPE, n, j]
             pressed, drawn = through * fall, swept * theta
-            own = swept * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
-            other = swept * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
-            by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
+            by_own, by_next = through * slope, through * slope_n
             taken += (share - share_n) * drawn
             right[i, j, k + BY_ITSELF] -= pressed + share * drawn
             right[n, j, k + BY_ITSELF] += pressed + share_n * drawn

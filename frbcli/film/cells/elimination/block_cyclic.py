@@ -154,6 +154,89 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
                 fields[i, a, c] = held[a, c]
 
 
+@compiled(fastmath={"contract", "reassoc"})
+def _begin_column(stencil: Array, fields: Array, i: int, rows: Array, column: Any, sides: Any) -> None:
+    """rows (k, w) <- the equations of column i by its own unknowns, without a border, and their right-hand sides."""
+    k, r = len(column), len(sides)
+    for a in range(k):
+        for c in range(row_length(k, r)):
+            rows[a, c] = 0.0
+        rows[a, a] = stencil[CENTRE, i, a]
+        if a > 0:
+            rows[a, a - 1] = stencil[BELOW, i, a]
+        if a < k - 1:
+            rows[a, a + 1] = stencil[ABOVE, i, a]
+        for side in range(r):
+            rows[a, 2 * k + side] = fields[i, a, k + side]
+
+
+@compiled()
+def unfelt(stencil: Array, i: int) -> bool:
+    """Whether no other column feels the unknowns of column i: a cavity at p_cav that turns with the oil."""
+    m, k = stencil.shape[1], stencil.shape[2]
+    before, behind = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+    a = 0
+    while a < k and stencil[BEHIND, before, a] == 0.0 and stencil[BEFORE, behind, a] == 0.0:
+        a += 1
+    return bool(a == k)
+
+
+@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
+def _solve_parted(stencil: Array, fields: Array, cut: int, column: Any, sides: Any) -> None:
+    """solve_known of a ring that columns part which are unfelt, column `cut` among them: what stands between two of
+    them is solved by itself, without a border; they themselves follow."""
+    m, k, r, sizes = stencil.shape[1], len(column), len(sides), (column, sides)
+    rows, first, n = np.empty((m, k, row_length(k, r))), 0, 1
+    while n < m:
+        first = (cut + n) % m
+        n += 1
+        if unfelt(stencil, first):
+            continue
+        _begin_column(stencil, fields, first, rows[first], column, sides)
+        eliminate_column(rows[first], sizes)
+        i, behind = first, (first + 1) % m
+        while not unfelt(stencil, behind):
+            next_column(
+                stencil[CENTRE, behind], stencil[BELOW, behind], stencil[ABOVE, behind], stencil[BEFORE, behind],
+                stencil[BEHIND, i], fields[behind], rows[i], rows[behind], sizes,
+            )  # fmt: skip
+            i, behind, n = behind, (behind + 1) % m, n + 1
+        while True:
+            for a in range(k):
+                for side in range(r):
+                    fields[i, a, k + side] = rows[i, a, 2 * k + side]
+            if i == first:
+                break
+            before = i - 1 if i > 0 else m - 1
+            take_in_next(stencil[BEHIND, before], rows[i], rows[before], sizes)
+            i = before
+    for i in range(m):
+        if unfelt(stencil, i):
+            _follow_neighbours(stencil, fields, i, column, sides)
+
+
+@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
+def _follow_neighbours(stencil: Array, fields: Array, i: int, column: Any, sides: Any) -> None:
+    """The solution in column i, which is unfelt, from those of the columns beside it: by Thomas' algorithm."""
+    m, k, r = stencil.shape[1], len(column), len(sides)
+    before, behind, above = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0, np.empty(k)
+    for a in range(k):
+        pivot, low, from_before, from_behind = (
+            stencil[CENTRE, i, a], stencil[BELOW, i, a], stencil[BEFORE, i, a], stencil[BEHIND, i, a]
+        )  # fmt: skip
+        if a > 0:
+            pivot -= low * above[a - 1]
+        above[a] = stencil[ABOVE, i, a] / pivot
+        for side in range(k, k + r):
+            right = fields[i, a, side] - from_before * fields[before, a, side] - from_behind * fields[behind, a, side]
+            if a > 0:
+                right -= low * fields[i, a - 1, side]
+            fields[i, a, side] = right / pivot
+    for a in range(k - 2, -1, -1):
+        for side in range(k, k + r):
+            fields[i, a, side] -= above[a] * fields[i, a + 1, side]
+
+
 @compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
 def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     """Solve the equations of solve_blocks for columns of a length and right-hand sides of a number known to the
@@ -163,18 +246,13 @@ def solve_known(stencil: Array, fields: Array, column: Any, sides: Any) -> None:
     inverse, border and right of each, the two latter first without and then with what the columns behind it bring.
     """
     m, k, r, sizes = stencil.shape[1], len(column), len(sides), (column, sides)
+    for i in range(m):
+        if unfelt(stencil, i):
+            _solve_parted(stencil, fields, i, column, sides)
+            return
     last, rows = m - 1, np.empty((m, k, row_length(k, r)))
-    for i in range(0, m, last):  # the first and the last column
-        for a in range(k):
-            for c in range(row_length(k, r)):
-                rows[i, a, c] = 0.0
-            rows[i, a, a] = stencil[CENTRE, i, a]
-            if a > 0:
-                rows[i, a, a - 1] = stencil[BELOW, i, a]
-            if a < k - 1:
-                rows[i, a, a + 1] = stencil[ABOVE, i, a]
-            for side in range(r):
-                rows[i, a, 2 * k + side] = fields[i, a, k + side]
+    for i in range(0, m, last):
+        _begin_column(stencil, fields, i, rows[i], column, sides)
     for a in range(k):
         rows[0, a, k + a] = stencil[BEFORE, 0, a]
     eliminate_column(rows[0], sizes)
