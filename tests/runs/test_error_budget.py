@@ -218,6 +218,18 @@ def test_parts_that_a_run_has(tmp_path: Path) -> None:
     assert finite["quiet_until_s"] == pytest.approx(0.3)
 
 
+def test_steps_beside_rings_have_no_larger_error_than_is_stated(tmp_path: Path) -> None:
+    """A turbocharger near the onset of its whirl amplifies what its steps leave: the same cells with a fifteenth of the
+    tolerance move it by 1.1e-3, where half of the sum of the local errors is 0.7e-3."""
+    settings = ["speed.to=125 Hz", "speed.duration=0.05 s", "accuracy.mesh=[8, 56]", "output.step=0.1 ms"]
+    runs = [
+        runup(load_case("turbocharger-car", [*settings, f"accuracy.tolerance={size}"]), tmp_path / f"{size}.h5")
+        for size in (7.5e-5, 5e-6)
+    ]
+    stated = runs[0].error["time_integration"]
+    assert 0.5 * stated < difference(*runs).largest < stated
+
+
 def test_verified_by_shorter_steps(tmp_path: Path) -> None:
     case = load_case("jeffcott", [*SHORT_RUN, "film.coupling=dynamic-static-semi-implicit"])
     run = runup(case, tmp_path / "run.h5")

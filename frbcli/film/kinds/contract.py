@@ -42,6 +42,7 @@ class Films(ABC):
     # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
     # to 29 times the true error of the journals, where it was measured (docs/accuracy.md).
     counted: ClassVar[float] = 0.5
+    counted_beside_rings: ClassVar[float] = 0.5
     # A relative error of the force moves the journal by as large a share of the eccentricity.
     reach: ClassVar[float] = 2.0
     cavitation_factor: ClassVar[str] = "none"  # "global" | "local" | "none": torque of missing oil, see FilmModel
@@ -103,7 +104,7 @@ class Films(ABC):
 
     def counted_share(self, ring_count: int) -> float:
         """Share of the sum of the local errors of a run that counts as its error. ring_count: of rings that turn."""
-        return self.counted if ring_count == 0 else Films.counted
+        return self.counted if ring_count == 0 else self.counted_beside_rings
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
         """wet (WET, films, m, k) and flows (2, films, q) that a run begins with, journals at rest at places (films,

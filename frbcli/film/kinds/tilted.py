@@ -58,6 +58,7 @@ class TiltedFilms(Films):
     stations: ClassVar[int] = 2
     samples: ClassVar[int] = 192
     counted: ClassVar[float] = 0.25
+    counted_beside_rings: ClassVar[float] = 1.0
     reach: ClassVar[float] = 3.0
 
     @cached_property

@@ -45,7 +45,7 @@ CELL_STEPS, SOLVED_STEPS = 12.0, 20.0
 # Local error of a step over the target, by method: the errors of some revolutions then add up to less than the target.
 LOOSE_SHARE, TIGHT_SHARE = 0.02, 0.01
 # The same of finite-volume films, over the error of the cells where that is above the target: the steps then add up to
-# 0.3 of the target, and to 0.03 of it for rotors on rings. Set on jeffcott-two-phase, axial-groove-two-phase and
+# 0.3 of the target, for rotors on rings to 0.01 to 0.4 of it. Set on jeffcott-two-phase, axial-groove-two-phase and
 # floating-ring, without the turbochargers and the hard cases.
 CELL_SHARE = 0.025
 # Of it, for laws and loads where errors of steps grow. Of 9 two-phase films under a mean pressure of 56 to 123 bar,
