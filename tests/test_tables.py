@@ -54,6 +54,24 @@ def test_heads_are_broken_before_cells(capsys: pytest.CaptureFixture[str]) -> No
     assert not any("a head of several words" in line for line in printed)
 
 
+def test_a_table_is_its_title_its_heads_a_line_and_its_rows(capsys: pytest.CaptureFixture[str]) -> None:
+    """Heads that are broken stand on the line; all rows are as wide as the table. In a pipe nothing is bold."""
+    long = "stiffness " * 9
+    Terminal().table("K", ("a", "", long.strip()), [("1\n2", "x" * 4, "y")])
+    title, above, first, second, line, row, below, last = lines(capsys)
+    assert {len(each) for each in (title, above, first, second, line, row, below, last)} == {len(line)}
+    assert (title.strip(), above.strip(), last.strip()) == ("K", "", "")
+    assert first.split() + second.split() == [*["stiffness"] * 6, "a", *["stiffness"] * 3]
+    assert line.strip() == "─" * (len(line) - 2)
+    assert (row.split(), below.split()) == (["1", "xxxx", "y"], ["2"])
+
+
+def test_tables_fit_a_terminal() -> None:
+    shown = seen(("check", "jeffcott"), environment={"COLUMNS": "80"})
+    assert shown.code == 0
+    assert max(map(len, shown.text.splitlines())) <= 80
+
+
 def test_errors_fit_the_screen_without_a_word_cut(capsys: pytest.CaptureFixture[str]) -> None:
     """In a pipe a fault is one line, which programs can read; on a terminal all of the same words are there."""
     assert run(WRONG) == 2

@@ -57,7 +57,7 @@ from frbcli.solve.watched import NOTES, Notes, advance_watched
 if TYPE_CHECKING:
     from frbcli.runs.axis import RunAxis
 
-BUFFER = 4096  # output samples between two looks at the clock, at least
+BUFFER = 16384  # output samples between two looks at the clock, at least
 # Steps between two looks at the clock, which cannot be interrupted: as many as take CHUNK_s.
 FIRST_BUDGET, BUDGET, GROWTH = 4, 5000, 8.0
 CHUNK_s = 0.1

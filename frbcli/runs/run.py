@@ -171,9 +171,8 @@ def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer
             return _with_second_run(march, RunWriter.of(earlier), earlier, observe)
         segments = make_segments(case, plan)
         march = March(case, plan, segments, profile)
-        head = header(command, case, segments)
         if earlier is not None and earlier.checkpoint is not None:
-            _restore(march, earlier, head)
+            _restore(march, earlier, header(command, case, segments))
             writer = RunWriter.resume(path)
         else:
             writer = RunWriter(path, header(command, case, segments, _critical_speeds(segments)))
@@ -213,8 +212,11 @@ def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: flo
                 checkpoint(march.error_so_far())
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
-        # The final state stays in the file.
-        checkpoint(march.error_so_far())
+        # The final state stays in the file: at once, unless it is soon written with the rest and little would be lost.
+        if status != RUNNING and time.monotonic() - saved < pause and march.film_error_s < CHECKPOINT_EVERY_s:
+            writer.hold(march.snapshot(), march.cost(), march.error_so_far(), march.time)
+        else:
+            checkpoint(march.error_so_far())
         if status == RUNNING:
             return _interrupted(march, writer)
     ended = STATUS.get(status, "not-converged")

@@ -80,13 +80,15 @@ def track(run: RunLike, wanted: Sequence[Tracked]) -> tuple[Revolutions, list[Mo
     """The steps (m,) of a run, and of each of the motions wanted its complex amplitude (m - 2 half,) in m, seen from a
     frame that turns with its order: value i belongs to step i + half. Empty where the run is shorter than a window."""
     rotor, windows = _Rotor(), [_Window(one) for one in wanted]
-    sums = {(one.kind, one.name, one.order): _Sum(one.order) for one in wanted}
+    sums = {(one.kind, one.name, one.order): _Sum() for one in wanted}
     for start, stop in signals.pieces(len(run)):
         first = max(0, start - 1)  # a piece begins with the last sample of the one before
         time_s, speed = (signals.piece(run, name, first, stop) for name in ("time_s", "speed_Hz"))
         piece = rotor.take(time_s, speed)
         motions = {node: signals.motion_of(run, *node, first, stop) for node in {key[:2] for key in sums}}
-        cells = {key: whole.take(motions[key[:2]], piece) for key, whole in sums.items()}
+        still = {order: np.exp(-2j * np.pi * order * piece.angle) for order in {abs(key[2]) for key in sums}}
+        still |= {-order: np.conj(turning) for order, turning in still.items()}
+        cells = {key: whole.take(motions[key[:2]] * still[key[2]], piece) for key, whole in sums.items()}
         for window in windows:
             window.take(cells[window.key])
     turns = rotor.turns()
@@ -137,14 +139,12 @@ class _Rotor:
 class _Sum:
     """The integral of z exp(-i q phi) over the passed angle, from cell to cell."""
 
-    def __init__(self, order: float) -> None:
-        self._order = order
+    def __init__(self) -> None:
         self._whole = self._edge = 0.0 + 0.0j  # up to the last sample, and to the last edge
         self._begun = False
 
-    def take(self, motion: Motion, piece: _Piece) -> Motion:
-        """Means over the cells that end in a piece; motion (n,): z at its samples."""
-        seen = motion * np.exp(-2j * np.pi * self._order * piece.angle)
+    def take(self, seen: Motion, piece: _Piece) -> Motion:
+        """Means over the cells that end in a piece; seen (n,): the integrand at its samples."""
         between = np.diff(piece.passed)
         whole = self._whole + np.append(0.0, np.cumsum(0.5 * (seen[1:] + seen[:-1]) * between))
         self._whole = complex(whole[-1])

@@ -210,9 +210,9 @@ def _lines(motion: Values | Motion, starts: NDArray[np.int64], transform: _Trans
         if np.iscomplexobj(seen):
             yield from np.abs(np.fft.fft(seen, padded)[:, :kept])
             continue
-        lines = np.abs(np.fft.rfft(seen, padded))
-        lines[:, 1 : None if padded % 2 else -1] *= 2.0  # the other half is at negative frequencies
-        yield from lines[:, :kept]
+        lines = np.abs(np.fft.rfft(seen, padded)[:, :kept])
+        lines[:, 1 : (padded + 1) // 2] *= 2.0  # the other half is at negative frequencies
+        yield from lines
 
 
 def _step(time_s: SignalColumn) -> float:

@@ -25,7 +25,7 @@ CRITICAL_s = 0.5  # of the critical speeds of a machine on cells
 PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
 MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
-SAMPLES_HELD, COPIES = 4096, 3  # output times between two writes, and in how many forms
+SAMPLES_HELD, COPIES = 16384, 3  # output times between two writes, and in how many forms
 # How often all samples are in memory: in the run, and in the file that it is about to write; or in the run and in a
 # second one, of which one signal at a time is joined.
 KEPT, KEPT_OF_BOTH = 2.1, 2.2
