@@ -57,8 +57,8 @@ from frbcli.film.cells.data import (
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
-# leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
-# come; gap, rate at which it is stored, and the past of the gas, which are given.
+# leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, 1 / M and the gas that is known
+# to come; gap, rate at which it is stored, and the past of the gas, which are given.
 (
     ONWARD,
     BACKWARD,
@@ -67,14 +67,16 @@ from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_ga
     OUT,
     GIVEN,
     KEPT,
+    PER_KEPT,
     KNOWN,
     HEIGHT,
     FACTOR,
     GAS_PAST,
     PATHS,
-) = range(12)
+) = range(13)
 NONE = 1e-300
 SHARP, SWEEPS = 0.01, 50  # until gas changes by this share of its change in the first sweep, at most so many sweeps
+LITTLE = 0.1  # of what a film in a time step may be off by: sweeps that change less are the last
 
 
 @compiled(inline=True)
@@ -118,13 +120,17 @@ def _around(
             swept = 0.5 * omega * width[0, j] * h + extra * width[0, j]
             drawn = swept * (upstream + more + 0.5 * (over + over_n))
             pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
-            leaves, enters = pressed + cells[SHARE, i, j] * drawn, pressed + cells[SHARE, n, j] * drawn
-            shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
-            paths[ONWARD, i, j], paths[BACKWARD, i, j] = max(shared, 0.0), max(-shared, 0.0)
-            paths[OUT, i, j] += paths[ONWARD, i, j]
-            paths[OUT, n, j] += paths[BACKWARD, i, j]
-            _outside(leaves - shared, i, j, paths)
-            _outside(shared - enters, n, j, paths)
+            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
+            leaves = shared = pressed + share * drawn
+            if share != 1.0 or share_n != 1.0:
+                enters = pressed + share_n * drawn
+                shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
+                _outside(leaves - shared, i, j, paths)
+                _outside(shared - enters, n, j, paths)
+            onward, backward = max(shared, 0.0), max(-shared, 0.0)
+            paths[ONWARD, i, j], paths[BACKWARD, i, j] = onward, backward
+            paths[OUT, i, j] += onward
+            paths[OUT, n, j] += backward
             if cells[EXCESS, i, j] != 0.0:
                 _outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
 
@@ -175,10 +181,9 @@ def follow_oil(
 ) -> None:  # fmt: skip
     """The layers ONWARD to GIVEN of paths (PATHS, m, k) <- of the oil of states, see oil_paths of balance.py."""
     m, k = states.shape[1], states.shape[2]
-    for layer in range(KEPT):
-        for i in range(m):
-            for j in range(k):
-                paths[layer, i, j] = 0.0
+    for i in range(m):
+        for j in range(k):
+            paths[OUT, i, j] = paths[GIVEN, i, j] = 0.0
     _around(film, ring, width, cells, states, motion, paths)
     _along(film, ring, cells, states, motion, paths)
     _through_ends(film, ring, cells, states, motion, paths)
@@ -194,47 +199,88 @@ def replace_oil(film: np.record, cells: Array, states: Array, paths: Array) -> f
         for j in range(k):
             if cells[UNKNOWN, i, j] == 0.0:
                 states[FREE_GAS, i, j] = states[CARRIED_GAS, i, j] = film.supplied_gas
-                states[TURNOVER, i, j] = paths[KEPT, i, j] = paths[KNOWN, i, j] = 0.0
+                states[TURNOVER, i, j] = paths[KEPT, i, j] = paths[PER_KEPT, i, j] = paths[KNOWN, i, j] = 0.0
                 continue
             area, theta = cells[AREA, i, j], states[FRACTION, i, j]
             kept = max(area * paths[FACTOR, i, j] * theta + paths[OUT, i, j], NONE)
             rate, before = kept / max(area * paths[HEIGHT, i, j] * theta, NONE), states[TURNOVER, i, j]
             taken = abs(states[FREE_GAS, i, j] - states[CARRIED_GAS, i, j]) * states[PASSED_ON, i, j]
-            most = max(most, taken * abs(rate - before) / max(rate, before, NONE))
-            states[TURNOVER, i, j], paths[KEPT, i, j] = rate, kept
+            changed, largest = taken * abs(rate - before), max(rate, before, NONE)
+            if changed > most * largest:
+                most = changed / largest
+            states[TURNOVER, i, j], paths[KEPT, i, j], paths[PER_KEPT, i, j] = rate, kept, 1.0 / kept
             paths[KNOWN, i, j] = area * paths[GAS_PAST, i, j] + film.supplied_gas * paths[GIVEN, i, j]
     return most
 
 
-@compiled()
-def carry_gas(film: np.record, cells: Array, forward: bool, paths: Array, states: Array) -> float:
-    """The layers CARRIED_GAS and FREE_GAS of states <- with the flows of paths from cell to cell; forward: whether the
-    surfaces go round in the order of the cells. Returns the most that free gas has changed by in a sweep.
+@compiled(inline=True)
+def _renew(i: int, b: int, n: int, j: int, most_gas: float, paths: Array, states: Array) -> float:
+    """Gas comes into cell (i, j) from the columns b and n and along its own. Returns by how much the free gas changes.
 
     No oil has less than no gas, or more than all of its gas: pressures that are far from a solution may ask for it."""
+    comes = paths[KNOWN, i, j] + paths[ONWARD, b, j] * states[FREE_GAS, b, j]
+    comes += paths[BACKWARD, i, j] * states[FREE_GAS, n, j]
+    if j > 0:
+        comes += paths[UPWARD, i, j - 1] * states[FREE_GAS, i, j - 1]
+    if j + 1 < states.shape[2]:
+        comes += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1]
+    carried, before = min(max(comes * paths[PER_KEPT, i, j], 0.0), most_gas), states[FREE_GAS, i, j]
+    free = before + states[PASSED_ON, i, j] * (carried - states[CARRIED_GAS, i, j])
+    free = min(max(free, 0.0), most_gas)
+    states[CARRIED_GAS, i, j], states[FREE_GAS, i, j] = carried, free
+    return float(abs(free - before))
+
+
+@compiled(inline=True)
+def _renew_column(i: int, most_gas: float, cells: Array, paths: Array, states: Array) -> float:
+    """Gas comes into the cells of column i: along the axis as the oil of its first cell flows, and back where other oil
+    does. Returns the most that the free gas changes by."""
     m, k = states.shape[1], states.shape[2]
-    first, most_gas = 0.0, film.gas_content
-    for _ in range(SWEEPS):
+    b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+    down, most = paths[DOWNWARD, i, 0] > 0.0, 0.0
+    for turn in range(2 * k - 1):
+        back = turn >= k
+        j = 2 * k - 2 - turn if back else turn
+        if down:
+            j = k - 1 - j
+        if cells[UNKNOWN, i, j] == 0.0:
+            continue
+        if back and (paths[UPWARD, i, j - 1] if down else paths[DOWNWARD, i, j]) == 0.0:
+            continue
+        most = max(most, _renew(i, b, n, j, most_gas, paths, states))
+    return most
+
+
+@compiled()
+def _goes_back(forward: bool, paths: Array) -> bool:
+    """Whether oil flows against the surfaces anywhere."""
+    m, k = paths.shape[1], paths.shape[2]
+    against = BACKWARD if forward else ONWARD
+    for i in range(m):
+        for j in range(k):
+            if paths[against, i, j] > 0.0:
+                return True
+    return False
+
+
+@compiled()
+def carry_gas(film: np.record, cells: Array, forward: bool, close: float, paths: Array, states: Array) -> float:
+    """The layers CARRIED_GAS and FREE_GAS of states <- with the flows of paths from cell to cell; forward: whether the
+    surfaces go round in the order of the cells; close: changes of free gas by less need not be carried on. Returns the
+    most that free gas has changed by.
+
+    Where no oil flows against the surfaces, what a column changes by bounds that of all columns after it."""
+    m, most_gas, goes_back = states.shape[1], film.gas_content, _goes_back(forward, paths)
+    first = 0.0
+    for sweep in range(SWEEPS):
         most = 0.0
         for step in range(m):
-            i = step if forward else m - 1 - step
-            b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
-            for turn in range(2 * k - 1):  # along the axis to the last cell, and back
-                j = turn if turn < k else 2 * k - 2 - turn
-                if cells[UNKNOWN, i, j] == 0.0:
-                    continue
-                comes = paths[KNOWN, i, j] + paths[ONWARD, b, j] * states[FREE_GAS, b, j]
-                comes += paths[BACKWARD, i, j] * states[FREE_GAS, n, j]
-                if j > 0:
-                    comes += paths[UPWARD, i, j - 1] * states[FREE_GAS, i, j - 1]
-                if j + 1 < k:
-                    comes += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1]
-                carried, before = min(max(comes / paths[KEPT, i, j], 0.0), most_gas), states[FREE_GAS, i, j]
-                free = before + states[PASSED_ON, i, j] * (carried - states[CARRIED_GAS, i, j])
-                states[CARRIED_GAS, i, j], states[FREE_GAS, i, j] = carried, min(max(free, 0.0), most_gas)
-                most = max(most, abs(states[FREE_GAS, i, j] - before))
+            change = _renew_column(step if forward else m - 1 - step, most_gas, cells, paths, states)
+            most = max(most, change)
+            if sweep > 0 and not goes_back and change <= max(SHARP * first, close):
+                return first
         first = max(first, most)
-        if most <= SHARP * first:
+        if most <= max(SHARP * first, close):
             break
     return first
 
@@ -253,7 +299,17 @@ def take_gas_along(
             paths[HEIGHT, i, j], paths[FACTOR, i, j], paths[GAS_PAST, i, j] = h, motion.rate * h, past[i, j]
     follow_oil(film, ring, width, cells, states, motion, paths)
     off = replace_oil(film, cells, states, paths)
-    return max(off, carry_gas(film, cells, motion.omega >= 0.0, paths, states))
+    close = LITTLE * film.settled * film.gas_content
+    return max(off, carry_gas(film, cells, motion.omega >= 0.0, close, paths, states))
+
+
+@compiled(inline=True)
+def _brought(
+    i: int, j: int, flow: float, cells: Array, states: Array, outside: float, inside: float
+) -> tuple[float, float]:
+    """Gas that comes from given cells and from others, with what a flow brings from cell (i, j)."""
+    gas = flow * states[FREE_GAS, i, j]
+    return (outside + gas, inside) if cells[UNKNOWN, i, j] == 0.0 else (outside, inside + gas)
 
 
 @compiled()
@@ -271,16 +327,12 @@ def store_gas_rates(film: np.record, cells: Array, states: Array, paths: Array, 
             if cells[UNKNOWN, i, j] == 0.0:
                 continue
             outside, inside = film.supplied_gas * paths[GIVEN, i, j], 0.0
-            for p, q, flow in (
-                (b, j, paths[ONWARD, b, j]),
-                (n, j, paths[BACKWARD, i, j]),
-                (i, max(j - 1, 0), paths[UPWARD, i, j - 1] if j > 0 else 0.0),
-                (i, min(j + 1, k - 1), paths[DOWNWARD, i, j] if j + 1 < k else 0.0),
-            ):
-                if cells[UNKNOWN, p, q] == 0.0:
-                    outside += flow * states[FREE_GAS, p, q]
-                else:
-                    inside += flow * states[FREE_GAS, p, q]
+            outside, inside = _brought(b, j, paths[ONWARD, b, j], cells, states, outside, inside)
+            outside, inside = _brought(n, j, paths[BACKWARD, i, j], cells, states, outside, inside)
+            if j > 0:
+                outside, inside = _brought(i, j - 1, paths[UPWARD, i, j - 1], cells, states, outside, inside)
+            if j + 1 < k:
+                outside, inside = _brought(i, j + 1, paths[DOWNWARD, i, j], cells, states, outside, inside)
             leaves = paths[OUT, i, j] * states[FREE_GAS, i, j]
             released = paths[KEPT, i, j] * (states[FREE_GAS, i, j] - states[CARRIED_GAS, i, j])
             rates[i, j] = (outside + inside - leaves + released) / cells[AREA, i, j]
