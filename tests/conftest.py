@@ -22,9 +22,9 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 # Files that take longest, first: a worker that began one of them last would be waited for alone. Neighbours begin at
 # the same time: they compile no time loop for the same machine.
 LONGEST = (
-    "test_heat_run", "test_command_line", "test_oil_cycles", "test_inputs", "test_given_flow_run", "test_limit_cycles",
-    "test_streams", "test_resumed_machines", "test_published_run", "test_coefficients_element", "test_two_frequencies",
-    "test_work_lost", "test_pressed_contact", "test_own_bearing", "test_cosimulation", "test_film_signals",
+    "test_heat_run", "test_command_line", "test_oil_cycles", "test_limit_cycles", "test_given_flow_run", "test_streams",
+    "test_resumed_machines", "test_published_run", "test_inputs", "test_coefficients_element", "test_work_lost",
+    "test_two_frequencies", "test_pressed_contact", "test_own_bearing", "test_cosimulation", "test_bearing_sheet",
 )  # fmt: skip
 
 

@@ -140,7 +140,10 @@ def test_json_has_what_is_promised(capsys: pytest.CaptureFixture[str], tmp_path,
     assert (tmp_path / "table.csv").read_text().startswith("branch,speed_Hz,frequency_Hz,stable")
 
 
-@pytest.mark.parametrize(("gamma", "criticality"), [(4.538, "subcritical"), (1.313, "supercritical")])
+@pytest.mark.parametrize(
+    ("gamma", "criticality"),
+    [(4.538, "subcritical"), pytest.param(1.313, "supercritical", marks=pytest.mark.nightly)],
+)
 def test_stability_tells_a_soft_from_a_hard_threshold(gamma: float, criticality: str) -> None:
     case, found = rigid(gamma, 2.4, 2.9), diagram(gamma, 2.4, 2.9)
     kind = threshold_kind(case, found.of("hopf")[0].speed_Hz)

@@ -174,7 +174,12 @@ def test_a_table_of_many_lines_stops_where_its_reader_does(run_file: Path) -> No
     assert_quiet_or_told(command, "out", FULL, run_file.parent)
 
 
-@pytest.mark.parametrize("variables", [{}, {"FORCE_COLOR": "1"}, {"NO_COLOR": "1"}, {"COLUMNS": "200"}], ids=str)
+@pytest.mark.parametrize(
+    "variables",
+    [{}, {"FORCE_COLOR": "1"}, *(pytest.param({name: value}, marks=pytest.mark.nightly)
+                                 for name, value in (("NO_COLOR", "1"), ("COLUMNS", "200")))],
+    ids=str,
+)  # fmt: skip
 def test_a_table_in_a_pipe_is_plain_and_eighty_columns_wide(variables: dict[str, str]) -> None:
     words = [sys.executable, "-m", "frbcli", "cases", "--hard"]
     environment = os.environ | {"PYTHONPATH": str(ROOT), "TERM": "xterm-256color"} | variables

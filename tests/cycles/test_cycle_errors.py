@@ -148,6 +148,7 @@ def test_a_fold_that_the_other_films_do_not_have_is_uncertain() -> None:
     limit_cycles_figure(found)
 
 
+@pytest.mark.nightly  # 7 s; stated errors of other films: this file
 def test_stated_errors_of_a_coarse_table_hold_a_fine_one() -> None:
     """Films of finite length on 3 x 48 elements, beside 12 x 192: the fold, and the cycles at 2.7."""
     finite = short(GAMMA).with_settings("film.theory=finite")

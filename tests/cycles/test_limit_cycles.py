@@ -111,6 +111,7 @@ def test_small_cycles_have_the_amplitude_of_the_normal_form(gamma: float) -> Non
     assert first - (second - first) * a / (b - a) == pytest.approx(hopf.lyapunov, rel=0.02)
 
 
+@pytest.mark.nightly  # 8 s; folds of both methods: test_shot_branch.py
 def test_the_fold_is_where_cycles_end_in_the_time_domain() -> None:
     """Gamma = 4.538: the stable cycle integrated over 100 periods stays just above the fold and is lost below it."""
     found = diagram(4.538, 2.4, 2.9)
@@ -321,6 +322,7 @@ def test_films_on_cells_enter_by_their_mean_over_the_angle(film: int) -> None:
         np.testing.assert_allclose(by_d, np.transpose(columns), atol=1e-6 * np.abs(by_d).max())
 
 
+@pytest.mark.nightly  # 7 s; of a force: test_two_frequencies.py
 def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
     stability and is zero where that changes."""

@@ -88,6 +88,7 @@ class NearOnly(Shooting):
         return super().at_speed(shot, other, omega) if near < 0.02 else None
 
 
+@pytest.mark.nightly  # 6 s; a speed asked for: the test of the last step
 def test_a_branch_comes_as_near_to_a_speed_as_its_cycle_asks_for() -> None:
     """Steps are up to a tenth long: both the end of the range and a speed asked for lie further from the ends of a step
     than their cycles are found from."""

@@ -32,6 +32,7 @@ def rises(run: Run, *nodes: str) -> list[float]:
     return [float(np.ptp(run[f"temperature_{node}_K".replace("__", "_")][[0, -1]])) for node in nodes]
 
 
+@pytest.mark.nightly  # compiles a time loop that no other test has
 def test_a_film_that_keeps_its_oil_warms_up_as_in_the_run_in_one(tmp_path: Path) -> None:
     together, apart = both(tmp_path, single(*QUICK, *KEEPS_OIL))
     assert rises(together, "")[0] > 0.2
