@@ -17,12 +17,12 @@ import json
 import logging
 import math
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 from shutil import get_terminal_size
-from textwrap import fill, wrap
+from textwrap import fill
 from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 import click
@@ -73,9 +73,7 @@ class Terminal:
 
     def live_console(self) -> Console:
         """A rich console for progress."""
-        from rich.console import Console
-
-        return Console(file=sys.stderr, highlight=False, markup=False, emoji=False)
+        return _console(sys.stderr)
 
     def result(self, text: str = "") -> None:
         """Print a part of the results, without control characters other than new lines."""
@@ -98,12 +96,22 @@ class Terminal:
         spans: numbers of columns, one after another, that stay in one table."""
         if self.quiet:
             return
-        stream, cells = self._results, [[printable(str(cell)) for cell in row] for row in rows]
-        width = get_terminal_size().columns if stream.isatty() else PIPE_WIDTH
-        for kept in _parts(columns, cells, width, spans or (1,) * len(columns)):
+        from rich import box
+        from rich.table import Table
+        from rich.text import Text
+
+        cells = [[printable(str(cell)) for cell in row] for row in rows]
+        console = _console(self._results)
+        for kept in _parts(columns, cells, console.width, spans or (1,) * len(columns)):
             named, shown = [columns[k] for k in kept], [[row[k] for k in kept] for row in cells]
-            with suppress(OutputLost):  # echo leaves out what is bold where the stream is no terminal
-                click.echo("\n".join(_drawn(title, named, shown, _widths(named, shown, width))), file=stream)
+            table = Table(title=title or None, title_justify="left", title_style="bold", box=box.SIMPLE_HEAD)
+            table.show_header = any(named)
+            for column, width in zip(named, _widths(named, shown, console.width), strict=True):
+                table.add_column(column, overflow="fold", width=width)
+            for row in shown:
+                table.add_row(*map(Text, row))
+            with suppress(OutputLost):
+                console.print(table)
             title = ""
 
     def remark(self, text: str) -> None:
@@ -167,52 +175,19 @@ def _longest_word(column: Sequence[str]) -> int:
     return max((len(word) for cell in column for word in cell.split()), default=1)
 
 
-def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int]:
-    """Widths of the columns of a table within `width`: as wide as their texts, else at least their longest words; the
-    rest of the room goes to the cells, then to the heads. Where not even the words have room the longest are cut."""
+def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> list[int | None]:
+    """Widths of the columns of a table wider than `width`: at least their longest words; the rest of the room goes to
+    the cells, then to the heads. None where all fits, or where not even the words do."""
     cells = list(zip(*rows, strict=True)) or [()] * len(columns)
     found = [_longest_word((head, *column)) for head, column in zip(columns, cells, strict=True)]
     rows_need = [max((_length(cell) for cell in column), default=0) for column in cells]
     whole = [max(_length(head), most) for head, most in zip(columns, rows_need, strict=True)]
     room = width - BETWEEN * len(columns) - 1
-    if sum(whole) <= room:
-        return whole
-    while sum(found) > max(room, len(found)):
-        found[found.index(max(found))] -= 1
+    if sum(whole) <= room or sum(found) > room:
+        return [None] * len(columns)
     for wanted in (rows_need, whole):
         found = _widened(found, wanted, room - sum(found))
     return list(found)
-
-
-def _drawn(title: str, columns: Sequence[str], rows: Sequence[Sequence[str]], widths: Sequence[int]) -> Iterator[str]:
-    """Lines of a table: its title, and the heads just above a line where a column has one."""
-    whole = sum(widths) + BETWEEN * len(widths) + 1
-
-    def lines(broken: Sequence[list[str]]) -> Iterator[str]:
-        for parts in itertools.zip_longest(*broken, fillvalue=""):
-            texts = (f" {part:<{width}} " for part, width in zip(parts, widths, strict=True))
-            yield f" {' '.join(texts)} "
-
-    yield from (click.style(f"{line:<{whole}}", bold=True) for line in _broken(title, whole) if title)
-    yield " " * whole
-    if any(columns):
-        heads = list(map(_broken, columns, widths))
-        most = max(map(len, heads))
-        low = [[""] * (most - len(head)) + head for head in heads]
-        yield from (click.style(line, bold=True) for line in lines(low))
-        yield f" {'─' * (whole - 2)} "
-    for row in rows:
-        yield from lines(list(map(_broken, row, widths)))
-    yield " " * whole
-
-
-def _broken(text: str, width: int) -> list[str]:
-    """A text in lines of a width; a word is cut only where it is longer."""
-    return [
-        part
-        for line in text.split("\n")
-        for part in ([line] if len(line) <= width else wrap(line, width, break_on_hyphens=False) or [""])
-    ]
 
 
 def _length(cell: str) -> int:
@@ -238,6 +213,16 @@ def _write(stream: TextIO, text: str) -> None:
         stream.write(text)
         stream.flush()
 
+
+def _console(stream: TextIO) -> Console:
+    """A rich console on a stream; in a pipe or file its tables have no colours, and one width on all machines."""
+    from rich.console import Console
+
+    if stream.isatty():
+        return Console(file=stream, highlight=False, markup=False, emoji=False)
+    return Console(
+        file=stream, force_terminal=False, no_color=True, width=PIPE_WIDTH, highlight=False, markup=False, emoji=False
+    )
 
 
 def case_argument(
