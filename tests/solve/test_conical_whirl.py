@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import pytest
@@ -10,6 +12,7 @@ from marches import rigid_shaft
 
 import frbcli
 from frbcli.case.schema import Case
+from frbcli.linear.threshold import Threshold
 from frbcli.scene.forms.tilted import TiltedForm
 
 LENGTH, SPAN = 60e-3, 8e-3
@@ -42,35 +45,94 @@ def dumb_bell(*more: str) -> Case:
     )  # fmt: skip
 
 
-def threshold_in_run_up(case: Case, speeds: tuple[float, float], path: Path) -> float:
-    """Where a push on one disk ceases to fade in a ramp and begins to grow, in Hz: the amplitude of the cone, the
-    difference of both journals, has its minimum where its rate of growth is zero."""
-    duration = 0.8
+FILM = 'kind = "single-film", width = "5 mm", diameter = "7 mm", clearance = "15 um"'
+CAR = (
+    f'bearing=[{{name = "left", position = "42 mm", {FILM}}}, {{name = "right", position = "74 mm", {FILM}}}]',
+    "disk.1.unbalance=0 g*mm", "disk.2.unbalance=0 g*mm", "accuracy.mesh=[4, 24]",
+)  # fmt: skip
+CAR_PUSH = PUSH | {"at": "compressor", "force": ["1 N", "0 N"]}
+
+
+class Whirl(NamedTuple):
+    """How a whirl is set going, and the shares of both journals that it is seen by: a cone by their difference."""
+
+    push: dict[str, object]
+    left: float
+    right: float
+
+
+CONE, OF_THE_CAR = Whirl(PUSH, -1.0, 1.0), Whirl(CAR_PUSH, 1.0, 0.0)
+CONSTANT = ("axial.load=40 N",)
+
+
+def turbocharger(*more: str) -> Case:
+    """The car turbocharger in single films 32 mm apart."""
+    return frbcli.load_case("turbocharger-car", [*CAR, *more])
+
+
+def with_collar(*more: str) -> Case:
+    """The same with its thrust bearing."""
+    return frbcli.load_case("turbocharger-car-thrust", [*CAR, *more])
+
+
+def threshold_in_run_up(case: Case, found: Threshold, whirl: Whirl, path: Path) -> float:
+    """Where a push on one disk ceases to fade in a ramp and begins to grow, in Hz: the amplitude of a whirl has its
+    minimum where its rate of growth is zero.
+
+    Second differences over half a period of the whirl do not see the resting position, which moves along the ramp."""
+    duration, step = 0.8, 1e-4
+    low, high = 0.8 * found.speed_Hz, 1.2 * found.speed_Hz
     run = frbcli.runup(
         case.with_settings(
-            f"speed.from={speeds[0]} Hz", f"speed.to={speeds[1]} Hz", f"speed.duration={duration} s",
-            "start.position=resting", "output.step=0.1 ms", "accuracy.tolerance=1e-6", {"force": [PUSH]},
+            f"speed.from={low} Hz", f"speed.to={high} Hz", f"speed.duration={duration} s",
+            "start.position=resting", f"output.step={step} s", "accuracy.tolerance=1e-6", {"force": [whirl.push]},
         ),
         path,
     )  # fmt: skip
-    t = run["time_s"]
-    cone = np.hypot(*(run[f"journal_right_{x}_m"] - run[f"journal_left_{x}_m"] for x in "xy"))
-    inner = np.flatnonzero((cone[1:-1] > cone[:-2]) & (cone[1:-1] >= cone[2:])) + 1
+    half = round(0.5 / (found.frequency_Hz * step))
+    left, right = (np.array([run[f"journal_{name}_{x}_m"] for x in "xy"]) for name in ("left", "right"))
+    seen = whirl.left * left + whirl.right * right
+    size = np.hypot(*(seen[:, 2 * half :] - 2.0 * seen[:, half:-half] + seen[:, : -2 * half]))
+    t = run["time_s"][half:-half]
+    inner = np.flatnonzero((size[1:-1] > size[:-2]) & (size[1:-1] >= size[2:])) + 1
     inner = inner[t[inner] > 0.05]
-    curve = np.polynomial.Polynomial.fit(t[inner], np.log(cone[inner]), 3)
+    curve = np.polynomial.Polynomial.fit(t[inner], np.log(size[inner]), 3)
     turns = [float(root.real) for root in curve.deriv().roots() if abs(root.imag) < 1e-9 and 0.1 < root.real < 0.7]
     (least,) = (turn for turn in turns if curve.deriv(2)(turn) > 0.0)
-    return speeds[0] + (speeds[1] - speeds[0]) * least / duration
+    return low + (high - low) * least / duration
+
+
+def agree(case: Case, speeds: list[float], whirl: Whirl, path: Path) -> None:
+    found = frbcli.stability(case, speeds).threshold
+    assert found is not None
+    assert threshold_in_run_up(case, found, whirl, path) == pytest.approx(found.speed_Hz, rel=1e-2)
+
+
+@pytest.fixture(autouse=True)
+def same_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Machines at rest have the cells of the time loop."""
+    monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
 
 
 @pytest.mark.nightly
 @pytest.mark.parametrize("more", [(), TILT, COLLAR], ids=["in line", "tilt", "collar"])
-def test_a_conical_whirl_begins_in_run_ups_where_stability_says(
-    more: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+def test_a_conical_whirl_begins_in_run_ups_where_stability_says(more: tuple[str, ...], tmp_path: Path) -> None:
+    agree(dumb_bell(*more), [30.0, 80.0], CONE, tmp_path / "run.h5")
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("case", "speeds"),
+    [
+        (turbocharger, [120.0, 200.0]),
+        (lambda: turbocharger(*TILT), [120.0, 200.0]),
+        (with_collar, [120.0, 200.0]),
+        (lambda: with_collar(*CONSTANT), [250.0, 400.0]),
+        (lambda: with_collar(*TILT, *CONSTANT), [250.0, 400.0]),
+    ],
+    ids=["in line", "tilt", "collar", "collar under 40 N", "both"],
+)
+def test_the_whirl_of_a_turbocharger_begins_in_run_ups_where_stability_says(
+    case: Callable[[], Case], speeds: list[float], tmp_path: Path
 ) -> None:
-    monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
-    case = dumb_bell(*more)
-    found = frbcli.stability(case, [30.0, 80.0]).threshold
-    assert found is not None
-    low, high = 0.8 * found.speed_Hz, 1.2 * found.speed_Hz
-    assert threshold_in_run_up(case, (low, high), tmp_path / "run.h5") == pytest.approx(found.speed_Hz, rel=1e-2)
+    agree(case(), speeds, OF_THE_CAR, tmp_path / "run.h5")
