@@ -18,7 +18,17 @@ from frbcli.cycles.maps.stability_map import Growth, MapCurve, MapPoint, Stabili
 from frbcli.linear.thrust.sheet import thrust_sheet
 from frbcli.plot.machine.stability_map import stability_map_figure
 from frbcli.plot.run.summary import summary_figure
-from frbcli.plot.style import legend_below, name_of_key, new_figure, plain, plain_numbers, styled, with_subscripts
+from frbcli.plot.style import (
+    legend_below,
+    legend_beside,
+    name_of_key,
+    new_figure,
+    panel_width_pt,
+    plain,
+    plain_numbers,
+    styled,
+    with_subscripts,
+)
 from frbcli.plot.thrust import thrust_figure
 from frbcli.results.columns import EVENTS
 
@@ -70,6 +80,26 @@ def test_a_legend_below_covers_no_panel_and_stays_in_the_picture() -> None:
         assert figure.bbox.x0 <= box.x0
         assert box.x1 <= figure.bbox.x1
         assert not overlapping(legend.get_texts(), figure)
+
+
+@pytest.mark.parametrize("legends", [False, True])
+def test_the_width_of_a_panel_is_known_before_the_layout(legends: bool) -> None:
+    """Of panels whose decorations differ, over a shorter scale of colours; labels of events are placed by it."""
+    with styled():
+        figure = new_figure("Title", "of a picture", height=6.0)
+        above, below = figure.subplots(2, 1, sharex=True)
+        for number in (1, 2):
+            below.plot([0.0, 1.0], [0.0, number * 1e-7], label=f"a long name of curve {number}")
+        mesh = above.pcolormesh([[0.0, 1.0], [2.0, 3.0]])
+        figure.colorbar(mesh, ax=[above, below], location="bottom", shrink=0.6).set_label("levels")
+        above.set(ylabel="two lines\nof a label", yticks=[0.0, 1.0])
+        below.set(yticks=[0.0, 1e-7, 2e-7], xticks=[0.0, 1.0])  # which the layout does not change
+        if legends:
+            legend_beside(below)
+        known = panel_width_pt(figure)
+        figure.draw_without_rendering()
+    for axes in (above, below):
+        assert known == pytest.approx(axes.get_window_extent().width * 72.0 / figure.dpi, abs=0.5)
 
 
 def test_a_stability_map_is_as_wide_as_its_curves_and_names_its_shade() -> None:
