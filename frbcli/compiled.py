@@ -11,16 +11,19 @@ import logging
 import os
 import re
 from collections.abc import Callable, Set
+from contextlib import suppress
 from copy import copy
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from llvmlite import ir
+from llvmlite import binding, ir
 from numba import njit, types
 from numba.core import config
 from numba.core.ccallback import CFunc
+from numba.core.entrypoints import init_all
+from numba.core.runtime import _nrt_python
 from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
 
@@ -28,7 +31,9 @@ from frbcli.caches import KERNELS, take_shipped_kernels
 
 _PACKAGE = Path(__file__).parent
 _BRINGS_KERNELS = (_PACKAGE / KERNELS).exists()
-_IMPORTS = re.compile(r"^\s*from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)", re.MULTILINE)
+_FOLDER = "__init__.py"
+_IMPORTS = re.compile(r"from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)")
+READ, MEMORY = "_load_overload", "c_helpers"  # how numba reads a kernel alone, and gives it memory; not public
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -69,6 +74,8 @@ def compiled(
         )
         kernel: Any = decorate(function)
         kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
+        # Kernels use no extensions of numba, which it would look for among all packages that are installed.
+        kernel._compilation_chain_init_hook = _no_extensions
         return cast("Kernel", kernel)
 
     return decorated
@@ -88,13 +95,20 @@ class _Cache:
         return getattr(self._kernel._cache, name)
 
 
+def _no_extensions() -> None:
+    """What numba does in place of loading its extensions."""
+
+
 def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> Any:
-    """A function compiled for one signature, to be called by its address; kept on disk if it is made of `sources`."""
+    """A function compiled for one signature, to be called by its address; kept on disk if it is made of `sources`.
+    Others are functions of a user, which may use extensions of numba."""
     normalize: Any = normalize_signature  # numba gives it no types
     made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
     if sources:
         _keep(made.enable_caching)
         _follow(made, *sources)
+    else:
+        init_all()
     made.compile()
     return made
 
@@ -142,18 +156,41 @@ def _keep(enable: Callable[[], None]) -> None:
 
 
 def _follow(made: Any, *sources: Path) -> None:
-    """Have the cache of a kernel follow its sources, to which numba has no public way.
+    """Have the cache of a kernel follow its sources, and read it alone, to which numba has no public way.
 
     What its index is compared with before it is read as a whole: an older one may name types that are no longer there,
     and could not be read.
     """
-    file, digest = made._cache._cache_file, sources_digest(*sources)
+    kept = made._cache
+    file, digest = kept._cache_file, sources_digest(*sources)
     file._version, file._source_stamp = f"{file._version} {digest}", digest
     beside = sources[0].parent / "__pycache__"
     if _BRINGS_KERNELS and Path(file._cache_path) != beside:
         shipped, own = copy(file), file.load
         shipped._cache_path, shipped._index_path = str(beside), str(beside / Path(file._index_path).name)
         file.load = lambda key: own(key) or shipped.load(key)
+    if hasattr(kept, READ) and hasattr(_nrt_python, MEMORY):  # else numba reads it in its own way
+        kept.load_overload = partial(_read, getattr(kept, READ))
+
+
+def _read(read: Callable[[Any, Any], Any], signature: Any, target: Any) -> Any:
+    """A kernel from the disk, None if it is not there, without what numba needs to compile: its preparation takes half
+    as long as importing numba. numba prepares itself where a kernel has to be compiled.
+
+    Machine code calls functions in C: numba names all of them when it starts, except those for the memory of arrays,
+    and for the hashes of sets and dictionaries, which kernels do not have.
+    """
+    _name_memory()
+    with suppress(PermissionError):  # Windows: another process has the file
+        return read(signature, target)
+    return None
+
+
+@cache
+def _name_memory() -> None:
+    """Let machine code find numba's functions for the memory of arrays."""
+    for name, address in getattr(_nrt_python, MEMORY).items():
+        binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 
 @cache
@@ -169,11 +206,16 @@ def sources_digest(*files: Path) -> str:
 @cache
 def _source(file: Path) -> tuple[str, tuple[Path, ...]]:
     """(digest of a file, the files of this package that it imports)."""
-    text, places = file.read_text(encoding="utf-8"), list[Path]()
+    text, places = file.read_text(encoding="utf-8"), list[Path | None]()
     for module, names in _IMPORTS.findall(text):
-        place = _PACKAGE.joinpath(*module.split("."))
-        if place.is_dir():  # what is imported from a folder may be a file of it
-            places += [place / "__init__.py", *(place / f"{name}.py" for name in re.findall(r"\w+", names))]
-        else:
-            places.append(place.with_suffix(".py"))
-    return hashlib.sha256(text.encode()).hexdigest(), tuple(path for path in places if path.exists())
+        places.append(place := _file_of(module))
+        if place is not None and place.name == _FOLDER:  # what is imported from a folder may be a file of it
+            places += [_file_of(f"{module}.{name}") for name in re.findall(r"\w+", names)]
+    return hashlib.sha256(text.encode()).hexdigest(), tuple(place for place in places if place is not None)
+
+
+@cache
+def _file_of(module: str) -> Path | None:
+    """The file of a module of this package, named from a point on; None if there is no such module."""
+    place = _PACKAGE.joinpath(*module.split("."))
+    return next((file for file in (place / _FOLDER, place.with_suffix(".py")) if file.is_file()), None)

@@ -89,6 +89,55 @@ def test_a_kernel_follows_those_it_calls_in_other_files(tmp_path: Path, imported
     assert answer(tmp_path) == (3.0, 1)
 
 
+MAKES = """
+import numpy
+from frbcli.compiled import compiled
+
+@compiled(makes_arrays=True)
+def doubled(values):
+    return 2.0 * numpy.sort(values)
+
+def threefold(x):
+    return 3.0 * x
+"""
+# Reads a kernel, one that makes arrays and a C function; compiles what is not on the disk; what numba had before it did
+READS = """
+import ctypes, sys
+from pathlib import Path
+import numba, numpy
+from numba.core import types
+import frbcli.compiled
+frbcli.compiled.READ = sys.argv[1] or frbcli.compiled.READ
+from frbcli.film.makes import doubled, threefold
+from frbcli.film.outer import outer
+value, made = outer(1.0), doubled(numpy.array([3.0, 1.0]))
+function = frbcli.compiled.c_function(threefold, types.float64(types.float64), Path(threefold.__code__.co_filename))
+hits = sum(outer.stats.cache_hits.values()) + sum(doubled.stats.cache_hits.values()) + function._cache_hits
+prepared = "numba.np.arraymath" in sys.modules
+called = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(function.address)(2.0)
+assert (value, made.tolist(), called) == (2.0, [2.0, 6.0], 6.0)
+assert outer(1j) == 1.0 + 1j and doubled(numpy.array([3, 1])).tolist() == [2.0, 6.0]
+assert numba.njit(lambda values: numpy.linalg.inv(values).sum())(numpy.eye(3)) == 3.0
+print(hits, prepared)
+"""
+
+
+@pytest.mark.parametrize(("read", "prepares"), [("", False), ("not_there", True)])
+def test_kernels_on_disk_are_read_without_what_numba_needs_to_compile(
+    tmp_path: Path, read: str, prepares: bool
+) -> None:
+    """With the numba that is installed; one that reads in another way prepares itself, and finds the same kernels.
+    What is not on the disk is compiled after both."""
+    (package(tmp_path, IMPORTS[0]) / "makes.py").write_text(MAKES)
+    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    told = list[str]()
+    for _ in range(2):
+        command = [sys.executable, "-c", READS, read]
+        done = subprocess.run(command, env=environment, cwd=tmp_path, capture_output=True, text=True, check=True)
+        told.append(done.stdout.strip())
+    assert told == ["0 True", f"3 {prepares}"]
+
+
 TYPED = """
 from typing import NamedTuple
 from frbcli.compiled import compiled

@@ -16,6 +16,7 @@ try:
 except SystemExit as ended:
     assert not ended.code, ended.code
 heavy = {"scipy.linalg", "scipy.special", "scipy.sparse", "scipy.optimize", "matplotlib", "pandas", "pint", "rich"}
+heavy |= {"numba.np.arraymath", "numba.np.linalg"}  # among what numba needs to compile
 print(*sorted(heavy & set(sys.modules)))
 """
 # In such a process, numba with the functions that it has of numpy, and of these one that asks for a BLAS
