@@ -20,10 +20,9 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from llvmlite import binding, ir
 from numba import njit, types
-from numba.core import config
+from numba.core import config, runtime
 from numba.core.ccallback import CFunc
 from numba.core.entrypoints import init_all
-from numba.core.runtime import _nrt_python
 from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
 
@@ -33,7 +32,9 @@ _PACKAGE = Path(__file__).parent
 _BRINGS_KERNELS = (_PACKAGE / KERNELS).exists()
 _FOLDER = "__init__.py"
 _IMPORTS = re.compile(r"from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)")
-READ, MEMORY = "_load_overload", "c_helpers"  # how numba reads a kernel alone, and gives it memory; not public
+# How numba reads a kernel alone, and its functions in C for the memory of arrays, by their names: neither is public
+READ = "_load_overload"
+_MEMORY: Any = getattr(getattr(runtime, "_nrt_python", None), "c_helpers", None)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -103,12 +104,13 @@ def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> 
     """A function compiled for one signature, to be called by its address; kept on disk if it is made of `sources`.
     Others are functions of a user, which may use extensions of numba."""
     normalize: Any = normalize_signature  # numba gives it no types
+    load_extensions: Any = init_all  # likewise
     made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
     if sources:
         _keep(made.enable_caching)
         _follow(made, *sources)
     else:
-        init_all()
+        load_extensions()
     made.compile()
     return made
 
@@ -169,7 +171,7 @@ def _follow(made: Any, *sources: Path) -> None:
         shipped, own = copy(file), file.load
         shipped._cache_path, shipped._index_path = str(beside), str(beside / Path(file._index_path).name)
         file.load = lambda key: own(key) or shipped.load(key)
-    if hasattr(kept, READ) and hasattr(_nrt_python, MEMORY):  # else numba reads it in its own way
+    if hasattr(kept, READ) and _MEMORY is not None:  # else numba reads it in its own way
         kept.load_overload = partial(_read, getattr(kept, READ))
 
 
@@ -189,7 +191,7 @@ def _read(read: Callable[[Any, Any], Any], signature: Any, target: Any) -> Any:
 @cache
 def _name_memory() -> None:
     """Let machine code find numba's functions for the memory of arrays."""
-    for name, address in getattr(_nrt_python, MEMORY).items():
+    for name, address in _MEMORY.items():
         binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 

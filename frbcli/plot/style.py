@@ -173,7 +173,7 @@ def panel_width_pt(figure: Figure) -> float:
     right = max(outer.x1 - inner.x1 for inner, outer in beside if outer is not None)
     layout = figure.get_layout_engine()
     pad = layout.get()["w_pad"] if isinstance(layout, ConstrainedLayoutEngine) else 0.0
-    return POINTS * (figure.get_figwidth() - (left + right) / figure.dpi - 2.0 * pad)
+    return float(POINTS * (figure.get_figwidth() - (left + right) / figure.dpi - 2.0 * pad))
 
 
 def draw_bands(axes: Axes, half: float | None) -> None:
