@@ -144,7 +144,8 @@ def unit_fields(vertices: Array, eccentricity: float, decays: Array, mode_loads:
     ring = RingMatrices(np.empty((m, 3)), np.empty(m), np.empty(m), np.empty(m), np.empty((m, 2)), np.empty((3, 3)))
     fields = np.empty((4, len(decays), 2 * m))
     work = np.empty((2, m, 3)), np.empty((2, m, 3)), np.empty((2, 2 * m))
-    _mode_fields(lengths, gap**3, 3.0 * gap**2 * cosine, decays, mode_loads, load, ring, work, fields)
+    loads = np.ascontiguousarray(mode_loads)  # each layout has a kernel of its own
+    _mode_fields(lengths, gap**3, 3.0 * gap**2 * cosine, decays, loads, load, ring, work, fields)
     return fields
 
 

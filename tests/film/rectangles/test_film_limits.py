@@ -11,7 +11,7 @@ from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of
 
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
-from frbcli.film.rectangles import short
+from frbcli.film.rectangles import modal, short
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.plain import solve_plain
@@ -207,6 +207,14 @@ def test_modal_solve_is_the_plain_solve(mesh: Mesh, radius_to_width: float, ecce
     assert len(set(zip(ring.tolist(), width.tolist(), strict=True))) == found.size
     error = np.abs(found[ring, width] - plain_film.pressure).max()
     assert error < 1e-12 * np.abs(plain_film.pressure).max()
+
+
+def test_loads_of_any_layout_have_one_kernel() -> None:
+    phi, modes = ring_vertices(20, ring_contraction(0.6)), axial_modes(axial_vertices(3))
+    decays, spread = modes.eigenvalues, np.repeat(modes.loads, 2)[::2]
+    assert not spread.flags.c_contiguous
+    assert np.array_equal(unit_fields(phi, 0.6, decays, spread), unit_fields(phi, 0.6, decays, modes.loads))
+    assert len(modal._mode_fields.signatures) == 1
 
 
 def random_motions(count: int) -> list[tuple[np.ndarray, np.ndarray, float]]:
