@@ -127,7 +127,7 @@ class SpecialPoint:
     point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
     cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
     criticality.py; eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and
-    folds and of the frequency, by the mesh of the films, of films that keep their oil of the value alone;
+    folds and of the frequency, by the mesh of the films;
     eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a fold was found on films of another mesh,
     None of others and where it was not sought.
     """

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.fixed_point import SlowSpace
+from frbcli.cycles.shooting.other_cells import OtherCells, shot_errors
 from frbcli.cycles.shooting.rest import RestThreshold, located, thresholds
 from frbcli.cycles.shooting.shots import AT_REST_DIFFERENCE, Shooting, Shot, multipliers_of
 from frbcli.film.rectangles.film_force import film_force
@@ -117,21 +119,47 @@ def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
     assert found.uncertainty < 1e-5
 
 
-def test_the_fold_is_that_of_the_harmonic_balance() -> None:
-    """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, and the stability on both
-    sides of it."""
-    case = rigid(4.538, 2.4, 2.9)
+def rigid_flow(gamma: float) -> KnownFlow:
+    """The rigid rotor in short bearings, integrated in time."""
+    case = rigid(gamma, 2.4, 2.9)
     (film,) = smooth_films(make_system(case, make_plan(case)))
-    unit = 2.0 * math.pi * UNIT_Hz
 
     def rate(z: np.ndarray, omega: float) -> np.ndarray:
         x, y, u, v = z / CLEARANCE
         f_x, f_y = film_force(film, x, y, u, v, omega)[:2]
         return np.array([z[2], z[3], 2.0 * f_x / MASS - GRAVITY, 2.0 * f_y / MASS])
 
+    return KnownFlow(rate, CLEARANCE)
+
+
+@cache
+def rigid_branch() -> tuple[RestThreshold, tuple[Shot, ...]]:
+    """The branch of the rigid rotor with Gamma = 4.538."""
+    unit = 2.0 * math.pi * UNIT_Hz
+    return branch(rigid_flow(4.538), 2.4 * unit, 2.75 * unit, (2.65 * unit, 2.8 * unit))
+
+
+def test_the_error_of_a_fold_is_a_share_of_the_difference_to_other_films() -> None:
+    """Films of another Gamma stand for other cells; both folds are those of the harmonic balance. Where the
+    other fold lies along the branch is known from both neighbours, a tenth away, alone."""
+    share, other_gamma, unit = 1.5, 4.4, 2.0 * math.pi * UNIT_Hz
+    own, other = Shooting(rigid_flow(4.538), 2.75 * unit), Shooting(rigid_flow(other_gamma), 2.75 * unit)  # type: ignore[arg-type]
+    _, shots = rigid_branch()
+    (bottom,) = [i for i, shot in enumerate(shots) if shot.kind == "fold"]
+    _, fold, _ = shot_errors(own, OtherCells(other, (0, 0), share), shots[bottom - 1 : bottom + 2])
+    (here,), (there,) = (diagram(gamma, 2.4, 2.9).of("fold") for gamma in (4.538, other_gamma))
+    assert fold.speed == pytest.approx(share * abs(math.log(here.speed_Hz / there.speed_Hz)), rel=0.05)
+    off = share * abs(here.eccentricity_max[0] - there.eccentricity_max[0])
+    assert off < fold.eccentricity[0] < 2.0 * off
+
+
+def test_the_fold_is_that_of_the_harmonic_balance() -> None:
+    """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, and the stability on both
+    sides of it."""
+    unit = 2.0 * math.pi * UNIT_Hz
     known = diagram(4.538, 2.4, 2.9)
     (threshold,), (known_fold,) = known.of("hopf"), known.of("fold")
-    hopf, shots = branch(KnownFlow(rate, CLEARANCE), 2.4 * unit, 2.75 * unit, (2.65 * unit, 2.8 * unit))
+    hopf, shots = rigid_branch()
     assert hopf.rest.omega / unit == pytest.approx(threshold.speed_Hz / UNIT_Hz, rel=1e-4)
     (bottom,) = [i for i, shot in enumerate(shots) if shot.kind == "fold"]
     fold = shots[bottom]

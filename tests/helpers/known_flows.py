@@ -41,6 +41,15 @@ class KnownFlow:
     def motion_of(self, wet: Wet, omega: float) -> Array:
         return np.concatenate([wet.a[:2], 2.0 * wet.a[2:] / omega]) / self.scale
 
+    def middles(self, d: Array) -> Array:
+        return d
+
+    def states_on(self, _: KnownFlow, states: Array) -> Array:
+        return states
+
+    def wet_on(self, _: KnownFlow, wet: Wet, __: float) -> Wet:
+        return wet
+
     def lying(self, _: float) -> KnownFlow:
         return self
 

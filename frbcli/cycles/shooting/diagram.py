@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -26,6 +27,7 @@ from frbcli.cycles.result import (
     hertz,
 )
 from frbcli.cycles.shooting.branch import follow_shots
+from frbcli.cycles.shooting.other_cells import OtherCells, ShotError, other_cells, shot_errors, threshold_errors
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
 from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
@@ -56,18 +58,20 @@ def limit_cycles_by_shooting(
     def tell(shot: Shot) -> None:
         told(shooting.speed_Hz(shot), shot.eccentricity_max)
 
+    other = other_cells(case, shooting)
     branches: list[CycleBranch] = []
     special: list[SpecialPoint] = []
     ends: list[float] = []
     for begin in hopf:
         if any(abs(end - begin.rest.omega) < SAME * begin.rest.omega for end in ends):
-            special.append(_hopf(shooting, begin, None, None))
+            special.append(_hopf(shooting, other, begin, None, None))
             continue
         shots, note = _branch(shooting, begin, (slowest, fastest), asked, tell)
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
-        special.append(_hopf(shooting, begin, len(branches), shots[0] if shots else None))
-        branches.append(CycleBranch(len(special) - 1, _points(shooting, begin, shots), _with_cells(flow, note, shots)))
+        special.append(_hopf(shooting, other, begin, len(branches), shots[0] if shots else None))
+        points = _points(shooting, other, begin, shots)
+        branches.append(CycleBranch(len(special) - 1, points, _with_cells(flow, note, shots)))
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -76,7 +80,7 @@ def limit_cycles_by_shooting(
         equilibria=tuple(_rest(shooting, rest) for rest in rests),
         branches=tuple(branches),
         special=(*special, *special_cycles(branches)),
-        notes=tuple(_notes(shooting, rests, hopf)),
+        notes=tuple(_notes(shooting, other, rests, hopf)),
         cost=Cost(time.process_time() - begun, told.count),
     )
 
@@ -107,13 +111,14 @@ def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
     return " ".join(told).strip()
 
 
-def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThreshold]) -> list[str]:
+def _notes(
+    shooting: Shooting, other: OtherCells | None, rests: Sequence[Rest], hopf: Sequence[RestThreshold]
+) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
     kept = "keep their oil, on" if shooting.flow.held.any() else "are on"
     notes = [
         f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
-        "with the error of the cells; multipliers are known to 5e-3. Hopf points alone have an error: that of folds "
-        "and cycles would take the same ones on other cells."
+        f"with the error of the cells; multipliers are known to 5e-3. {_errors_of(other)}"
     ]
     between = f"{hertz(rests[0].omega):.4g} and {hertz(rests[-1].omega):.4g} Hz"
     if hopf:
@@ -121,6 +126,13 @@ def _notes(shooting: Shooting, rests: Sequence[Rest], hopf: Sequence[RestThresho
     if all(rest.stable for rest in rests):
         return [*notes, f"No whirl begins between {between}: every small motion decays there."]
     return [*notes, f"No whirl begins between {between}, where small motions grow: branches begin in Hopf points only."]
+
+
+def _errors_of(other: OtherCells | None) -> str:
+    if other is None:
+        return "Errors by the cells are not known: there are no fewer ones to compare with."
+    around, along = other.cells
+    return f"Errors by the cells are from the same points and cycles on {around} x {along} of them."
 
 
 def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
@@ -132,8 +144,13 @@ def _rest(shooting: Shooting, rest: Rest) -> RestingPoint:
     )  # fmt: skip
 
 
-def _hopf(shooting: Shooting, begin: RestThreshold, branch: int | None, first: Shot | None) -> SpecialPoint:
+def _hopf(
+    shooting: Shooting, other: OtherCells | None, begin: RestThreshold, branch: int | None, first: Shot | None
+) -> SpecialPoint:
     """criticality: by the first cycle, where its stability is clear."""
+    speed, frequency = 0.0, math.nan
+    if other is not None and first is not None:
+        speed, frequency = threshold_errors(shooting, other, first)
     rest, middles = begin.rest, shooting.flow.middles(begin.rest.displacement)
     criticality = None
     if first is not None and len(first.multipliers.others):
@@ -147,13 +164,30 @@ def _hopf(shooting: Shooting, begin: RestThreshold, branch: int | None, first: S
         frequency_Hz=hertz(float(rest.eigenvalues[begin.number].imag)),
         eccentricity_max=np.hypot(*middles.T),
         criticality=criticality,
-        value_uncertainty=hertz(begin.uncertainty),
+        value_uncertainty=hertz(math.hypot(begin.uncertainty, speed * rest.omega)),
+        frequency_uncertainty_Hz=frequency * hertz(float(rest.eigenvalues[begin.number].imag)),
     )
 
 
-def _points(shooting: Shooting, begin: RestThreshold, shots: Sequence[Shot]) -> tuple[CyclePoint, ...]:
+def _points(
+    shooting: Shooting, other: OtherCells | None, begin: RestThreshold, shots: Sequence[Shot]
+) -> tuple[CyclePoint, ...]:
     """The cycles of a branch from its Hopf point on, where they have no size."""
-    return (_born(shooting, begin), *(_cycle(shooting, shot) for shot in shots)) if shots else ()
+    if not shots:
+        return ()
+    points = [_cycle(shooting, shot) for shot in shots]
+    if other is not None:
+        points = list(map(_with_error, points, shot_errors(shooting, other, shots)))
+    return _born(shooting, begin), *points
+
+
+def _with_error(point: CyclePoint, error: ShotError) -> CyclePoint:
+    return replace(
+        point,
+        value_uncertainty=error.speed * point.speed_Hz,
+        frequency_uncertainty_Hz=error.frequency * point.frequency_Hz,
+        eccentricity_max_uncertainty=error.eccentricity,
+    )
 
 
 def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:

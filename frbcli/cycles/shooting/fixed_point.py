@@ -95,8 +95,11 @@ class FixedPoint:
     space: SlowSpace
 
 
-def fixed_point(mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: Conditions) -> FixedPoint | None:
-    """Near to a guess x_0, p_0; None if it does not converge. The map may raise Unreachable."""
+def fixed_point(
+    mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: Conditions, close: float = CLOSE
+) -> FixedPoint | None:
+    """Near to a guess x_0, p_0; None if it does not converge. close: correction that ends the iteration. The map may
+    raise Unreachable."""
     guess_x, guess_p, sizes = x, p, [np.inf]
     image = mapped(x, p)
     for _ in range(ITERATIONS):
@@ -107,7 +110,7 @@ def fixed_point(mapped: Map, x: Array, p: Array, space: SlowSpace, conditions: C
         stays = len(sizes) > PATIENCE and size > 0.5 * min(sizes[:-PATIENCE])
         if size > STRAY or (stays and size > NOISE):
             return None
-        if size < CLOSE or stays:
+        if size < close or stays:
             return FixedPoint(x, p, image, space)
         x, p, before = x + dx, p + dp, image
         image = mapped(x, p)

@@ -144,6 +144,23 @@ class PeriodMap:
         )
         return replace(wet, theta=theta, rate=rate, w=w)
 
+    def states_on(self, other: PeriodMap, states: Array) -> Array:
+        """(N', k) states (N, k), or what states differ by, of the same machine on the cells of another map."""
+        own, others = (int(np.count_nonzero(each.held)) for each in (self, other))
+        size = len(states) - own
+        fields = np.zeros((*self.held.shape, states.shape[1]))
+        fields[self.held] = states[size:]
+        oil = resampled(fields, other.held.shape)[other.held]
+        return np.vstack([states[:size], oil * math.sqrt(own / max(others, 1))])
+
+    def wet_on(self, other: PeriodMap, wet: Wet, omega: float) -> Wet:
+        """The same machine on the cells of another map, turning with omega in rad/s. Raises Unreachable where its films
+        settle at no oil from which the given cells follow."""
+        settled = wet_at(other, wet.q, wet.v, omega)
+        theta = np.where(other.held, resampled(wet.theta, other.held.shape), settled.theta)
+        w = other.system.films.oil_unknowns(theta, settled.theta, settled.w)
+        return replace(settled, a=wet.a, theta=theta, rate=resampled(wet.rate, other.held.shape), w=w)
+
     def motion_of(self, wet: Wet, omega: float) -> Array:
         """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
         moved = np.concatenate([wet.v[self._kept] / self.scale, self._slow(wet.a, omega)])
@@ -219,9 +236,10 @@ class PeriodMap:
         return Wet(q, state.v.copy(), state.a.copy(), theta, rate, w)
 
 
-def period_map(case: Case) -> PeriodMap:
-    """The map of a case whose films are all on cells."""
+def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
+    """The map of a case whose films are all on cells. cells: (around, along), default those of its plan."""
     plan = replace(make_plan(case), tolerance=TOLERANCE)
+    plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
     films, own = system.films.loop, system.films
     tableau = METHODS[plan.method].tableau
@@ -247,6 +265,19 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
         raise Unreachable from None
     theta = state.wet[OIL] / found._gaps(q, found.begun)
     return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
+
+
+def resampled(fields: Array, shape: tuple[int, ...]) -> Array:
+    """(f, m, k, ...) fields of equal cells on others of a shape (f, m, k): straight between the middles of cells."""
+    for axis in (1, 2):
+        count, wanted = fields.shape[axis], shape[axis]
+        at = (np.arange(wanted) + 0.5) * count / wanted - 0.5
+        at = at if axis == 1 else np.clip(at, 0.0, count - 1.0)  # around the last cell lies beside the first
+        low = np.floor(at).astype(int)
+        share = (at - low).reshape(-1, *(1,) * (fields.ndim - axis - 1))
+        below, above = (np.take(fields, index % count, axis) for index in (low, low + 1))
+        fields = below + share * (above - below)
+    return fields
 
 
 def turned_back(field: Array, angle: float) -> Array:

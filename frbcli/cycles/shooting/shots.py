@@ -21,6 +21,7 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.result import hertz
 from frbcli.cycles.shooting.fixed_point import (
+    CLOSE,
     DIFFERENCE,
     Conditions,
     SlowSpace,
@@ -175,7 +176,7 @@ class Shooting:
     def stepped(self, shot: Shot, length: float, along: Array) -> Shot | None:
         """The cycle behind a step along a direction (N + 2,) of length 1; None if it is not found."""
         size = len(shot.x)
-        row = np.stack([self._phase(shot.wet), along[:size]])
+        row = np.stack([self.phase(shot.wet), along[:size]])
         conditions = Conditions(row, np.stack([np.zeros(2), along[size:]]))
         guess_x, guess_p = shot.x + length * along[:size], shot.p + length * along[size:]
         return self._found(replace(shot, tangent=along), guess_x, guess_p, conditions)
@@ -184,7 +185,7 @@ class Shooting:
         """(N + 2,) direction of length 1 from one cycle to the next, without what they differ by in time.
 
         A branch is followed along it: where multipliers lie next to 1 their error turns the tangent to and fro."""
-        phase = np.concatenate([self._phase(after.wet), np.zeros(2)])
+        phase = np.concatenate([self.phase(after.wet), np.zeros(2)])
         chord = np.concatenate([after.x - shot.x, after.p - shot.p])
         chord = chord - phase * (phase @ chord)
         return np.asarray(chord / np.linalg.norm(chord))
@@ -195,7 +196,7 @@ class Shooting:
         share = (math.log(omega / self.unit) - shot.p[1]) / (other.p[1] - shot.p[1])
         x, p = shot.x + share * (other.x - shot.x), shot.p + share * (other.p - shot.p)
         for one in (shot, other) if share < 0.5 else (other, shot):
-            row = np.stack([self._phase(one.wet), np.zeros(size)])
+            row = np.stack([self.phase(one.wet), np.zeros(size)])
             found = self._found(one, x, p, Conditions(row, np.array([[0.0, 0.0], [0.0, 1.0]])))
             if found is not None:
                 return found
@@ -237,7 +238,7 @@ class Shooting:
             space = slow_space(asked.at, x, p, self._first(x, found.space), by)
         except Unreachable:
             return None
-        phase = self._phase(wet)
+        phase = self.phase(wet)
         tangent = direction_along(space, phase, shot.tangent)
         others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in self.flow.places)
         return Shot(
@@ -245,19 +246,38 @@ class Shooting:
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
+    def again(
+        self, near: Wet, p: Array, space: SlowSpace, conditions: Conditions, steps: int, close: float
+    ) -> tuple[tuple[Array, Array], ...]:
+        """(p, displacements) of the cycle next to a machine, with the cells in each place in which it is found; none if
+        not in the first. steps: of the period; close: see fixed_point."""
+        asked = _Asked(self, near, steps)
+        try:
+            found = fixed_point(asked.at, self.flow.packed(near, self.unit), p, space, conditions, close)
+        except Unreachable:
+            found = None
+        if found is None:
+            return ()
+        asked.settle(found.x)
+        first = found.p, asked.passage.displacements
+        others = (
+            self._elsewhere(place, asked, found.p, found.space, conditions, close) for place in self.flow.places
+        )
+        return (first, *(each for each in others if each is not None))
+
     def _elsewhere(
-        self, place: float, here: _Asked, p: Array, space: SlowSpace, conditions: Conditions
+        self, place: float, here: _Asked, p: Array, space: SlowSpace, conditions: Conditions, close: float = CLOSE
     ) -> tuple[Array, Array] | None:
         """(p, displacements) of a cycle with its cells at another place of PLACES; None if it is not found."""
         there = self.flow.moved(here.near, place)
         asked = _Asked(self, there, here.steps, self.flow.lying(place))
         try:
-            found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions)
+            found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions, close)
         except Unreachable:
             return None
         return None if found is None else (found.p, asked.passage.displacements)
 
-    def _phase(self, wet: Wet) -> Array:
+    def phase(self, wet: Wet) -> Array:
         """The direction in which a state moves in time, of the rotor alone."""
         found = self.flow.motion_of(wet, self.unit)
         return found / float(np.linalg.norm(found))
