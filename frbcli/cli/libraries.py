@@ -5,15 +5,12 @@ Imports next to nothing, since it is called before all else.
 
 from __future__ import annotations
 
-import dataclasses
 import os
 import sys
-from collections.abc import Callable
 from typing import Any
 
 BLAS, ASKS_FOR_IT, ANSWER = "scipy.linalg", "numba.np.arraymath", "_HAVE_BLAS"
 PICTURES, ARTISTS, DESCRIBE = "matplotlib.", "matplotlib.artist", "_update_set_signature_and_docstring"
-CREATE = "_create_fn"  # how Python up to 3.12 compiles each method of a dataclass
 
 
 def prepare_libraries() -> None:
@@ -26,27 +23,6 @@ def prepare_libraries() -> None:
     os.environ.setdefault("PYDANTIC_DISABLE_PLUGINS", "__all__")
     if not any(isinstance(finder, Spared) for finder in sys.meta_path):
         sys.meta_path.insert(0, Spared())
-        if hasattr(dataclasses, CREATE):
-            setattr(dataclasses, CREATE, _when_called(getattr(dataclasses, CREATE)))
-
-
-def _when_called(create: Callable[..., Callable[..., Any]]) -> Callable[..., Callable[..., Any]]:
-    """Has methods of dataclasses made when they are first called. Each of them is compiled from text of its own, in all
-    a tenth of the CPU time of a short run, and most are never called. `inspect` finds no arguments of `__init__`."""
-
-    def created(name: str, *text: Any, **surroundings: Any) -> Callable[..., Any]:
-        made: list[Callable[..., Any]] = []
-
-        def method(*given: Any, **named: Any) -> Any:
-            if not made:
-                made.append(create(name, *text, **surroundings))
-                made[0].__qualname__ = method.__qualname__  # for what Python says of wrong arguments
-            return made[0](*given, **named)
-
-        method.__name__ = name
-        return method
-
-    return created
 
 
 class Spared:

@@ -48,67 +48,6 @@ axes.set(xlabel="x", xlim=(0.0, 1.0))
 save_figure(figure, sys.argv[1] + ".png")
 print(len(axes.set.__doc__ or ""))
 """
-# Dataclasses made before and after a process of frb begins, and what can be told of them
-CLASSES = """
-import dataclasses, pickle
-from frbcli.cli.libraries import CREATE, prepare_libraries
-
-def made(name):
-    @dataclasses.dataclass(frozen=True)
-    class Point:
-        \"\"\"A point.\"\"\"
-
-        x: float
-        y: list = dataclasses.field(default_factory=list, compare=False)
-
-        def __post_init__(self):
-            assert self.x > 0.0
-
-    Point.__qualname__ = Point.__name__ = name
-
-    @dataclasses.dataclass(frozen=True, order=True)
-    class Body(Point):
-        mass: float = 2.0
-
-        def __repr__(self):
-            return "body " + super().__repr__()
-
-    globals()[name] = Point
-    return Point, Body
-
-def told(act):
-    try:
-        return act()
-    except Exception as error:
-        return type(error).__name__, str(error)
-
-def all_of(name):
-    point, body = made(name)
-    one, other = point(1.0), point(x=1.0, y=[3.0])
-    acts = (
-        lambda: (one == other, one != point(2.0), one == body(1.0), hash(one) == hash(other), {one: 1}[other]),
-        lambda: (repr(one), repr(body(1.0, [], 3.0))),
-        lambda: body(1.0) < body(1.0, mass=3.0),
-        lambda: setattr(one, "x", 2.0),
-        lambda: delattr(one, "x"),
-        lambda: setattr(one, "z", 2.0),
-        lambda: setattr(body(1.0), "x", 2.0),
-        lambda: dataclasses.asdict(dataclasses.replace(other, x=4.0)),
-        lambda: point(-1.0),
-        lambda: point(),
-        lambda: point(1.0, [], 3.0),
-        lambda: pickle.loads(pickle.dumps(other)) == other,
-        lambda: point.__init__.__qualname__,
-    )
-    return [told(act) for act in acts]
-
-plain = all_of("Point")
-create = getattr(dataclasses, CREATE, None)
-prepare_libraries()
-print(create is not None, getattr(dataclasses, CREATE, None) is not create)
-later = all_of("Point")
-assert plain == later, (plain, later)
-"""
 RUN = ("runup", "jeffcott", "--set", "speed.duration=0.05 s", "--force", "--quiet", "--no-picture", "-o", "x.h5")
 
 
@@ -131,9 +70,3 @@ def test_matplotlib_draws_the_same_without_the_docstrings_of_its_classes(tmp_pat
     assert int(python(tmp_path, "-c", DRAWS, "plain")) > 0
     assert int(python(tmp_path, "-c", DRAWS, "prepared")) == 0
     assert (tmp_path / "prepared.png").read_bytes() == (tmp_path / "plain.png").read_bytes()
-
-
-def test_dataclasses_are_the_same_where_their_methods_are_made_when_they_are_called(tmp_path: Path) -> None:
-    """Up to Python 3.12, which compiles each of them for itself."""
-    known = str(sys.version_info < (3, 13))
-    assert python(tmp_path, "-c", CLASSES).split() == [known, known]
