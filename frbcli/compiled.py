@@ -13,7 +13,8 @@ import re
 from collections.abc import Callable, Set
 from contextlib import suppress
 from copy import copy
-from functools import cache, partial
+from functools import cache, partial, update_wrapper
+from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -22,6 +23,8 @@ from llvmlite import binding, ir
 from numba import njit, types
 from numba.core import config, runtime
 from numba.core.ccallback import CFunc
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Compiler
 from numba.core.entrypoints import init_all
 from numba.core.sigutils import normalize_signature
 from numpy.typing import NDArray
@@ -38,16 +41,47 @@ _MEMORY: Any = getattr(getattr(runtime, "_nrt_python", None), "c_helpers", None)
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
-# Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
-AS_KERNELS: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": False}
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
 
 
+class _Part(JITCodeLibrary):
+    """Code of a kernel that others call: it is optimised and turned to machine code within theirs, not by itself."""
+
+    @property
+    def codegen(self) -> Any:
+        """What numba asks to set the environment of a function that Python calls."""
+        return self
+
+    def set_env(self, name: str, environment: Any) -> None:
+        """Nothing: Python does not call it."""
+
+    def _optimize_final_module(self) -> None:
+        pass
+
+    def _finalize_final_module(self) -> None:
+        self._finalized = True
+
+
+class _PartCompiler(Compiler):
+    """numba's compiler for a _Part."""
+
+    def compile_extra(self, func: Any) -> Any:
+        """See numba's."""
+        self.state.library = _Part(self.state.targetctx.codegen(), func.__qualname__)
+        return super().compile_extra(func)
+
+
+# Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
+AS_KERNELS: Any = {
+    "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False,
+    "pipeline_class": _PartCompiler,
+}  # fmt: skip
+
+
 def compiled(
     inline: bool = False,
-    force_inline: bool = False,
     internal: bool = False,
     makes_arrays: bool = False,
     fastmath: Set[str] = frozenset(),
@@ -55,26 +89,34 @@ def compiled(
     """Decorates a function that is compiled, once for each set of types, and kept on disk; numbers that are not finite
     follow IEEE 754 and raise nothing.
 
-    inline: put into the functions that call it before they are compiled; for short ones. force_inline: put into their
-    machine code, however long it is. internal: for kernels that only kernels call, Python must not: a call from there
-    has to take records of many arrays apart, whose code costs up to a fifth of all compilation. makes_arrays: for
-    kernels that make arrays, or use those that another one made and returned. All others work in arrays that their
-    caller holds, and return numbers: they count no references to arrays, which took a third of the time of a run with
-    tabulated films. fastmath: LLVM's flags, e.g. {"contract"}.
+    A kernel is a part of those that call it: LLVM optimises it once, within the outermost one, which alone becomes
+    machine code. Each kernel by itself, with all that it calls, took half as long again to compile. Python calls a
+    part through a function that does nothing else. Literal numbers are numbers as others are: LLVM sees their values,
+    and numba compiles no part for each of them.
+
+    inline: put into the machine code of the functions that call it, however long it is. internal: for kernels that
+    only kernels call, Python cannot. makes_arrays: for kernels that make arrays, or use those that another one made
+    and returned. All others work in arrays that their caller holds, and return numbers: they count no references to
+    arrays, which took a third of the time of a run with tabulated films. fastmath: LLVM's flags, e.g. {"contract"}.
     """
 
     def decorated(function: Kernel) -> Kernel:
-        # Of these numba tells no types.
-        options: Any = {"no_cpython_wrapper": internal, "no_cfunc_wrapper": True, "_nrt": makes_arrays}
-        decorate = njit(
-            error_model="numpy",
-            inline="always" if inline else "never",
-            forceinline=force_inline,
-            fastmath=set(fastmath) or False,
-            **options,
-        )
-        kernel: Any = decorate(function)
+        options: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": makes_arrays}  # numba tells no types
+        part: Any = njit(
+            forceinline=inline, fastmath=set(fastmath) or False, no_cpython_wrapper=True,
+            pipeline_class=_PartCompiler, **options,
+        )(function)  # fmt: skip
+        ask = part.get_call_template
+        part.get_call_template = lambda args, named: ask([types.unliteral(kind) for kind in args], named)
+        if internal:
+            return cast("Kernel", part)
+        names = ", ".join(signature(function).parameters)
+        call = eval(f"lambda {names}: part({names})", {"part": part})
+        call.__defaults__ = function.__defaults__
+        kernel: Any = njit(**options)(update_wrapper(call, function))
+        kernel.py_func = function
         kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
+        kernel.get_call_template, kernel.get_overload = part.get_call_template, part.get_overload
         # Kernels use no extensions of numba, which it would look for among all packages that are installed.
         kernel._compilation_chain_init_hook = _no_extensions
         return cast("Kernel", kernel)

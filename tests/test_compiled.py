@@ -16,6 +16,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from numba.core.caching import NullCache
 from numba.core.runtime import _nrt_python, rtsys
 
 import frbcli
@@ -24,6 +25,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli import progress
 from frbcli.cli.common import Terminal
 from frbcli.cli.progress import Display, compilation_shown
+from frbcli.compilation import counted
+from frbcli.compiled import compiled
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import compile_s
 from frbcli.solve import time_loop
@@ -167,6 +170,26 @@ def test_a_cache_that_names_a_type_which_is_no_longer_there_is_not_read(tmp_path
     assert answer(tmp_path) == (1.0, 1)
 
 
+def test_a_kernel_within_others_is_a_part_of_them() -> None:
+    """It becomes machine code when Python calls it; numbers that are written into a call are no types of their own."""
+
+    @compiled()
+    def inner(x: float, n: int) -> float:
+        return x * n
+
+    @compiled()
+    def outer(x: float) -> float:
+        return inner(x, 1) + inner(x, 2)
+
+    inner._cache = outer._cache = NullCache()  # type: ignore[attr-defined]
+    with counted() as compilations:
+        assert outer(2.0) == 6.0
+        assert compilations.functions == 3  # both, and the call from Python
+        assert inner.signatures == []  # type: ignore[attr-defined]
+        assert inner(2.0, 3) == 6.0
+        assert compilations.functions == 4
+
+
 def test_every_kernel_of_the_package_is_compiled_so() -> None:
     """A bare njit would be back to a cache that does not see what changed."""
     import frbcli
@@ -180,7 +203,8 @@ def test_every_kernel_of_the_package_is_compiled_so() -> None:
     assert bare == []
 
 
-NUMBERS = re.compile(r"Touch|Rub|(tuple\[)?((float|int|bool|None|\.\.\.)(, )?)+\]?")  # Touch, Rub: records of numbers
+# Touch, Rub, Values, Slopes: records and tuples of numbers.
+NUMBERS = re.compile(r"Touch|Rub|(tuple\[)?((float|int|bool|None|\.\.\.|Values|Slopes)(, )?)+\]?")
 
 
 def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
@@ -192,7 +216,7 @@ def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
             calls = [call.func for call in ast.walk(node) if isinstance(call, ast.Call)]
             called = {function.id for function in calls if isinstance(function, ast.Name)}
             for decorator in map(ast.unparse, node.decorator_list):
-                if decorator.startswith("compiled(") and "inline=True" not in decorator.replace("force_inline", ""):
+                if decorator.startswith("compiled("):
                     yield node.name, decorator, ast.unparse(node.returns) if node.returns else "", called
 
 

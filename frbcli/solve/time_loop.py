@@ -115,7 +115,7 @@ def advance(
     return int(status), int(rows)
 
 
-@compiled(force_inline=True, internal=True)
+@compiled(inline=True, internal=True)
 def _solve_stage(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, s: int, t: float,
     step: float, piece: int,

@@ -48,7 +48,7 @@ def arrays_of(model: HeatModel, viscosity: Array, drag: Array, formula: Array, b
     (F,): Q eta / C^3 of a concentric film, the side flow where by_formula."""
     links = np.vstack([model.links.T, model.conductance, model.of_film]).astype(np.float64, order="C")
     made = (model.reference, viscosity, drag, formula)
-    films = np.vstack([model.supply, model.inlet, model.clearance, *made]).astype(np.float64)
+    films = np.vstack([model.supply, model.inlet, model.clearance, *made]).astype(np.float64, order="C")
     oil = (model.oil_heat[AT_ZERO], model.oil_heat[SLOPE])
     numbers = np.array([*oil, model.mixing, model.hottest, *model.viscosity, float(by_formula), float(model.balanced)])
     return HeatArrays(model.capacity, links, films, numbers, np.hstack([model.growth, model.expansion]))

@@ -140,4 +140,4 @@ def _for_law(law: type[Law], template: Any, signature: Any, shared: dict[str, An
     return c_function(function, signature, *((Path(file), Path(__file__)) if shipped else ()))
 
 
-wright_omega = compiled(force_inline=True)(penalty.wright_omega)
+wright_omega = compiled(inline=True)(penalty.wright_omega)

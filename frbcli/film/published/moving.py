@@ -24,7 +24,8 @@ from frbcli.film.published.equations.unknown import pressures_of
 
 
 @compiled(inline=True)
-def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, v_y: float, omega: float) -> Gap:
+def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, v_y: float) -> None:
+    """Height, slope and rate of the Gap in the room."""
     sine, cosine = film.elements.sine, film.elements.cosine
     height, slope, rate = room.gap[0], room.gap[1], room.gap[2]
     for e in range(sine.shape[0]):
@@ -32,7 +33,6 @@ def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, 
             height[e, q] = film.height[e, q] + d_x * sine[e, q] - d_y * cosine[e, q]
             slope[e, q] = film.slope[e, q] + d_x * cosine[e, q] + d_y * sine[e, q]
             rate[e, q] = v_x * sine[e, q] - v_y * cosine[e, q]
-    return Gap(height, slope, rate, 0.5 * omega)
 
 
 @compiled(internal=True, makes_arrays=True)
@@ -53,7 +53,8 @@ def residual(
     """
     elements, pressure, by_w, total = film.elements, room.nodes[PRESSURE], room.nodes[BY_W], room.nodes[RESIDUAL]
     set_pressures(film, room, w)
-    gap = _set_gap(film, room, d_x, d_y, v_x, v_y, omega)
+    _set_gap(film, room, d_x, d_y, v_x, v_y)
+    gap = Gap(room.gap[0], room.gap[1], room.gap[2], 0.5 * omega)
     assemble(elements, film.step, gap, pressure, by_w, 1.0 / g, past, room.matrix, room.derived)
     terms = 1e-300
     total[:] = 0.0
@@ -149,7 +150,8 @@ def oil_passing(
     """Oil in m^3/s that comes in and that leaves, as oil_flows of loads.py has it; theta_t = -past (e, 9)."""
     elements, nodes, total = film.elements, film.elements.nodes, room.nodes[RESIDUAL]
     set_pressures(film, room, w)
-    gap = _set_gap(film, room, d_x, d_y, v_x, v_y, omega)
+    _set_gap(film, room, d_x, d_y, v_x, v_y)
+    gap = Gap(room.gap[0], room.gap[1], room.gap[2], 0.5 * omega)
     # Without artificial diffusion and given pressures, the residual at a node is what enters there.
     undiffused = Elements(
         nodes, elements.values, elements.slopes, elements.area, elements.sine, elements.cosine, elements.length,

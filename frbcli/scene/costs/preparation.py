@@ -29,7 +29,7 @@ SAMPLES_HELD, COPIES = 16384, 3  # output times between two writes, and in how m
 # How often all samples are in memory: in the run, and in the file that it is about to write; or in the run and in a
 # second one, of which one signal at a time is joined.
 KEPT, KEPT_OF_BOTH = 2.1, 2.2
-RINGS, HEAT_s = 1.3, 9.0  # by what and by how much compiling takes longer where rings turn, and with heat
+RINGS, HEAT_s = 1.3, 6.0  # by what and by how much compiling takes longer where rings turn, and with heat
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 

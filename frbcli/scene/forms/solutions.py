@@ -36,7 +36,7 @@ class SolutionForm(FilmForm):
     table_of_solutions: ClassVar[bool] = True
     why: ClassVar[str] = "rectangular gap, no state: the force depends on the motion alone; solved on cells before"
     elements: ClassVar[str] = "cells"
-    compiling: ClassVar[tuple[float, float]] = 42.0, 4.2e8
+    compiling: ClassVar[tuple[float, float]] = 29.0, 4.2e8
     rules: ClassVar[tuple[Rule, ...]] = (
         refusal(
             (RUN,), "output.signals", oil_flow_signal,
