@@ -102,26 +102,35 @@ def compiled(
 
     def decorated(function: Kernel) -> Kernel:
         options: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": makes_arrays}  # numba tells no types
-        part: Any = njit(
-            forceinline=inline, fastmath=set(fastmath) or False, no_cpython_wrapper=True,
-            pipeline_class=_PartCompiler, **options,
-        )(function)  # fmt: skip
-        ask = part.get_call_template
-        part.get_call_template = lambda args, named: ask([types.unliteral(kind) for kind in args], named)
+        options |= {"forceinline": inline, "fastmath": set(fastmath) or False}
         if internal:
-            return cast("Kernel", part)
-        names = ", ".join(signature(function).parameters)
-        call = eval(f"lambda {names}: part({names})", {"part": part})
-        call.__defaults__ = function.__defaults__
-        kernel: Any = njit(**options)(update_wrapper(call, function))
-        kernel.py_func = function
+            return cast("Kernel", _part(function, options))
+        kernel: Any = njit(**options)(function)
+        part = cache(partial(_part, function, options))  # made when something is compiled: most starts compile nothing
+        kernel._compiler._get_implementation = lambda _, __: _call_of_part(function, part())
+        kernel.get_call_template = lambda args, named: part().get_call_template(args, named)
+        kernel.get_overload = lambda kinds: part().get_overload(kinds)
         kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
-        kernel.get_call_template, kernel.get_overload = part.get_call_template, part.get_overload
         # Kernels use no extensions of numba, which it would look for among all packages that are installed.
         kernel._compilation_chain_init_hook = _no_extensions
         return cast("Kernel", kernel)
 
     return decorated
+
+
+def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
+    """A function as a part of the kernels that call it."""
+    part: Any = njit(no_cpython_wrapper=True, pipeline_class=_PartCompiler, **options)(function)
+    ask = part.get_call_template
+    part.get_call_template = lambda args, named: ask([types.unliteral(kind) for kind in args], named)
+    return part
+
+
+def _call_of_part(function: Callable[..., Any], part: Any) -> Callable[..., Any]:
+    """A function that calls the part of a kernel: what Python calls."""
+    names = ", ".join(signature(function).parameters)
+    call: Callable[..., Any] = eval(f"lambda {names}: part({names})", {"part": part})
+    return update_wrapper(call, function)
 
 
 class _Cache:
