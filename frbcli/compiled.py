@@ -69,8 +69,9 @@ class _PartCompiler(Compiler):
 
     def compile_extra(self, func: Any) -> Any:
         """See numba's."""
-        self.state.library = _Part(self.state.targetctx.codegen(), func.__qualname__)
-        return super().compile_extra(func)
+        part, compile_extra = cast("Any", _Part), cast("Any", super()).compile_extra  # numba tells no types of them
+        self.state.library = part(self.state.targetctx.codegen(), func.__qualname__)
+        return compile_extra(func)
 
 
 # Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
@@ -120,9 +121,10 @@ def compiled(
 
 def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     """A function as a part of the kernels that call it."""
-    part: Any = njit(no_cpython_wrapper=True, pipeline_class=_PartCompiler, **options)(function)
-    ask = part.get_call_template
-    part.get_call_template = lambda args, named: ask([types.unliteral(kind) for kind in args], named)
+    options = {**options, "no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
+    part: Any = njit(**options)(function)
+    ask, plain = part.get_call_template, cast("Any", types.unliteral)
+    part.get_call_template = lambda args, named: ask([plain(kind) for kind in args], named)
     return part
 
 
