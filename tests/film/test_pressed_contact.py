@@ -31,7 +31,7 @@ from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
-from frbcli.solve.films.cells import EMPTY, NEAR, cell_response, move_cells
+from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_cells
 from frbcli.solve.films.elements import HERE, MOST_ITERATIONS, make_element_work
 from frbcli.solve.films.steps import make_work
 from frbcli.solve.stage.contact import push_back
@@ -141,7 +141,7 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
         rows = rows_of(system, d, v, omega, g)
         for iteration in range(24):
             forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
-            if not cells or work.grids[0].balance < NEAR:
+            if not cells or work.grids[0].balance != OPEN:
                 return rows
             move_cells(work.w[0], work.states[0], work.fields[0], work.grids[0], 0.0, 0.0, g, np.zeros(0))
         raise AssertionError(f"{kind} did not settle at {d}")
@@ -283,7 +283,7 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
     at = FilmMotion(felt[0], felt[1], 0.0, 0.0, 1700.0)
     for iteration in range(24):
         force = np.array(cell_response(data, work, 0, at, g, 1, iteration)[:2])  # type: ignore[arg-type]
-        if grid.balance < NEAR:
+        if grid.balance != OPEN:
             return iteration, force, states[FRACTION]
         if leaps:
             grid.law[EMPTY] = -math.inf

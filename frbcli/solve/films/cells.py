@@ -48,14 +48,13 @@ from frbcli.solve.stage.equations import FilmMotion
 # cells when the film was last linearised.
 KEPT_BY_X, KEPT_BY_Y = range(2)
 # The cells balance as they are, and follow the journal by older derivatives, or by those of now; or they will balance
-# after the correction that is under way, for certain or if it is straight; or they are to be asked again.
-HELD, SOLVED, AHEAD, NEAR, OPEN = range(5)
+# after the correction that is under way; or they are to be asked again.
+HELD, SOLVED, AHEAD, OPEN = range(4)
 KEPT = 0.2  # of what a smooth force would leave of an error: a hundredth was seen, of films of all laws
 SLOW = 0.2  # RATIO above which a film that balances is linearised anew: its journal does not settle
 # By which a correction reduces what does not balance: 20 to 100 in most, 4 where many fronts cross cells. A film that
 # remembers carries the rest on.
 NEWTON_GAINS, GAINS_CARRIED = 5.0, 10.0
-GAINS_STRAIGHT = 100.0  # the same of a straight correction, where only gap and oil or pressure multiply each other
 # The largest counts by these: what is left of a cell's balance is carried on by a film that remembers.
 CELL_SHARE, LOOSE_SHARE = 0.03, 0.01
 PLAIN, DAMPING = 5, 0.5  # iterations without damping; how it goes on from one to the next
@@ -129,8 +128,7 @@ def cell_response(
         # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas.
         alone = iteration < PLAIN and slots == 0 and not film.carries_gas
         soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
-        near = left < GAINS_STRAIGHT and alone and remembers
-        grid.balance = SOLVED if balanced else AHEAD if soon else NEAR if near else OPEN
+        grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less
             damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)
         if slots > 0:
@@ -174,19 +172,6 @@ def held_at_kinks(before: float, after: float, empty: float, pressure_slope: flo
 
 
 @compiled()
-def straight(w: Array, states: Array) -> bool:
-    """Whether the law of all cells is linear on the way to their unknowns w (m, k) from where they had these states:
-    each is full, or at p_cav and holds less oil, and stays so."""
-    m, k = w.shape
-    for i in range(m):
-        for j in range(k):
-            presses, holds = states[PRESSURE_SLOPE, i, j], states[FRACTION_SLOPE, i, j]
-            if presses * holds != 0.0 or (holds != 0.0 and w[i, j] > 0.0) or (presses != 0.0 and w[i, j] <= 0.0):
-                return False
-    return True
-
-
-@compiled()
 def move_cells(
     w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float, g: float, changes: Array,
 ) -> int:  # fmt: skip
@@ -205,8 +190,6 @@ def move_cells(
             for slot in range(changes.shape[0]):
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
             w[i, j] = held_at_kinks(before, w[i, j], empty, states[PRESSURE_SLOPE, i, j])
-    if grid.balance == NEAR:
-        grid.balance = AHEAD if straight(w, states) else OPEN
     return 1 if grid.balance == OPEN else 0
 
 

@@ -26,16 +26,7 @@ from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion, balance
 from frbcli.film.cells.balance.carried import before_upstream, limited, limited_at
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import (
-    BEFORE_UPSTREAM,
-    FRACTION,
-    FRACTION_SLOPE,
-    PRESSURE_SLOPE,
-    STATES,
-    cell_states,
-    follow_law,
-    hold,
-)
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION, STATES, cell_states, follow_law, hold
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.elimination.ring_solver import ring_solver, solve_ring_at
@@ -45,7 +36,6 @@ from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.kernel import ALL_SIDES
 from frbcli.film.gap import Hole, Section, gap_height, gap_rate
-from frbcli.solve.films.cells import straight
 
 LAWS: dict[str, Law] = {
     "sommerfeld": Sommerfeld(),
@@ -307,42 +297,3 @@ def test_derivatives_by_the_journals_velocity(name: str, remembers: bool) -> Non
         change = (np.array(loads_1[:2]) - np.array(loads_0[:2])) / (2 * step)
         expected = np.array([loads[2 + side], loads[4 + side]])
         assert np.allclose(change, expected, rtol=2e-4, atol=1e-4 * np.max(np.abs(loads[2:])))
-
-
-def test_straight_corrections_leave_a_hundredth_of_the_balance() -> None:
-    """Elrod's law is linear where no cell fills or ruptures: what a linear correction leaves is the product of the
-    changes of gap and pressure. Cells that follow a journal that moves by 5e-4 are straight, by half the gap they are
-    not; nor are those of a law that bends."""
-    law = Elrod()
-    film, g, d = film_of(law, "oil-bath", "symmetry"), 1e-4, np.array([0.3, -0.5])
-    gap = gap_height(film.section, (0.3, -0.5), film.grid.centre)[:, None]
-    past = np.where(gap < 1.0, 1.02, 0.6) * gap / g * np.random.default_rng(7).uniform(0.99, 1.0, (M, K))
-    states, stencil, blocks, fields, flows = arrays()
-    data, w = volume_films([film]), film.full() + 0.01
-    for _ in range(60):
-        at = GridMotion(*d, 0.0, g=g, rate=1.0 / g)
-        film_newton(data, 0, w, at, past, states, stencil, blocks, fields, flows)
-        correction = fields[:, :, K]
-        w = w + correction
-        if np.max(np.abs(correction)) < 1e-12:
-            break
-    assert np.any(states[FRACTION] < 1.0)
-    assert straight(w, states)
-
-    def left(unknowns: np.ndarray, move: np.ndarray) -> float:
-        to = (float(d[0] + move[0]), float(d[1] + move[1]))
-        balance = CellBalances(film.section, film.grid, Motion(to, (0.0, 0.0), 0.0), states[BEFORE_UPSTREAM])
-        kept = Storage(gap_height(film.section, to, film.grid.centre)[:, None] / g, past)
-        residual, _ = balance.residual(film.cells(unknowns), kept)
-        return float(np.abs(residual).sum())
-
-    def following(move: np.ndarray) -> np.ndarray:
-        followed: np.ndarray = w + fields[:, :, K + 1 :] @ (move / g)
-        return followed
-
-    small, large = 5e-4 * np.array([0.6, -0.8]), 0.25 * np.array([-0.6, 0.8])
-    assert straight(following(small), states)
-    assert left(following(small), small) < 0.01 * left(w, small)
-    assert not straight(following(large), states)
-    states[FRACTION_SLOPE] = states[PRESSURE_SLOPE] = 1.0
-    assert not straight(w, states)
