@@ -46,7 +46,6 @@ SYMBOL = re.compile(r"(?<!\w)([^\W\d_])_([^\W_]{1,2})(?!\w)")  # with its index
 LEGEND_ROW, FEW_COLUMNS = 0.2, 3  # inches; columns of a legend, of more the letters are smaller
 LABEL_ROWS, LABEL_HEIGHT_pt, LABEL_GAP_pt = 3, 24, 6  # of labels above a panel
 POINTS = 72.0  # of an inch
-COMPRESSION = 4  # of a PNG: files are 1 % larger than with the usual 6, and are made faster
 BAND = 0.25  # opacity of a band of uncertainty
 MOST_MARKED = 50  # events in a picture, the first ones
 MOST_NAMED = 40  # curves in a legend
@@ -255,7 +254,7 @@ def _draw_png(figure: Figure, dpi: float, content: io.BytesIO) -> None:
             engine.execute(figure)
             figure.set_layout_engine("none")
         agg: Any = FigureCanvasAgg(figure)  # its methods have no types
-        agg.print_png(content, metadata=FORMATS[".png"], pil_kwargs={"compress_level": COMPRESSION})
+        agg.print_png(content, metadata=FORMATS[".png"])
     finally:
         if engine is not None:
             figure.set_layout_engine(engine)

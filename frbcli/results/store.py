@@ -209,16 +209,10 @@ class RunWriter:
     ) -> None:
         """Write the file with all samples so far, the events in them where they are known, and the state at time t (s)
         from which the run can go on."""
-        self.hold(state, cost, error, t)
-        self._write(INTERRUPTED, list(events))
-
-    def hold(
-        self, state: Mapping[str, NDArray[Any]], cost: Mapping[str, Any], error: Mapping[str, Any], t: float
-    ) -> None:
-        """Take the state at time t (s) from which the run can go on; it is written with the next samples or the end."""
         self._state = {name: np.array(values) for name, values in state.items()}
         self._state_samples = self.samples
         self._cost, self._error, self._t_end_s = dict(cost), dict(error), float(t)
+        self._write(INTERRUPTED, list(events))
 
     def finish(
         self,

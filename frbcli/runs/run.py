@@ -212,11 +212,8 @@ def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: flo
                 checkpoint(march.error_so_far())
                 saved = time.monotonic()
                 pause = max(CHECKPOINT_EVERY_s, (saved - began) / CHECKPOINT_SHARE)
-        # The final state stays in the file: at once, unless it is soon written with the rest and little would be lost.
-        if status != RUNNING and time.monotonic() - saved < pause and march.film_error_s < CHECKPOINT_EVERY_s:
-            writer.hold(march.snapshot(), march.cost(), march.error_so_far(), march.time)
-        else:
-            checkpoint(march.error_so_far())
+        # The final state stays in the file.
+        checkpoint(march.error_so_far())
         if status == RUNNING:
             return _interrupted(march, writer)
     ended = STATUS.get(status, "not-converged")
