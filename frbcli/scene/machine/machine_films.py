@@ -83,11 +83,12 @@ def _cells(case: Case, plan: Plan, top_Hz: float | None) -> Films:
 
 
 def _exponents(case: Case, place: FilmPlace, film: VolumeFilm) -> Array:
-    """(p,) powers of the scale of the pressures that the parameters of a film's law are proportional to."""
+    """(p,) powers of the scale of the pressures that the parameters of a film's law are proportional to; 0 of those
+    that are 0 or infinite, as the bulk modulus of oil that does not give way, and remain so."""
     cavitation, section = case.cavitation(place.geometry), film.section
     doubled = replace(section, viscosity=2.0 * section.viscosity)
     first, last = (given_parameters(make_law(case, cavitation, each)) for each in (section, doubled))
-    some = (first != 0.0) & (last != 0.0)
+    some = (first != 0.0) & np.isfinite(first)
     return np.where(some, np.log2(np.where(some, last, 1.0) / np.where(some, first, 1.0)), 0.0)
 
 
