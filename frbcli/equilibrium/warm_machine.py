@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.elements.pin import PinElement
+from frbcli.elements.pin import has_pins
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.errors import NotConverged
 from frbcli.film.grid import Array
@@ -92,7 +92,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     >>> found = frbcli.warm_machine(frbcli.load_case("floating-ring-heat"))  # doctest: +SKIP
     """
     require(case, HEAT)
-    if any(True for _ in PinElement.of(case)):
+    if has_pins(case):
         raise NotConverged("a pin holds a ring, and no position of rest is found with it.")
     plan = make_plan(case)
     top = max(abs(case.speed.start), abs(case.speed.end)) if speed_Hz is None else speed_Hz

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.time_tables import inputs_of
+from frbcli.elements.pin import has_pins
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.films import turning_cartridges
@@ -61,7 +62,7 @@ def _cartridge(case: Case) -> str | None:
 
 
 def _pin(case: Case) -> str | None:
-    return case.film.coupling if any(bearing.pin for bearing in case.given_bearings) else None
+    return case.film.coupling if has_pins(case) else None
 
 
 def _signals(case: Case) -> str | None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
-from frbcli.elements.pin import PinElement
+from frbcli.elements.pin import PinElement, has_pins
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
@@ -84,10 +84,9 @@ def pin_faults(case: Case) -> Iterator[Fault]:
 
 def pinned_start_faults(case: Case) -> Iterator[Fault]:
     """A run does not begin at rest with a pin."""
-    if case.start.position == "resting":
-        for _ in PinElement.of(case):
-            problem = "is not known of a ring with a pin."
-            yield Fault("start.position", "resting", None, problem, 'Write "centre", or remove the pin.')
+    if case.start.position == "resting" and has_pins(case):
+        problem = "is not known of a ring with a pin."
+        yield Fault("start.position", "resting", None, problem, 'Write "centre", or remove the pin.')
 
 
 def loaded_heat_faults(case: Case) -> Iterator[Fault]:

@@ -13,7 +13,7 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
-from frbcli.film.cells.balance.carried import limited_at
+from frbcli.film.cells.balance.carried import carried_at
 from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -146,21 +146,6 @@ def _between_rough(
     return factor * through, factor * by_x + rises * s * through, factor * by_y - rises * c * through
 
 
-@compiled(inline=True)
-def _carried(states: Array, i: int, n: int, j: int, forward: bool) -> tuple[float, float, float]:
-    """The oil fraction that the surfaces carry through the face between cell (i, j) and the next one around, (n, j),
-    see carried.py, and its derivatives by the oil fractions of the two. Of compressed oil it is the mean."""
-    t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
-    over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
-    loose, loose_n = t - over, t_n - over_n
-    upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
-    more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
-    theta = upstream + more + 0.5 * (over + over_n)
-    by_upstream = 1.0 + by_before - by_across
-    here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
-    return theta, 0.5 if t > 1.0 else here, 0.5 if t_n > 1.0 else next_
-
-
 @compiled()
 def _flow_around(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
@@ -208,7 +193,9 @@ def _flow_around(
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
             theta, own, other = 0.0, 0.0, 0.0
             if not still:
-                theta, here, next_ = _carried(states, i, n, j, forward)
+                theta, here, next_ = carried_at(
+                    states[FRACTION, i, j], states[FRACTION, n, j], states[BEFORE_UPSTREAM, i, j], forward
+                )
                 own = swept * here * states[FRACTION_SLOPE, i, j]
                 other = swept * next_ * states[FRACTION_SLOPE, n, j]
             pressed, drawn = through * fall, swept * theta

@@ -45,3 +45,17 @@ def limited_at(a: float, b: float) -> tuple[float, float, float]:
     half = 0.5 / (a * a + b * b)
     value = half * a * b * (a + b)
     return value, half * (b * (2.0 * a + b) - 4.0 * a * value), half * (a * (a + 2.0 * b) - 4.0 * b * value)
+
+
+@compiled(inline=True)
+def carried_at(t: float, t_n: float, before: float, forward: bool) -> tuple[float, float, float]:
+    """The oil fraction that the surfaces carry through the face between a cell of the oil fraction t and the next one
+    around, t_n, and its derivatives by both; before: see before_upstream. Of compressed oil it is the mean."""
+    over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
+    loose, loose_n = t - over, t_n - over_n
+    upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
+    more, by_before, by_across = limited_at(upstream - before, across)
+    theta = upstream + more + 0.5 * (over + over_n)
+    by_upstream = 1.0 + by_before - by_across
+    here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
+    return theta, 0.5 if t > 1.0 else here, 0.5 if t_n > 1.0 else next_

@@ -71,7 +71,7 @@ def _subtract_product(a: Array, diagonal: Array, b: Array, to: Array, columns: A
 
 @compiled(fastmath={"contract", "reassoc"})
 def _fill(stencil: Array, i: int, block: Array, columns: Any) -> None:
-    """block (k, k) <- the equations of column i by its own unknowns."""
+    """The first k columns of block (k, n) <- the equations of column i by its own unknowns."""
     k = len(columns)
     for a in range(k):
         for b in range(k):
@@ -158,14 +158,10 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
 def _begin_column(stencil: Array, fields: Array, i: int, rows: Array, column: Any, sides: Any) -> None:
     """rows (k, w) <- the equations of column i by its own unknowns, without a border, and their right-hand sides."""
     k, r = len(column), len(sides)
+    _fill(stencil, i, rows, column)
     for a in range(k):
-        for c in range(row_length(k, r)):
+        for c in range(k, row_length(k, r)):
             rows[a, c] = 0.0
-        rows[a, a] = stencil[CENTRE, i, a]
-        if a > 0:
-            rows[a, a - 1] = stencil[BELOW, i, a]
-        if a < k - 1:
-            rows[a, a + 1] = stencil[ABOVE, i, a]
         for side in range(r):
             rows[a, 2 * k + side] = fields[i, a, k + side]
 

@@ -20,7 +20,7 @@ from frbcli.film.cells.balance.balances import (
     section_end,
     take,
 )
-from frbcli.film.cells.balance.carried import limited_at
+from frbcli.film.cells.balance.carried import carried_at
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -122,20 +122,14 @@ def _flow_around(
                 at = at_near + z * at_rise
                 square = at * at * cells[EDGE, i, j]
                 through, by_x, by_y = at * square, 3.0 * square * at_s, -3.0 * square * at_c
-            p, p_n = states[PRESSURE, i, j], states[PRESSURE, n, j]
-            t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
-            over, over_n = max(t - 1.0, 0.0), max(t_n - 1.0, 0.0)
-            loose, loose_n = t - over, t_n - over_n
-            upstream, across = (loose, loose_n - loose) if forward else (loose_n, loose - loose_n)
-            more, by_before, by_across = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], across)
-            theta = upstream + more + 0.5 * (over + over_n)
-            by_upstream = 1.0 + by_before - by_across
-            here, next_ = (by_upstream, by_across) if forward else (by_across, by_upstream)
-            fall = p - p_n
+            theta, here, next_ = carried_at(
+                states[FRACTION, i, j], states[FRACTION, n, j], states[BEFORE_UPSTREAM, i, j], forward
+            )
+            fall = states[PRESSURE, i, j] - states[PRESSURE, n, j]
             pressed, drawn = through * fall, carried * h * theta
-            own = carried * h * (0.5 if t > 1.0 else here) * states[FRACTION_SLOPE, i, j]
-            other = carried * h * (0.5 if t_n > 1.0 else next_) * states[FRACTION_SLOPE, n, j]
+            own = carried * h * here * states[FRACTION_SLOPE, i, j]
+            other = carried * h * next_ * states[FRACTION_SLOPE, n, j]
             by_own, by_next = through * states[PRESSURE_SLOPE, i, j], through * states[PRESSURE_SLOPE, n, j]
             taken += (share - share_n) * drawn
             right[i, j, k + BY_ITSELF] -= pressed + share * drawn
