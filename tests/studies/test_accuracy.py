@@ -158,6 +158,32 @@ def test_a_rung_that_does_not_begin_leaves_the_others(monkeypatch: pytest.Monkey
     assert {problem for _, problem in found.failed} == {"the film has no resting position"}
 
 
+GAS = ("film.cavitation=bubbly", "bearing.supply.pressure=2 bar", "accuracy.mesh=[4, 24]", "output.step=1e-3 s")
+
+
+def test_a_ladder_of_bubbly_oil_stands_on_a_reference_that_a_finer_run_confirms(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """On three times the cells of the plan. Gas that goes upwind with the oil leaves an error of first order: that of
+    the reference, on 8 cells along, is 1/8 over 1/6 - 1/8 times its change on 6, and errors are known to so much."""
+    monkeypatch.setattr(accuracy_module, "TOLERANCES", (1.0,))
+    course = ("speed.from=80 Hz", "speed.to=80 Hz", "speed.duration=0.01 s")
+    case = load_case("rigid", [*GAS, *course])
+    found = accuracy(case)
+    assert found.complete
+    assert not found.failed
+    assert {item.rung.theory for item in found.ladder} == {"finite"}
+    fine = runup(case.with_settings("accuracy.mesh=[12, 72]", "accuracy.tolerance=1e-6"), tmp_path / "fine.h5")
+    blur = 3.0 * found.reference.error.eccentricity_largest
+    errors = {item.rung.mesh: item.error for item in found.ladder}
+    own = runup(case.with_settings("accuracy.mesh=[2, 12]"), tmp_path / "own.h5")
+    true = np.abs(own["eccentricity"] - fine["eccentricity"]).max()
+    assert true == pytest.approx(errors[2, 12].eccentricity_largest, abs=blur)
+    assert blur < 0.5 * errors[2, 12].eccentricity_largest
+    assert errors[6, 36].eccentricity_largest < 0.5 * errors[2, 12].eccentricity_largest
+    assert errors[6, 36].force_relative < 0.5 * errors[2, 12].force_relative
+
+
 def test_names_that_there_are_not() -> None:
     with pytest.raises(InputError) as caught:
         accuracy(load_case("jeffcott", QUICK), theories=["long"], couplings=["glue"])

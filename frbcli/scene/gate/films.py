@@ -111,7 +111,7 @@ def gas_faults(case: Case) -> Iterator[Fault]:
     """Films whose oil carries gas, which is a second state of each cell, in analyses that do not follow it."""
     for key, name in dict(cavitation_keys(case)).items():
         if law_named(name).carries_gas and form_of(case).solved:
-            problem = "lets the oil carry free gas, which limit cycles and ladders of accuracy do not follow."
+            problem = "lets the oil carry free gas, which limit cycles do not follow."
             yield Fault(key, name, None, problem, 'Write "peeken" here, which is its limit of fast exchange.')
 
 

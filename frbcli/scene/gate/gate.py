@@ -74,7 +74,7 @@ RULES = (
     Rule(films.rough_coupling_faults, (RUN,)),
     Rule(films.rough_rest_faults, (*KINEMATIC, HEAT, *SHEETS, STABILITY, RANGE, *EVERY_CYCLE)),
     Rule(films.saturation_faults, ALL),
-    Rule(films.gas_faults, (LADDER, *EVERY_CYCLE), moving=True),
+    Rule(films.gas_faults, EVERY_CYCLE, moving=True),
     Rule(films.moved_gas_faults, (RUN,), moving=True),
     Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
