@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 import pytest
 from known_flows import KnownFlow, round_cycles
+from numba import njit
 from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
 from frbcli.cycles.method.floquet import Multipliers
@@ -119,17 +121,33 @@ def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
     assert found.uncertainty < 1e-5
 
 
+@njit
+def rigid_rate(film: Any, z: np.ndarray, omega: float) -> np.ndarray:
+    x, y, u, v = z / CLEARANCE
+    force = film_force(film, x, y, u, v, omega)
+    return np.array([z[2], z[3], 2.0 * force[0] / MASS - GRAVITY, 2.0 * force[1] / MASS])
+
+
+@njit
+def rigid_after(film: Any, z: np.ndarray, omega: float, h: float, count: int) -> np.ndarray:
+    for _ in range(count):
+        a = rigid_rate(film, z, omega)
+        b = rigid_rate(film, z + 0.5 * h * a, omega)
+        c = rigid_rate(film, z + 0.5 * h * b, omega)
+        z = z + h / 6.0 * (a + 2.0 * (b + c) + rigid_rate(film, z + h * c, omega))
+    return z
+
+
 def rigid_flow(gamma: float) -> KnownFlow:
-    """The rigid rotor in short bearings, integrated in time."""
+    """The rigid rotor in short bearings, integrated in time. Its damping is large for the steps that shooting asks
+    for: with 256 in a period the cycle with an eccentricity of 0.81 was found at 0.75."""
     case = rigid(gamma, 2.4, 2.9)
     (film,) = smooth_films(make_system(case, make_plan(case)))
-
-    def rate(z: np.ndarray, omega: float) -> np.ndarray:
-        x, y, u, v = z / CLEARANCE
-        f_x, f_y = film_force(film, x, y, u, v, omega)[:2]
-        return np.array([z[2], z[3], 2.0 * f_x / MASS - GRAVITY, 2.0 * f_y / MASS])
-
-    return KnownFlow(rate, CLEARANCE)
+    return KnownFlow(
+        lambda z, omega: rigid_rate(film, z, omega),
+        CLEARANCE,
+        lambda z, omega, h, count: rigid_after(film, z, omega, h / 4.0, 4 * count),
+    )
 
 
 @cache
@@ -150,12 +168,12 @@ def test_the_error_of_a_fold_is_a_share_of_the_difference_to_other_films() -> No
     (here,), (there,) = (diagram(gamma, 2.4, 2.9).of("fold") for gamma in (4.538, other_gamma))
     assert fold.speed == pytest.approx(share * abs(math.log(here.speed_Hz / there.speed_Hz)), rel=0.05)
     off = share * abs(here.eccentricity_max[0] - there.eccentricity_max[0])
-    assert off < fold.eccentricity[0] < 2.0 * off
+    assert fold.eccentricity[0] == pytest.approx(off, rel=0.1)
 
 
 def test_the_fold_is_that_of_the_harmonic_balance() -> None:
-    """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, and the stability on both
-    sides of it."""
+    """Rigid rotor in short bearings, Gamma = 4.538, integrated in time: Hopf point, fold, the stability on both sides
+    of it, and the large cycle at the end of the range."""
     unit = 2.0 * math.pi * UNIT_Hz
     known = diagram(4.538, 2.4, 2.9)
     (threshold,), (known_fold,) = known.of("hopf"), known.of("fold")
@@ -167,6 +185,11 @@ def test_the_fold_is_that_of_the_harmonic_balance() -> None:
     assert fold.eccentricity_max[0] == pytest.approx(known_fold.eccentricity_max[0], abs=2e-4)
     assert not any(shot.multipliers.stable for shot in shots[1 : bottom - 1])
     assert all(shot.multipliers.stable for shot in shots[bottom + 2 :])
+    (balanced,) = known.branches
+    large = [point for point in balanced.points if point.stable]
+    end = np.interp(2.75 * UNIT_Hz, [p.speed_Hz for p in large], [p.eccentricity_max[0] for p in large])
+    assert 2.75 * math.exp(shots[-1].p[1]) == pytest.approx(2.75)
+    assert shots[-1].eccentricity_max[0] == pytest.approx(end, abs=2e-4)
 
 
 def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> None:

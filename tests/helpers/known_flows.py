@@ -17,10 +17,12 @@ NO_OIL = np.zeros((1, 1, 1))
 
 @dataclass(frozen=True)
 class KnownFlow:
-    """rate: (4,) of a state z (4,) at a speed; its first two numbers are the displacement, told over `scale`."""
+    """rate: (4,) of a state z (4,) at a speed; its first two numbers are the displacement, told over `scale`; after:
+    (z, omega, step, count) to the state after so many steps, compiled where more of them are needed."""
 
     rate: Callable[[Array, float], Array]
     scale: float = 1.0
+    after: Callable[[Array, float, float, int], Array] | None = None
     system: SimpleNamespace = field(
         default_factory=lambda: SimpleNamespace(rotor=SimpleNamespace(size=2), ring_count=0, spins=(), names=("film",))
     )
@@ -58,17 +60,20 @@ class KnownFlow:
 
     def passage(self, wet: Wet, time: float, omega: float, steps: int, samples: int = SAMPLES) -> Passage:
         """In steps that hold a whole number of samples' spans."""
-        steps = samples * math.ceil(steps / samples)
-        h, z, places = time / steps, np.concatenate([wet.q, wet.v]), []
-        for i in range(steps):
-            if i % (steps // samples) == 0:
-                places.append(z[:2] / self.scale)
+        count = math.ceil(steps / samples)
+        z, places = np.concatenate([wet.q, wet.v]), [wet.q / self.scale]
+        for _ in range(samples):
+            z = (self.after or self.stepped)(z, omega, time / (samples * count), count)
+            places.append(z[:2] / self.scale)
+        return Passage(self.wet(z, omega), np.array(places)[:, None])
+
+    def stepped(self, z: Array, omega: float, h: float, count: int) -> Array:
+        for _ in range(count):
             a = self.rate(z, omega)
             b = self.rate(z + 0.5 * h * a, omega)
             c = self.rate(z + 0.5 * h * b, omega)
             z = z + h / 6.0 * (a + 2.0 * (b + c) + self.rate(z + h * c, omega))
-        places.append(z[:2] / self.scale)
-        return Passage(self.wet(z, omega), np.array(places)[:, None])
+        return z
 
 
 def round_cycles(decay: Callable[[float], tuple[float, float]], turn: float, twisted: bool) -> KnownFlow:

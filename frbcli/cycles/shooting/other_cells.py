@@ -126,17 +126,18 @@ def _space_on(own: Shooting, other: OtherCells, space: SlowSpace) -> SlowSpace:
 
 
 def _turned(at: Array, z: Array, apart: Array) -> Array:
-    """By how much z differs between two folds, the first of which lies at the length 0: its branch is z (3, n) at
-    lengths (3,), with no slope of the first number there, the other one differs by `apart` (3, n); NaN if that does not
-    turn back between them."""
+    """By how much z differs at the most between two folds, the first of which lies at the length 0: its branch is z
+    (3, n) at lengths (3,), with no slope of the first number there, the other one differs by `apart` (3, n), which
+    grows as on one side of the fold; NaN if that does not turn back between them."""
     ends = at[[0, 2]]
     bend = np.linalg.solve(np.column_stack([ends**2, ends**3]), z[[0, 2], 0])[0]
-    _, slope, _ = np.linalg.solve(np.vander(at, increasing=True), apart)
     _, along, _ = np.linalg.solve(np.vander(at, increasing=True), z)
-    turn = -0.5 * slope[0] / bend
-    found = apart[1] + turn * (along + slope)
-    found[0] = apart[1, 0] + 0.5 * turn * slope[0]
-    return np.asarray(np.where(at.min() <= turn <= at.max(), found, np.nan))
+    slopes = (apart[[0, 2]] - apart[1]) / ends[:, None]
+    turns = -0.5 * slopes[:, :1] / bend
+    found = apart[1] + turns * (along + slopes)
+    found[:, 0] = apart[1, 0] + 0.5 * turns[:, 0] * slopes[:, 0]
+    between = (at.min() <= turns) & (turns <= at.max())
+    return np.asarray(np.where(between.all(), np.abs(found).max(axis=0), np.nan))
 
 
 def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> ShotError:
