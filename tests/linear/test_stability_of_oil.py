@@ -11,6 +11,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.steady_force import steady_solution
 from frbcli.linear.damped_modes import FORWARD, damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
@@ -19,6 +21,14 @@ from frbcli.scene import speeds
 
 HOPF_Hz = (75.70, 75.95)  # of rigid-two-phase at 2 bar by shooting on the time loop, 24 to 64 cells around, 6 along
 FULL = ("bearing.supply.pressure=30 bar", "bearing.ends=oil-bath", "rotor.unbalance=1 g*mm")  # no cavity anywhere
+
+
+ELROD = ("film.cavitation=elrod",)
+
+
+def given_flow(flow: float) -> Case:
+    """A supply of 2 bar that gives a flow in m^3/s at the most."""
+    return load_case("rigid-two-phase", [*ELROD, "bearing.supply.pressure=2 bar", f"bearing.supply.flow={flow!r}"])
 
 
 def fed(*settings: str) -> Case:
@@ -42,6 +52,37 @@ def test_whirls_grow_as_by_shooting() -> None:
         expected = by_shooting[point.speed_Hz]
         assert point.growth == pytest.approx(expected.real, abs=0.3)
         assert point.critical.imag == pytest.approx(expected.imag, rel=1e-3)
+
+
+@pytest.mark.parametrize(("flow", "by_shooting"), [(4e-7, 1.164 + 283.09j), (2e-7, -10.935 + 280.50j)])
+def test_whirls_at_a_given_flow_grow_as_by_shooting(flow: float, by_shooting: complex) -> None:
+    """As above, with the filling of the supply's line among the states, on 48 x 6 cells and on 96 x 12. At 2 bar the
+    whirl grows by 4 1/s."""
+    (point,) = stability_points(given_flow(flow), [90.0])[1]
+    assert point.growth == pytest.approx(by_shooting.real, abs=0.3)
+    assert point.critical.imag == pytest.approx(by_shooting.imag, rel=1e-3)
+
+
+def test_the_pressure_of_a_given_flow_follows_the_whirl() -> None:
+    """At the pressure that is left in the groove, and held, the whirl decays with 7.5 instead of 11.1 1/s."""
+    machine = StaticMachines(given_flow(2e-7), memory=True).at(2.0 * math.pi * 90.0)
+    film, place = machine.system.films.with_fields[0], machine.at_rest.position.journals[0]
+    x, y = (place / film.section.clearance).tolist()
+    solution = steady_solution(film, Motion((x, y), (0.0, 0.0), machine.omega))
+    held = load_case("rigid-two-phase", [*ELROD, f"bearing.supply.pressure={1.0 + solution.filling!r} bar"])
+    own, other = point_at_rest(machine, 90.0), stability_points(held, [90.0])[1][0]
+    assert own.films[0].displacement == pytest.approx(other.films[0].displacement, abs=1e-4)
+    assert other.growth - own.growth == pytest.approx(3.5, abs=0.3)
+
+
+def test_with_more_oil_than_it_takes_a_machine_is_that_at_the_pressure_of_the_supply() -> None:
+    """Bit for bit, its response too."""
+    ample, plain = given_flow(1e-4), load_case("rigid-two-phase", [*ELROD, "bearing.supply.pressure=2 bar"])
+    own, other = (stability_points(case, [90.0])[1][0] for case in (ample, plain))
+    np.testing.assert_array_equal(own.eigenvalues, other.eigenvalues)
+    driven = "rotor.unbalance=1 g*mm"
+    amplitudes = [response(case.with_settings(driven), [90.0]).motion for case in (ample, plain)]
+    np.testing.assert_array_equal(*amplitudes)
 
 
 @pytest.mark.parametrize("law", ["elrod", "two-phase"])

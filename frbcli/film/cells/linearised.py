@@ -6,7 +6,8 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
 
 in the frame at rest, where the settled film does not change. Oil is carried upwind, whose derivatives are exact on
 neighbouring cells, and laws with kinks count with the derivative on the side on which each cell is. Free gas that the
-oil carries is one more state per cell, see gas/linear.py.
+oil carries is one more state per cell, see gas/linear.py. Openings that take all that their supply gives are one more
+state of the film: the filling of their line, see feed.py.
 """
 
 from __future__ import annotations
@@ -18,11 +19,29 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION_SLOPE, PRESSURE_SLOPE, STATES, cell_states
-from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UNKNOWN, volume_films
+from frbcli.film.cells.balance.balances import (
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
+    FLOWS,
+    SIDES,
+    SUPPLY_NET,
+    GridMotion,
+    balances,
+    without_ends,
+)
+from frbcli.film.cells.balance.feed import ALL
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    FRACTION_SLOPE,
+    PRESSURE,
+    PRESSURE_SLOPE,
+    STATES,
+    cell_states,
+)
+from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UNKNOWN
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
@@ -35,6 +54,7 @@ if TYPE_CHECKING:
 
 # Where the neighbours of a cell lie around and along, by the entries of the stencil.
 NEIGHBOURS = ((CENTRE, 0, 0), (BEFORE, 1, 0), (BEHIND, -1, 0), (BELOW, 0, 1), (ABOVE, 0, -1))
+STEP = 1e-5  # of the filling: balances are nearly linear in it
 
 
 @dataclass(frozen=True)
@@ -62,43 +82,115 @@ def lying(film: VolumeFilm, share: float) -> VolumeFilm:
 def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | None = None) -> LinearFilm:
     """The film with its journal at rest at `place` (2,) in m. film: of a law whose forces are the pressures of its
     cells; total: omega_J + omega_S in rad/s; start: field to begin from. Raises NotConverged."""
-    from scipy.sparse import csc_matrix, diags  # takes long to load
-
     clearance = film.section.clearance
     x, y = (place / clearance).tolist()
     at = film_at(film, math.hypot(x, y), total)
-    motion = Motion((x, y), (0.0, 0.0), total)
-    solution = FilmSolver(at).steady(motion, start, upwind=True)
+    motion, solver = Motion((x, y), (0.0, 0.0), total), FilmSolver(at)
+    solution = solver.steady(motion, start, upwind=True)
     if at.law.carries_gas:
         found = linear_states(at, motion, solution)
         moved = found.by_place / clearance, found.by_rate / clearance
         return LinearFilm(found.flow, found.storage, *moved, found.push, solution.field, ordered=True)
-    data, (m, k) = volume_films([at]), film.grid.shape
-    own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
-    states, nothing = np.zeros((STATES, m, k)), np.zeros((m, k))
-    cell_states(own, cells, np.append(given_parameters(at.law), np.nan), 0.0, solution.w, states)
-    states[BEFORE_UPSTREAM] = solution.before
-    stencil, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES))
+    settled = _SettledCells(solver, motion, solution)
+    return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
 
-    def by_velocity(g: float) -> Array:
-        """(n, 2) derivatives of the balances by a velocity of the journal that moves it by g of itself."""
-        motion = GridMotion(x, y, total, g=g)
-        balances(own, ring, width, cells, states, motion, nothing, stencil, fields, np.zeros(FLOWS))
-        return -fields[:, :, [k + BY_X, k + BY_Y]].reshape(m * k, 2)
 
-    by_rate = by_velocity(0.0)
-    by_place = by_velocity(1.0) - by_rate
-    number = np.arange(m * k).reshape(m, k)
-    columns = np.concatenate([np.roll(number, shift, (0, 1)).ravel() for _, *shift in NEIGHBOURS])
-    entries = np.concatenate([stencil[entry].ravel() for entry, *_ in NEIGHBOURS])
-    gap = ring[GAP] + x * ring[SIN] - y * ring[COS]
-    storage = cells[UNKNOWN] * cells[AREA] * gap[:, None] * states[FRACTION_SLOPE]
-    weight = own.force_scale * cells[LOAD] * states[PRESSURE_SLOPE]
-    return LinearFilm(
-        flow=csc_matrix((entries, (np.tile(number.ravel(), len(NEIGHBOURS)), columns)), shape=(m * k, m * k)),
-        storage=diags(storage.ravel(), format="csc"),
-        by_place=by_place / clearance,
-        by_rate=by_rate / clearance,
-        push=np.stack([(ring[row][:, None] * weight).ravel() for row in (PUSH_X, PUSH_Y)]),
-        field=solution.field,
-    )
+class _SettledCells:
+    """A settled film on cells, of which the derivatives are taken."""
+
+    def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> None:
+        self._solver, self._motion, self._solution = solver, motion, solution
+        data = solver.data
+        self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+        self._law = np.append(given_parameters(solver.film.law), np.nan)
+        self._states = np.zeros((STATES, *solution.w.shape))
+        self._set_states()
+
+    def at_pressure(self) -> LinearFilm:
+        """The film with its openings as they are."""
+        from scipy.sparse import diags  # takes long to load
+
+        own, ring, _, cells = self._parts
+        flow, by_place, by_rate = self._balances(own)
+        clearance, (x, y) = self._solver.film.section.clearance, self._motion.d
+        gap = ring[GAP] + x * ring[SIN] - y * ring[COS]
+        storage = cells[UNKNOWN] * cells[AREA] * gap[:, None] * self._states[FRACTION_SLOPE]
+        return LinearFilm(
+            flow=flow,
+            storage=diags(storage.ravel(), format="csc"),
+            by_place=by_place / clearance,
+            by_rate=by_rate / clearance,
+            push=self._pushed(self._states[PRESSURE_SLOPE]).reshape(2, -1),
+            field=self._solution.field,
+        )
+
+    def at_flow(self) -> LinearFilm:
+        """The film with the filling of its supply's line as its last state: line filling' + taken = given. What the
+        openings take is what the cells get without flowing out at open ends."""
+        from scipy.sparse import block_diag, bmat
+
+        film, open_ = self.at_pressure(), self._parts[-1][UNKNOWN].ravel() != 0.0
+        flow, by_place, _ = self._balances(without_ends(self._parts[0]))
+        taken, clearance = -(open_ @ flow), self._solver.film.section.clearance
+        by_filling, taken_by_filling, push = self._by_filling()
+        return LinearFilm(
+            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [taken.reshape(1, -1), [[taken_by_filling]]]], "csc"),
+            storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
+            by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
+            by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
+            push=np.column_stack([film.push, push]),
+            field=film.field,
+        )
+
+    def _set_states(self) -> None:
+        own, _, _, cells = self._parts
+        cell_states(own, cells, self._law, 0.0, self._solution.w, self._states)
+        self._states[BEFORE_UPSTREAM] = self._solution.before
+
+    def _balances(self, own: np.record) -> tuple[csc_matrix, Array, Array]:
+        """Derivatives of the balances of the n cells by their unknowns (n, n), and by displacement and velocity over
+        the clearance (n, 2)."""
+        from scipy.sparse import csc_matrix
+
+        _, ring, width, cells = self._parts
+        (m, k), (x, y) = self._solution.w.shape, self._motion.d
+        stencil, fields, nothing = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES)), np.zeros((m, k))
+
+        def by_velocity(g: float) -> Array:
+            """(n, 2) derivatives of the balances by a velocity of the journal that moves it by g of itself."""
+            motion = GridMotion(x, y, self._motion.omega, g=g)
+            balances(own, ring, width, cells, self._states, motion, nothing, stencil, fields, np.zeros(FLOWS))
+            return -fields[:, :, [k + BY_X, k + BY_Y]].reshape(m * k, 2)
+
+        by_rate = by_velocity(0.0)
+        by_place = by_velocity(1.0) - by_rate
+        number = np.arange(m * k).reshape(m, k)
+        columns = np.concatenate([np.roll(number, shift, (0, 1)).ravel() for _, *shift in NEIGHBOURS])
+        entries = np.concatenate([stencil[entry].ravel() for entry, *_ in NEIGHBOURS])
+        at = np.tile(number.ravel(), len(NEIGHBOURS)), columns
+        return csc_matrix((entries, at), shape=(m * k, m * k)), by_place, by_rate
+
+    def _by_filling(self) -> tuple[Array, float, Array]:
+        """Derivatives by the filling: of the balances (n,), of what the openings take, and of the force (2,) in N."""
+        filling = self._solution.filling
+        step = 0.5 * min(2.0 * STEP, abs(filling), ALL - filling)  # pressures have a kink at both
+
+        def at(change: float) -> tuple[Array, ...]:
+            own, ring, width, cells = self._parts
+            self._solver.fill(filling + change)
+            self._set_states()
+            (m, k), (x, y), flows = self._solution.w.shape, self._motion.d, np.zeros(FLOWS)
+            stencil, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES))
+            motion = GridMotion(x, y, self._motion.omega)
+            balances(own, ring, width, cells, self._states, motion, np.zeros((m, k)), stencil, fields, flows)
+            left = -fields[:, :, k + BY_ITSELF].ravel()
+            return left, flows[SUPPLY_NET : SUPPLY_NET + 1], self._pushed(self._states[PRESSURE]).sum(axis=(1, 2))
+
+        left, taken, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
+        return left, float(taken[0]), push
+
+    def _pushed(self, pressure: Array) -> Array:
+        """(2, m, k) forces in N of the cells with scaled gauge pressures, or their derivatives."""
+        own, ring, _, cells = self._parts
+        weight = own.force_scale * cells[LOAD] * pressure
+        return np.stack([ring[row][:, None] * weight for row in (PUSH_X, PUSH_Y)])

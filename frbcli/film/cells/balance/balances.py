@@ -85,6 +85,15 @@ def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, floa
     return film.near.kind, 0, min(1, k - 1), film.near.rise, film.near.bend
 
 
+def without_ends(film: np.record) -> np.record:
+    """A film of which no oil leaves but into its openings, to sum up what these take."""
+    closed = film.copy()
+    for end in (closed.near, closed.far):
+        if end.kind != FED:
+            end.kind = CLOSED
+    return closed
+
+
 @compiled(inline=True)
 def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
     """Pressure towards an end over that of the groove there, or of the air, by a parabola through

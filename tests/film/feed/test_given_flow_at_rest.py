@@ -1,0 +1,116 @@
+"""Films whose supply gives a flow at the most, linearised with the filling of its line: against settled films at the
+flow, an implicit step in time of film and line, and films at the pressure that is left in the openings."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from frbcli import load_case
+from frbcli.case.schema import Case
+from frbcli.film.cells.balance.carried import UPWIND
+from frbcli.film.cells.balance.feed import ALL, feed_at, supply_line
+from frbcli.film.cells.dynamic_stiffness import stiffness_at
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.linearised import linear_film
+from frbcli.film.cells.loads import force
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import steady_force
+from frbcli.scene.films import film_places, volume_film
+
+CELLS, OMEGA, PLACE = (48, 6), 300.0, np.array([0.3, -0.5])
+GROOVE = 'kind = "circumferential-groove"'
+AXIAL = 'kind = "axial-grooves", opening_angle = "20 deg"'
+BORES = 'kind = "bores", count = 2, diameter = "4 mm"'
+STARVED = [(GROOVE, 4e-7), (AXIAL, 2e-6), (AXIAL, 2e-7), (BORES, 2e-7)]  # the second axial groove is filled in part
+each_supply = pytest.mark.parametrize(("supply", "flow"), STARVED, ids=["groove", "axial", "emptied", "bores"])
+LAWS = ["elrod", "two-phase", "peeken"]
+
+
+def case_of(supply: str, flow: float | None, law: str, bar: float = 3.0) -> Case:
+    fed = f"{supply}, pressure = '{bar!r} bar'" + ("" if flow is None else f", flow = {flow!r}")
+    return load_case("rigid", [f"film.cavitation={law}", f"bearing.supply={{ {fed} }}"])
+
+
+def film_of(supply: str, flow: float | None, law: str, bar: float = 3.0) -> VolumeFilm:
+    case = case_of(supply, flow, law, bar)
+    return volume_film(case, film_places(case)[0], CELLS)
+
+
+def settled(film: VolumeFilm) -> float:
+    """The filling of the openings at rest."""
+    return FilmSolver(film).steady(Motion((0.3, -0.5), (0.0, 0.0), OMEGA), upwind=True).filling
+
+
+@each_supply
+@pytest.mark.parametrize("law", ["elrod", "two-phase"])
+def test_at_rest_it_is_the_stiffness_at_the_flow(supply: str, flow: float, law: str) -> None:
+    """Against differences of films that were each solved at the flow; oil of both laws is carried upwind."""
+    film = film_of(supply, flow, law)
+    place = PLACE * film.section.clearance
+    expected = -steady_force(film, place, np.zeros(2), OMEGA).by_displacement
+    found = stiffness_at(linear_film(film, place, OMEGA), 0.0).real
+    np.testing.assert_allclose(found, expected, atol=1e-4 * np.abs(expected).max())
+    assert settled(film) < ALL
+
+
+@each_supply
+@pytest.mark.parametrize("law", LAWS)
+def test_it_is_what_a_small_step_in_time_does(supply: str, flow: float, law: str) -> None:
+    """An implicit Euler step of 1 / s of film and line from rest, to a place beside it, see test_dynamic_stiffness.py:
+    line s (filling - settled) = given - taken, whose root is found by a secant."""
+    film, s, step = film_of(supply, flow, law), 0.5 * OMEGA, 1e-5
+    clearance, line, rest = film.section.clearance, supply_line(film), settled(film)
+    linear = linear_film(film, PLACE * clearance, OMEGA)
+    solver, content = FilmSolver(film), film.content(Motion((0.3, -0.5), (0.0, 0.0), OMEGA), linear.field)
+
+    def moved(d: np.ndarray, filling: float) -> tuple[np.ndarray, float]:
+        """Force after the step with a filling, and what the line does not balance."""
+        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), OMEGA)
+        solver.fill(filling)
+        solver._before = np.full(film.grid.shape, UPWIND)
+        gap = film.gap(motion.d, film.grid.centre)[:, None]
+        solution = solver._solve(motion, linear.field, Storage(s * gap, s * content))
+        off = line.line * s * (filling - rest) - line.given + solution.flows.supply
+        return np.array(force(film, film.mean_pressure(solution.state))), off
+
+    def after(d: np.ndarray) -> np.ndarray:
+        low, high = rest - step, rest + step
+        for _ in range(4):
+            (_, at_low), (_, at_high) = moved(d, low), moved(d, high)
+            if abs(at_high - at_low) < 1e-12 * line.given:
+                break
+            low, high = high, high - at_high * (high - low) / (at_high - at_low)
+        return moved(d, high)[0]
+
+    found = np.column_stack(
+        [-(after(PLACE + step * unit) - after(PLACE - step * unit)) / (2.0 * step * clearance) for unit in np.eye(2)]
+    )
+    expected = stiffness_at(linear, s).real
+    np.testing.assert_allclose(expected, found, atol=3e-4 * np.abs(found).max())
+
+
+@pytest.mark.parametrize(("supply", "flow"), STARVED[:2], ids=["groove", "axial"])
+def test_so_fast_that_the_line_stays_it_is_the_film_at_the_pressure_in_its_openings(supply: str, flow: float) -> None:
+    """And not so at rest, where the pressure follows."""
+    film = film_of(supply, flow, "elrod")
+    place, section = PLACE * film.section.clearance, film.section
+    gauge = 2e5 * feed_at(film, settled(film)).share
+    linear, plain = (
+        linear_film(each, place, OMEGA) for each in (film, film_of(supply, None, "elrod", 1.0 + 1e-5 * gauge))
+    )
+    assert section.ambient_pressure == 1e5
+    for s, close in ((1e7j, 1e-4), (0.0, None)):
+        own, other = stiffness_at(linear, s), stiffness_at(plain, s)
+        off = np.abs(own - other).max() / np.abs(other).max()
+        assert off < close if close is not None else off > 0.02
+
+
+@pytest.mark.parametrize("supply", [GROOVE, AXIAL], ids=["groove", "axial"])
+def test_with_more_than_it_takes_it_is_the_film_at_the_pressure_of_the_supply(supply: str) -> None:
+    """Bit for bit."""
+    place = PLACE * 40e-6
+    ample, plain = (linear_film(film_of(supply, flow, "elrod"), place, OMEGA) for flow in (1e-4, None))
+    assert np.array_equal(ample.flow.toarray(), plain.flow.toarray())
+    assert np.array_equal(stiffness_at(ample, 100j), stiffness_at(plain, 100j))
