@@ -132,7 +132,7 @@ class Pin(Model):
 
 
 GivenPin = Annotated[
-    Pin | None, Field(description="semi-floating: keeps the ring from turning further than its play; in runs")
+    Pin | None, Field(description="semi-floating: keeps the ring from turning beyond its play; not in limit cycles")
 ]
 CentrifugalPressure = Annotated[
     bool, Field(description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")

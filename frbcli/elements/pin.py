@@ -1,7 +1,8 @@
-"""Pins of semi-floating rings and cartridges: they act on the turning of a ring alone, and in runs.
+"""Pins of semi-floating rings and cartridges: they act on the turning of a ring alone.
 
 M = -(K (phi - phi_0) + C phi') beyond the play phi_0 to one side, K = k r^2 and C = c r^2 of a pin at the radius r, as
-long as it pushes the ring back, and 0 within the play; solve/pin.py has it in a stage of the time loop.
+long as it pushes the ring back, and 0 within the play; solve/pin.py has it in a stage of the time loop. At rest the
+drag of its films holds a ring against its pin.
 """
 
 from __future__ import annotations
@@ -12,12 +13,15 @@ from dataclasses import dataclass
 from typing import Self
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.case.bearing import Pin
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Site
 from frbcli.rotor.linear import Array
 from frbcli.units import display
+
+PLAY, STIFFNESS, DAMPING = range(3)  # columns of pin_rows
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,16 @@ def pin_rows(pins: Sequence[Pin | None]) -> Array:
     if not any(pins):
         return np.zeros((0, 4))
     return np.array([(0.0,) * 4 if pin is None else _row(pin) for pin in pins])
+
+
+def held_by_pins(pins: Array, count: int) -> NDArray[np.bool_]:
+    """(count,) which rings have a pin, by the rows of pin_rows."""
+    return pins[:, STIFFNESS] > 0.0 if len(pins) else np.zeros(count, dtype=bool)
+
+
+def pin_angle(row: Array, torque: float) -> float:
+    """Angle in rad at which the pin of a row of pin_rows holds a ring against a torque in N m; 0 without any."""
+    return float(np.sign(torque) * (row[PLAY] + abs(torque) / row[STIFFNESS])) if torque else 0.0
 
 
 def _row(pin: Pin) -> tuple[float, float, float, float]:

@@ -90,7 +90,7 @@ def settled_force(system: System, i: int, place: Array, total: float, near: Film
     found = system.force(i, place, np.zeros_like(place), total, near)
     if not system.remembering[i]:
         return found
-    step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*place)))
+    step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*system.felt(i, place))))
     pace = step * max(abs(total), 1.0)
     by_displacement, by_velocity = np.empty((2, 2)), np.empty((2, 2))
     for column, unit in enumerate(np.eye(2)):

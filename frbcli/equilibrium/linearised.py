@@ -1,13 +1,45 @@
-"""The machine linearised at rest: its matrices on films of eight coefficients each, and its state matrix."""
+"""The machine linearised at rest: its matrices on films of eight coefficients each, and its state matrix.
+
+A ring with a pin leans on it, so that small motions see a spring and a damper, without play.
+"""
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.rotor.linear import LinearRotor
+from frbcli.elements.pin import DAMPING, STIFFNESS
+from frbcli.equilibrium.coefficients import FilmsAtRest
+from frbcli.equilibrium.ring_speed import SUM, by_total, ring_torques, torque_by_rates
+from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
+
+
+def rotor_at_rest(system: System, omega: float, ring_speeds: Array, at_rest: FilmsAtRest) -> LinearRotor:
+    """The machine at omega rad/s without its films. Its rings turn with ring_speeds (rings,) in rad/s, but those with a
+    pin: their angles stay, on the spring and the damper of the pin, and see the torques of the films."""
+    rotor = without_spins(system.rotor, ring_speeds, system.pinned)
+    rings = np.flatnonzero(system.pinned)
+    if not len(rings):
+        return rotor
+    places, films = at_rest.position.journals, at_rest.forces
+    _, by_speeds, by_places = ring_torques(system, np.append(omega, ring_speeds), places, films)
+    journals = rotor.journals.reshape(-1, rotor.size)
+    angles = np.arange(rotor.size - len(rings), rotor.size)
+    stiffness, damping = rotor.stiffness.copy(), rotor.damping.copy()
+    stiffness[angles] -= by_places[rings] @ journals
+    damping[angles] -= torque_by_rates(system, places, films)[rings] @ journals
+    stiffness[angles, angles] += system.pins[rings, STIFFNESS]
+    damping[angles, angles] += system.pins[rings, DAMPING]
+    damping[np.ix_(angles, angles)] -= by_speeds[np.ix_(rings, rings)]
+    for i, (many, force) in enumerate(zip(rotor.multiplicity, films, strict=True)):
+        turned = np.outer(by_total(force, places[i]), system.turning[i, SUM, 1 + rings])
+        damping[:, angles] -= many * rotor.journals[i].T @ turned
+    return replace(rotor, stiffness=stiffness, damping=damping)
 
 
 def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Array, Array, Array]:

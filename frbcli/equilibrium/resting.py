@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
-from frbcli.equilibrium.ring_speed import NUDGE, SUM, by_total, drags, ring_speeds, ring_torques
+from frbcli.equilibrium.ring_speed import NUDGE, SUM, by_total, drags, pin_angles, ring_speeds, ring_torques
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.roughness.elastic_shell import GIVES_WAY, ElasticShell
 from frbcli.rotor.held import HeldRotor, held_rotor, whole_rotor
 from frbcli.scene.machine.system import System
 
@@ -33,10 +34,9 @@ OUTER_START = 0.9  # eccentricity of the last start that is tried
 
 @dataclass(frozen=True)
 class RestingPosition:
-    """A machine at rest. displacements: (n,) in m, rings at their angle 0; journals: (films, c) in m, with the
-    tilts in rad that films see; ring_speeds:
-    (rings,) rad/s at which the torques on the rings balance; films: the films there, () where nothing turns and nothing
-    has to be carried."""
+    """A machine at rest. displacements: (n,) in m, rings at their angle 0, or against their pin; journals: (films, c)
+    in m, with the tilts in rad that films see; ring_speeds: (rings,) rad/s at which the torques on the rings balance,
+    0 of those against a pin; films: the films there, () where nothing turns and nothing has to be carried."""
 
     displacements: Array
     journals: Array
@@ -73,18 +73,22 @@ def resting_position(
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
         starts = [_with_rings(system, held, omega, each) for each in starts]
-    ends, balance = partial(_ends, system, held), partial(_balance, system, held, omega)
+    balance = partial(_balance, system, held, omega)
     if held.journals is not None:
         balance = partial(_whole_balance, system, held, held.journals, omega)
+    tries = [(each, 1.0) for each in starts]
+    if system.shell is not None:
+        pressed = _on_shells(system, system.shell, _still(system, omega), starts, loads)
+        tries += [(each, GIVES_WAY) for each in pressed]
     if start is not None:
         near = system.rotor.journals @ start if held.journals is None else _with_rings(system, held, omega, start)
-        if np.linalg.norm(ends(near), axis=1).max() < LARGEST_ECCENTRICITY:
-            starts.insert(0, near)
+        reach = 1.0 if system.shell is None or _outmost(system, held, 1.0, near) < 1.0 else GIVES_WAY
+        if _outmost(system, held, reach, near) < LARGEST_ECCENTRICITY:
+            tries.insert(0, (near, reach))
     left = np.inf
-    for first in (each for each in starts if np.linalg.norm(ends(each), axis=1).max() < 1.0):
-        found = search_rest(balance, first, ends, search)
-        within = np.linalg.norm(ends(found.position), axis=1).max() < LARGEST_ECCENTRICITY
-        if found.settled and within:
+    for first, reach in (each for each in tries if _outmost(system, held, each[1], each[0]) < 1.0):
+        found = search_rest(balance, first, partial(_ends, system, held, reach), search)
+        if found.settled and _outmost(system, held, reach, found.position) < LARGEST_ECCENTRICITY:
             displacements = held.shape + held.following @ found.position.ravel()
             return _position(system, held, omega, displacements, found.balance.films)
         left = min(left, found.balance.left)
@@ -92,9 +96,15 @@ def resting_position(
         return _position(system, held, omega, held.shape, ())
     raise NotConverged(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
-        f"{len(starts)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. "
-        "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
+        f"{len(tries)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. {_remedy(system, omega)}"
     )
+
+
+def _remedy(system: System, omega: float) -> str:
+    usual = "Ask for a higher speed, or give the bearing more viscosity, more width or less clearance."
+    if system.shell is None and _still(system, omega).any():
+        return f"{usual} A film between surfaces that do not turn carries nothing: a spring or an elastic shell does."
+    return usual
 
 
 def _position(
@@ -107,6 +117,9 @@ def _position(
         displacements, speeds = _parted(system, omega, displacements)
     journals = system.rotor.journals @ displacements + system.films.standing
     speeds = ring_speeds(system, held, omega, journals) if speeds is None else speeds
+    if system.pinned.any():
+        displacements = displacements.copy()
+        displacements[list(system.spins)] = pin_angles(system, omega, journals, films)
     return RestingPosition(displacements, journals, speeds, films)
 
 
@@ -127,7 +140,8 @@ def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Ar
     drag, unknowns = drags(system, _places(system, held, displacements)), displacements.copy()
     for ring, spin in enumerate(system.spins):
         outer, inner = (system.bodies == ring).T
-        unknowns[spin] = omega * drag[inner].sum() / drag[inner | outer].sum() / _ring_unit(system, omega)
+        free = 0.0 if system.pinned[ring] else omega
+        unknowns[spin] = free * drag[inner].sum() / drag[inner | outer].sum() / _ring_unit(system, omega)
     return unknowns
 
 
@@ -179,6 +193,9 @@ def _whole_balance(
         arm = ARM * system.clearances[0]
         slope[spins], surplus[spins] = by_places @ journals / arm, torques / arm
         slope[np.ix_(spins, spins)] = by_speeds * unit / arm
+        stopped = np.array(spins)[system.pinned]
+        surplus[stopped], slope[stopped] = -unknowns[stopped], 0.0
+        slope[stopped, stopped] = -1.0
     return ForceBalance(surplus, slope, films)
 
 
@@ -188,9 +205,35 @@ def _places(system: System, held: HeldRotor, position: Array) -> Array:
     return found if held.journals is None else found + system.films.standing
 
 
-def _ends(system: System, held: HeldRotor, position: Array) -> Array:
-    """See Films.ends; position: the unknowns of the rotor."""
-    return system.films.ends(_places(system, held, position))
+def _ends(system: System, held: HeldRotor, reach: float, position: Array) -> Array:
+    """See Films.ends, over the reach, 1 or that of an elastic shell; position: the unknowns of the rotor."""
+    return np.asarray(system.films.ends(_places(system, held, position)) / reach)
+
+
+def _outmost(system: System, held: HeldRotor, reach: float, position: Array) -> float:
+    """The largest eccentricity over the reach; position: the unknowns of the rotor."""
+    return float(np.linalg.norm(_ends(system, held, reach, position), axis=1).max())
+
+
+def _still(system: System, omega: float) -> NDArray[np.bool_]:
+    """(films,) which films lie between surfaces that do not turn."""
+    return np.asarray(system.omegas(omega, np.where(system.pinned, 0.0, omega)) == 0.0)
+
+
+def _on_shells(
+    system: System, shell: ElasticShell, still: NDArray[np.bool_], starts: list[Array], loads: Array
+) -> list[Array]:
+    """The starts with the journals of films that do not turn, and so carry nothing, pressed into their elastic shells;
+    loads: (films, 2) N that the rotor puts on its films. None where all films turn."""
+    found = []
+    for start in starts if still.any() else ():
+        pressed = start.copy()
+        for i in np.flatnonzero(still):
+            carried = loads[i] / system.rotor.multiplicity[i]
+            size = max(float(np.hypot(*carried)), np.finfo(float).tiny)
+            pressed[i] = shell.pressed(size, system.clearances[i]) * carried / size
+        found.append(pressed)
+    return found
 
 
 def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:

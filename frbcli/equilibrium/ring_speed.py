@@ -1,5 +1,7 @@
 """How fast a floating ring turns, by the torques (4.17) on it: of films full of oil, with everything at rest.
 
+A ring with a pin does not turn: the torques hold it at the angle at which the spring of the pin balances them.
+
 Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
 """
 
@@ -9,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
+from frbcli.elements.pin import pin_angle
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.rotor.held import HeldRotor
 from frbcli.scene.films import turning_rings
@@ -35,12 +38,14 @@ def concentric_ratios(case: Case) -> dict[str, float]:
 def drags(system: System, places: Array) -> Array:
     """(films,) Couette's torque per slip in N m s, with the journals at places (films, coordinates)."""
     sheared = system.films.sheared * np.array(system.drags)
+    if system.shell is not None:
+        places = np.array([system.felt(i, place) for i, place in enumerate(places)])
     return np.asarray(sheared * 2.0 * np.pi / system.films.harmonic_gaps(places))
 
 
 def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
     """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in
-    m, where the rotor's load tells the forces of the films."""
+    m, where the rotor's load tells the forces of the films; 0 of rings with a pin, which takes what is left over."""
     if not system.ring_count:
         return np.zeros(0)
     drag = drags(system, position)
@@ -49,7 +54,7 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     if system.torque != "all":
         moment = np.zeros_like(moment)
     speeds = np.zeros(system.ring_count)
-    for ring in range(system.ring_count):
+    for ring in np.flatnonzero(~system.pinned):
         outer, inner = (system.bodies == ring).T
         driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
         speeds[ring] = np.sum(driving) / np.sum(drag[inner] + drag[outer])
@@ -99,3 +104,27 @@ def ring_torques(
         by_places[:, c * i : c * (i + 1)] -= 0.5 * np.outer(touched[i], pull - film.by_displacement.T @ turned)
         by_speeds += 0.5 * np.outer(touched[i], (turned @ by_total(film, place)) * system.turning[i, SUM, 1:])
     return torque, by_speeds, by_places
+
+
+def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmForce, ...]) -> Array:
+    """(rings,) angles in rad at which pins hold their rings, 0 of other rings, with films at places (films, c) and the
+    rotor at omega rad/s; films: () where they put no force on their journals."""
+    angles = np.zeros(system.ring_count)
+    if system.pinned.any():
+        none = FilmForce(*(np.zeros((places.shape[1],) * size) for size in (1, 2, 2)))
+        bodies = np.append(omega, np.zeros(system.ring_count))
+        torques, _, _ = ring_torques(system, bodies, places, films or (none,) * len(places))
+        for ring in np.flatnonzero(system.pinned):
+            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]))
+    return angles
+
+
+def torque_by_rates(system: System, places: Array, films: tuple[FilmForce, ...]) -> Array:
+    """(rings, c films) derivative of the torques on the rings by the velocities of the journals: half of the moments of
+    the films' forces."""
+    found = np.zeros((system.ring_count, places.size))
+    c = places.shape[1]
+    for i, (place, film) in enumerate(zip(places, films, strict=True) if system.torque == "all" else ()):
+        touched = (system.bodies[i] == np.arange(system.ring_count)[:, None]).any(axis=1)
+        found[:, c * i : c * (i + 1)] = 0.5 * np.outer(touched, across(place) @ film.by_velocity)
+    return found

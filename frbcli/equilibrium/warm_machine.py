@@ -9,9 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.elements.pin import has_pins
 from frbcli.equilibrium.resting import RestingPosition, resting_position
-from frbcli.errors import NotConverged
 from frbcli.film.grid import Array
 from frbcli.scene.gate.analysis import HEAT
 from frbcli.scene.gate.gate import require
@@ -84,7 +82,7 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     InputError
         For a case that cannot be modelled or has no heat.
     NotConverged
-        Where its heat does not balance, or a ring has a pin.
+        Where its heat does not balance.
 
     Examples
     --------
@@ -92,8 +90,6 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     >>> found = frbcli.warm_machine(frbcli.load_case("floating-ring-heat"))  # doctest: +SKIP
     """
     require(case, HEAT)
-    if has_pins(case):
-        raise NotConverged("a pin holds a ring, and no position of rest is found with it.")
     plan = make_plan(case)
     top = max(abs(case.speed.start), abs(case.speed.end)) if speed_Hz is None else speed_Hz
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)
@@ -160,7 +156,7 @@ def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, A
     """
     speeds = zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True)
     found = [
-        system.films.power_and_flow(i, place, total, slip, drag)
+        system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
         for i, (place, (total, slip), drag) in enumerate(speeds)
     ]
     power, flow = np.array(found).T

@@ -20,8 +20,8 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.response import larger_semi_axis
 from frbcli.linear.stability import check_machine
-from frbcli.linear.stability_point import linear_machine, point_at_rest, with_errors
-from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.linear.stability_point import linear_machine, machine_rotor, point_at_rest, with_errors
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
@@ -30,6 +30,7 @@ Array = NDArray[np.float64]
 Amplitudes = NDArray[np.complex128]
 
 FORWARD, BACKWARD, MIXED = "forward", "backward", "mixed"
+UNMOVED = 1e-12  # of a ring that turns on its pin, in m over rad, below which nothing else moves
 STILL = 1e-3  # of the largest motion: a point that moves less has no sense of whirl
 
 
@@ -122,7 +123,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
             machine = StaticMachines(case, memory=True).at(2.0 * math.pi * speed_Hz)
     except NotConverged as none:
         raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, str(none), ""),)) from none
-    rotor = without_spins(machine.system.rotor, machine.at_rest.position.ring_speeds)
+    rotor = machine_rotor(machine)
     stations = shaft_of(case).stations(rotor)
     point = with_errors(point_at_rest(machine, speed_Hz), machine)
     shapes = []
@@ -130,7 +131,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
         shape = np.einsum("sij,j->si", stations.maps, vector)
         size = float(np.max(larger_semi_axis(np.concatenate([motion, shape]))))
-        if size > 0.0:
+        if size > UNMOVED * float(np.abs(vector).max()):
             there = shape.ravel()[first_largest(shape.ravel())]
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
             own = motion / unit

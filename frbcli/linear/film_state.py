@@ -221,7 +221,8 @@ def film_state(
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
-    ends = d[None] if volume is None else volume.own.ends(at_rest.seen(d))
+    felt = replace(at_rest, displacement=system.felt(i, c * d) / c)
+    ends = felt.displacement[None] if volume is None else volume.own.ends(felt.seen(felt.displacement))
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
     state = FilmState(
@@ -246,15 +247,16 @@ def film_state(
         mixed=MixedFriction.of(system, i, at_rest, slip, shell),
         tilting=at_rest.tilting,
     )
-    return state if volume is None else _with_fields(case, volume, state, at_rest, speeds)
+    return state if volume is None else _with_fields(case, volume, state, felt, speeds)
 
 
 def _with_fields(
     case: Case, volume: FieldFilms, state: FilmState, at_rest: RestingFilm, speeds: tuple[float, float]
 ) -> FilmState:
-    """A state with torque, loss, flow and pressure. speeds: of journal and shell, rad/s. Raises NotConverged."""
+    """A state with torque, loss, flow and pressure. at_rest: as the film feels it, in a gap that surfaces which touch
+    keep; speeds: of journal and shell, rad/s. Raises NotConverged."""
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
-    found = Fields.of(volume.own, at_rest.seen(state.displacement), speeds, factor)
+    found = Fields.of(volume.own, at_rest.seen(at_rest.displacement), speeds, factor)
     errors = _field_errors(volume, found, at_rest, speeds, factor)
     torque, power, flow, power_error = found.torque, found.power, found.side_flow, errors.power
     if state.mixed is not None:

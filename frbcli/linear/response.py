@@ -35,11 +35,12 @@ from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.nearest import did_you_mean
-from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import Harmonic
 from frbcli.scene.gate.analysis import FILMS, RANGE
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_forces, harmonics_of
+from frbcli.scene.machine.system import elastic_shell
 from frbcli.scene.speeds import default_speeds
 
 Array = NDArray[np.float64]
@@ -105,10 +106,21 @@ class Response(Tabular):
     @property
     def gap_share(self) -> Array:
         """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its resting position
-        leaves, 1 - eccentricity."""
-        left = 1.0 - np.array([[film.eccentricity for film in point.films] for point in self.resting])
-        left = left.reshape(self.clearances.shape)
+        leaves, 1 - eccentricity; of one that rests on an elastic shell, over the depth by which it presses it in."""
+        left = np.where(self._pressed, self._eccentricity - self.case.contact.eccentricity, 1.0 - self._eccentricity)
         return np.asarray(larger_semi_axis(self.in_films) / left)
+
+    @property
+    def _eccentricity(self) -> Array:
+        """(n, f) at rest."""
+        found = np.array([[film.eccentricity for film in point.films] for point in self.resting])
+        return found.reshape(self.clearances.shape)
+
+    @property
+    def _pressed(self) -> NDArray[np.bool_]:
+        """(n, f) which journals rest on their elastic shells."""
+        shell = elastic_shell(self.case)
+        return np.zeros(self.clearances.shape, dtype=bool) if shell is None else self._eccentricity > shell.begins
 
     @property
     def eccentricity_max(self) -> Array:
@@ -123,8 +135,9 @@ class Response(Tabular):
     @property
     def validity(self) -> tuple[str, ...]:
         """At each speed "linear"; "doubtful" where a journal moves over more than DOUBTFUL of the gap left at rest; or
-        "beyond-gap" where its orbit leaves the gap."""
-        pairs = zip(*(each.max(axis=1, initial=0.0) for each in (self.eccentricity_max, self.gap_share)), strict=True)
+        "beyond-gap" where its orbit leaves the gap, or the elastic shell that it rests on."""
+        ends = np.where(self._pressed, self.gap_share, self.eccentricity_max)
+        pairs = zip(*(each.max(axis=1, initial=0.0) for each in (ends, self.gap_share)), strict=True)
         return tuple(
             BEYOND_GAP if eccentricity >= 1.0 else DOUBTFUL_MOTION if share > DOUBTFUL else SOUND
             for eccentricity, share in pairs
@@ -206,7 +219,7 @@ def response(
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
-    rotors = [without_spins(system.rotor, 2.0 * math.pi * np.array(point.ring_speeds_Hz)) for point in resting]
+    rotors = [point.rotor for point in resting if point.rotor is not None]
     found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
     motions, forces, journals = zip(*found, strict=True)
     clearances = np.array([(point.warm.system if point.warm else system).clearances for point in resting])

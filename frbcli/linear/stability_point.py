@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
-from frbcli.equilibrium.linearised import state_matrix
+from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
-from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import fastest_first, ranks
 
 if TYPE_CHECKING:  # films on pads take long to import
@@ -45,11 +45,12 @@ class StabilityPoint:
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
     on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
     in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
-    their speeds stand while the rotor moves. warm: the machine with its heat, of a case that has it; its temperatures
-    stand, too. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the films, empty where they
-    were not asked for; others: stiffness and damping (films, 2, 2) on other meshes, with the
-    share of the difference that is the error; axial: the collar under an axial load, None without one. All are empty
-    where no resting position was found; problem then says why, and is empty otherwise.
+    their speeds stand while the rotor moves, and are 0 against a pin. warm: the machine with its heat, of a case that
+    has it; its temperatures stand, too. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the
+    films, empty where they were not asked for; others: stiffness and damping (films, 2, 2) on other meshes, with the
+    share of the difference that is the error; axial: the collar under an axial load, None without one; rotor: the
+    machine without its films, as small motions see it, None without rest. All others are empty where no resting
+    position was found; problem then says why, and is empty otherwise.
     """
 
     speed_Hz: float
@@ -61,6 +62,7 @@ class StabilityPoint:
     errors: Array = field(default_factory=lambda: np.zeros(0))
     others: tuple[tuple[Array, Array, float], ...] = ()
     axial: AxialState | None = None
+    rotor: LinearRotor | None = None
 
     @property
     def value(self) -> float:
@@ -154,9 +156,13 @@ def critical_eigenvalue(values: Eigenvalues) -> complex:
 
 def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalues:
     """(2 n,) eigenvalues in 1/s of a machine at rest with its films as they are solved, on its own mesh or another."""
-    system = machine.system
-    rotor = without_spins(system.rotor, machine.at_rest.position.ring_speeds)
-    return eigenvalues(rotor, machine.omega, *_coefficients(films))
+    return eigenvalues(machine_rotor(machine, films), machine.omega, *_coefficients(films))
+
+
+def machine_rotor(machine: MachineAtRest, films: FilmsAtRest | None = None) -> LinearRotor:
+    """A machine at rest without its films, as small motions see it; films: on another mesh, by default its own."""
+    at_rest = machine.at_rest
+    return rotor_at_rest(machine.system, machine.omega, at_rest.position.ring_speeds, films or at_rest)
 
 
 def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]:
@@ -170,7 +176,7 @@ def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]
 def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None = None) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests. frequency: in rad/s, of the coefficients of films that keep
     oil; by default that of the least damped whirl."""
-    rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
+    rings, rotor = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist()), machine_rotor(machine)
     others: tuple[tuple[Array, Array, float], ...]
     if machine.dynamic:
         values = _with_memory(machine)
@@ -182,10 +188,12 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
         _check_known(films)
         fine = [dynamic.fine.at(1j * frequency)[0] for dynamic in machine.dynamic]
         others = ((np.array([z.real for z in fine]), np.array([z.imag for z in fine]) / frequency, 1.0),)
-        return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others)
+        return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others, rotor=rotor)
     values = machine_eigenvalues(machine, machine.at_rest)
     others = tuple((*_coefficients(films), share) for films, share in machine.others)
-    return StabilityPoint(speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others)
+    return StabilityPoint(
+        speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others, rotor=rotor
+    )
 
 
 def with_errors(point: StabilityPoint, machine: MachineAtRest) -> StabilityPoint:
@@ -229,8 +237,7 @@ def _with_memory(machine: MachineAtRest, fine: bool = False) -> Eigenvalues:
 
 def linear_machine(machine: MachineAtRest) -> Oscillator:
     """A machine at rest without its films; its rings turn with the speeds that they have there."""
-    rotor = without_spins(machine.system.rotor, machine.at_rest.position.ring_speeds)
-    return oscillator(rotor, machine.omega)
+    return oscillator(machine_rotor(machine), machine.omega)
 
 
 def _at_frequency(film: RestingFilm, dynamic: DynamicFilm, frequency: float) -> RestingFilm:

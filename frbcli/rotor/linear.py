@@ -107,27 +107,30 @@ def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tupl
     return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
-def without_spins(rotor: LinearRotor, speeds: Array) -> LinearRotor:
+def without_spins(rotor: LinearRotor, speeds: Array, pinned: NDArray[np.bool_] | None = None) -> LinearRotor:
     """The machine without its last degrees of freedom, the angles of its rings, which keep their speeds (rings,) in
-    rad/s."""
+    rad/s. pinned: (rings,) whose angles stay, behind all others; none by default."""
     count = len(speeds)
     if count == 0:
         return rotor
-    damping = rotor.damping
+    n, damping = rotor.size - count, rotor.damping
     if rotor.cones:
-        damping = damping + rotor.precession(np.concatenate([np.zeros(rotor.size - count), speeds]))
+        damping = damping + rotor.precession(np.concatenate([np.zeros(n), speeds]))
+    staying = np.zeros(0, dtype=np.int64) if pinned is None else np.flatnonzero(pinned)
+    kept = np.concatenate([np.arange(n), n + staying])
+    square = np.ix_(kept, kept)
     return replace(
         rotor,
-        mass=rotor.mass[:-count, :-count],
-        damping=damping[:-count, :-count],
-        gyroscopic=rotor.gyroscopic[:-count, :-count],
-        stiffness=rotor.stiffness[:-count, :-count],
-        static_load=rotor.static_load[:-count],
-        unbalance_cos=rotor.unbalance_cos[:-count],
-        unbalance_sin=rotor.unbalance_sin[:-count],
-        journals=rotor.journals[:, :, :-count],
-        points=tuple((name, place[:, :-count]) for name, place in rotor.points),
-        over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(count),
-        loads=tuple(load.without(count) for load in rotor.loads),
+        mass=rotor.mass[square],
+        damping=damping[square],
+        gyroscopic=rotor.gyroscopic[square],
+        stiffness=rotor.stiffness[square],
+        static_load=rotor.static_load[kept],
+        unbalance_cos=rotor.unbalance_cos[kept],
+        unbalance_sin=rotor.unbalance_sin[kept],
+        journals=rotor.journals[:, :, kept],
+        points=tuple((name, place[:, kept]) for name, place in rotor.points),
+        over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(kept),
+        loads=tuple(load.cut(kept) for load in rotor.loads),
         cones=(),
     )

@@ -41,9 +41,9 @@ class Load:
         """A load with columns (2, 2) on a place, on all degrees of freedom; place: (2, n) its x and y by them."""
         return replace(self, columns=self.columns @ place)
 
-    def without(self, count: int) -> Self:
-        """The load without the last `count` degrees of freedom."""
-        return replace(self, columns=self.columns[:, :-count])
+    def cut(self, kept: NDArray[np.int64]) -> Self:
+        """The load on the degrees of freedom `kept` alone."""
+        return replace(self, columns=self.columns[:, kept])
 
 
 @dataclass(frozen=True)

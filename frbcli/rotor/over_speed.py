@@ -54,9 +54,9 @@ class LinearPart:
         stiffness, damping, mass = (count * (place.T @ each @ place) for each in self._matrices)
         return LinearPart(self.speeds, stiffness, damping, mass)
 
-    def cut(self, count: int) -> LinearPart:
-        """The part of a rotor without its last `count` degrees of freedom."""
-        return LinearPart(self.speeds, *(each[:, :-count, :-count] for each in self._matrices))
+    def cut(self, kept: NDArray[np.int64]) -> LinearPart:
+        """The part of a rotor with its degrees of freedom `kept` alone."""
+        return LinearPart(self.speeds, *(each[:, kept[:, None], kept] for each in self._matrices))
 
     @property
     def _matrices(self) -> tuple[Array, Array, Array]:

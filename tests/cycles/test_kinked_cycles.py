@@ -154,5 +154,5 @@ def test_the_time_loop_goes_to_the_stable_motions_on_both_sides_of_the_unstable_
 
 def test_a_ring_that_stands_still_has_no_resting_position_under_a_weight() -> None:
     blocked = frbcli.load_case("floating-ring", ["bearing.ring.spin=blocked"])
-    with pytest.raises(frbcli.InputError, match="outer film then carries no weight"):
+    with pytest.raises(frbcli.InputError, match="outer film carries no weight"):
         check(blocked, shooting=True)

@@ -46,6 +46,7 @@ STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
 ROUGH = (
     'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
 )
+SHELL = "contact={policy='elastic', stiffness='1e8 N/m'}"
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
     'cavitation="sommerfeld"}'
@@ -87,9 +88,22 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
+    "floating ring that does not turn, on its elastic shell": ("floating-ring", ("bearing.ring.spin=blocked", SHELL)),
+    "floating ring that does not turn, on rough surfaces": (
+        "floating-ring", ("bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld", ROUGH)
+    ),
     "floating ring with a pin": ("floating-ring", ("film.cavitation=half-sommerfeld", PIN)),
+    "floating ring with a pin, on its elastic shell": (
+        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, SHELL)
+    ),
+    "floating ring with a pin, without weight": (
+        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2")
+    ),
     "cartridge": ("turbocharger-car-cartridge", ()),
     "cartridge that does not turn": ("turbocharger-car-cartridge", ("bearing.ring.spin=blocked",)),
+    "cartridge that does not turn, on its elastic shells": (
+        "turbocharger-car-cartridge", ("bearing.ring.spin=blocked", SHELL)
+    ),
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
     "pocket": ("jeffcott", (POCKET,)),
@@ -97,7 +111,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "lobes": ("jeffcott", ("bearing.lobes={count=3, preload=0.5}",)),
     "heat": ("jeffcott", (OIL, HEAT)),
     "clearance steps": ("jeffcott", (STEP,)),
-    "elastic contact": ("jeffcott", ("contact={policy='elastic', stiffness='1e8 N/m'}",)),
+    "elastic contact": ("jeffcott", (SHELL,)),
     "rough surfaces": ("jeffcott", (ROUGH,)),
     "rough surfaces around a floating ring": ("floating-ring", (ROUGH, "film.cavitation=half-sommerfeld")),
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),

@@ -182,9 +182,8 @@ def test_faults_of_a_pin(settings: list[str], key: str, problem: str) -> None:
     ("analysis", "setting", "key"),
     [
         (RUN, "film.coupling=co-simulation", "film.coupling"),
-        (RUN, 'start.position="resting"', "start.position"),
-        (STABILITY, "oil.density=830 kg/m^3", "bearing.pin"),
-        (BEARING, "oil.density=830 kg/m^3", "bearing.pin"),
+        (STABILITY, "rotor.gravity=9.81", "bearing.pin"),
+        (BEARING, "rotor.gravity=9.81", "bearing.pin"),
         (SPEED_CYCLES, "film.cavitation=half-sommerfeld", "bearing.pin"),
     ],
 )

@@ -1,1 +1,1 @@
-"""Rough surfaces that touch: pressure of their summits over the gap, boundary friction."""
+"""Surfaces that touch: rough ones, by the pressure of their summits over the gap, and smooth ones on elastic shells."""

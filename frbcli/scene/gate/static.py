@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 from frbcli.case.bearing import FloatingRingBearing
+from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.elements.pin import PinElement, has_pins
+from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled
@@ -63,30 +65,83 @@ def _opens_in_turning(place: FilmPlace) -> bool:
     return place.feed_holes is not None or (not is_plain(place.geometry) and place.grid_body != HOUSING)
 
 
-def still_ring_faults(case: Case) -> Iterator[Fault]:
-    """Rings that do not turn and are loaded rest nowhere: between them and the housing nothing turns that carries."""
-    problem = "keeps the ring from turning; its outer film then carries no weight, and the ring rests on its shell."
-    remedy = 'Write spin = "free".'
+GIVES_WAY = 'let its shell give way, contact = {policy = "elastic", stiffness = "1e8 N/m"}, on which it rests'
+
+
+def held_ring_faults(case: Case) -> Iterator[Fault]:
+    """Between a ring that does not turn and the housing there is no wedge: the film carries no weight. The ring rests
+    where it touches, on a shell that gives way or on the summits of rough surfaces."""
+    sinks = "its outer film has no wedge and carries no weight, and the ring sinks until it touches its shell."
+    for held in _held_rings(case) if not case.contact.gives_way else ():
+        problem = f"{held.what}: {sinks}"
+        yield Fault(held.key, held.value, None, problem, f"{held.remedy}, or {GIVES_WAY}.")
+
+
+def held_film_faults(case: Case) -> Iterator[Fault]:
+    """The film between a ring that does not turn and its shell has no coefficients where it cavitates at once, and no
+    rest where it keeps its oil."""
+    for held in _held_rings(case):
+        for film in held.outer:
+            law = law_named(case.cavitation(film))
+            if law.keeps_oil:
+                problem = (
+                    f"{held.what}, and {law.name} conserves the mass of the oil in its outer film: there it lies as "
+                    "the motion before has left it, and no rest is the only one."
+                )
+                yield Fault(held.key, held.value, None, problem, f"{held.remedy}, or take a law without memory there.")
+            elif law.cavitates and not _is_full(case, film):
+                problem = (
+                    f"{held.what}, and its outer film cavitates as soon as it moves: the forces of opposite velocities "
+                    "are not opposite, and no damping describes both."
+                )
+                remedy = f'{held.remedy}, or feed the film above oil.cavitation_pressure, or write "sommerfeld".'
+                yield Fault(held.key, held.value, None, problem, remedy)
+
+
+def held_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Limit cycles are followed within the gaps of all films."""
+    problem = "its outer film carries no weight, the ring rests on its shell, and limit cycles stay within the gaps."
+    for held in _held_rings(case):
+        yield Fault(held.key, held.value, None, f"{held.what}: {problem}", f"{held.remedy}, or take a run-up.")
+
+
+@dataclass(frozen=True)
+class _HeldRing:
+    """A ring under its weight that does not turn. key, value: what holds it, and what it does, in words; remedy: how it
+    turns; outer: films between it and its shells."""
+
+    key: str
+    value: str
+    what: str
+    remedy: str
+    outer: tuple[FilmGeometry, ...]
+
+
+def _held_rings(case: Case) -> Iterator[_HeldRing]:
     if case.given_rotor is None or case.rotor.gravity <= 0.0:
         return
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and bearing.ring.spin == "blocked":
-            yield Fault(f"{bearing_key(case, index)}.ring.spin", "blocked", None, problem, remedy)
+    for key, given in zip(case.given_keys, case.given_bearings, strict=True):
+        around = [part for part in given.parts if isinstance(part, FloatingRingBearing)]
+        outer = tuple(part.outer for part in around)
+        if around and around[0].ring.spin == "blocked":
+            what = "keeps the ring from turning"
+            yield _HeldRing(f"{key}.ring.spin", "blocked", what, 'Write spin = "free"', outer)
+        elif given.pin is not None:
+            yield _HeldRing(f"{key}.pin", "", "holds the ring at rest", "Remove it", outer)
 
 
-def pin_faults(case: Case) -> Iterator[Fault]:
-    """A ring at its pin neither turns with the balance of its torques nor is it held without a spring."""
-    problem = "holds a ring that turns within its play: no position of rest is found with it."
-    remedy = 'Take a run, which follows it; or remove it and write ring.spin = "blocked".'
+def _is_full(case: Case, film: FilmGeometry) -> bool:
+    """Whether the pressure of a film at rest lies above that at which it cavitates, but at its ends."""
+    ambient, supply = case.oil.ambient_pressure, film.supply
+    fed = supply.absolute(ambient) if supply.feeds else ambient
+    return ambient >= case.oil.cavitation_pressure and max(ambient, fed) > case.oil.cavitation_pressure
+
+
+def pin_cycle_faults(case: Case) -> Iterator[Fault]:
+    """A pin is a stop to one side."""
     for each in PinElement.of(case):
-        yield Fault(each.key, "", None, problem, remedy)
-
-
-def pinned_start_faults(case: Case) -> Iterator[Fault]:
-    """A run does not begin at rest with a pin."""
-    if case.start.position == "resting" and has_pins(case):
-        problem = "is not known of a ring with a pin."
-        yield Fault("start.position", "resting", None, problem, 'Write "centre", or remove the pin.')
+        problem = "pushes at its ring to one side alone: where the ring leaves it, the motion of a cycle has corners."
+        yield Fault(each.key, "", None, problem, 'Take a run; or remove it and write ring.spin = "blocked".')
 
 
 def loaded_heat_faults(case: Case) -> Iterator[Fault]:

@@ -10,13 +10,14 @@ from numpy.typing import NDArray
 
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.elements.pin import pin_rows
+from frbcli.elements.pin import held_by_pins, pin_rows
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import Asperities, make_asperities
+from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.film.roughness.rubbing import Rubbing
-from frbcli.rotor.body import COORDINATES
+from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model
@@ -33,7 +34,8 @@ class System:
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
     torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces;
-    pins: (rings or 0, PIN) of the rings, see solve/pin.py.
+    pins: (rings or 0, PIN) of the rings, see solve/pin.py; shell: in which smooth surfaces rest where nothing else
+    carries them, None where contact ends a run.
     """
 
     rotor: LinearRotor
@@ -48,11 +50,21 @@ class System:
     own_length: float = 0.0
     asperities: Asperities | None = None
     pins: Array = field(default_factory=lambda: pin_rows(()))
+    shell: ElasticShell | None = None
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """Force and derivatives of film i, see Films, and of rough surfaces beside it. Their friction has the sense of
         the total: a ring turns more slowly than its rotor, and a journal that stands still does not rub."""
+        if self.shell is not None:
+            return self.shell.force(
+                lambda felt, felt_rate: self.films.force(i, felt, felt_rate, total, near), place, rate,
+                self.clearances[i],
+            )  # fmt: skip
         return self.rubbing(i).beside(self.films.force(i, place, rate, total, near), place, rate, total)
+
+    def felt(self, i: int, place: Array) -> Array:
+        """(coordinates,) what film i feels of a journal at a place: an elastic shell keeps a gap."""
+        return place if self.shell is None else self.shell.felt(place, self.clearances[i])
 
     def rubbing(self, i: int) -> Rubbing:
         """The summits of film i."""
@@ -96,6 +108,11 @@ class System:
         """Degrees of freedom in which the rings turn."""
         return tuple(range(self.rotor.size - self.ring_count, self.rotor.size))
 
+    @property
+    def pinned(self) -> NDArray[np.bool_]:
+        """(rings,) which of them a pin holds, at rest: their films pull at them in one sense."""
+        return held_by_pins(self.pins, self.ring_count)
+
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
         """(films,) omega_J + omega_S of each film, rad/s."""
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
@@ -128,7 +145,16 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         own_length=plan.length,
         asperities=rough_surfaces(case),
         pins=pin_rows([around[0].pin for around in ringed]),
+        shell=elastic_shell(case) if films.coordinates == len(PLANE) else None,
     )
+
+
+def elastic_shell(case: Case) -> ElasticShell | None:
+    """The shell of smooth surfaces that give way in contact, None where contact ends a run or asperities touch."""
+    contact = case.contact
+    if contact.rough or contact.policy != "elastic" or contact.stiffness is None:
+        return None
+    return ElasticShell(contact.eccentricity, contact.stiffness)
 
 
 def rough_surfaces(case: Case) -> Asperities | None:
