@@ -117,13 +117,13 @@ def films_at_rest(system: System, omega: float, position: RestingPosition, settl
     """The films of a machine that rests at omega rad/s. settled: whether the derivatives of films that keep oil are
     those of settled_force, else one-sided ones. Raises NotConverged."""
     totals, near = system.omegas(omega, position.ring_speeds), position.films
-    if near and not settled:
-        return FilmsAtRest(position, totals, near)
-    forces = tuple(
-        settled_force(system, i, place, float(totals[i]), near[i] if near else None)
-        for i, place in enumerate(position.journals)
-    )
-    return FilmsAtRest(position, totals, forces)
+
+    def force(i: int, place: Array) -> FilmForce:
+        if near and not (settled and system.remembering[i]):
+            return near[i]
+        return settled_force(system, i, place, float(totals[i]), near[i] if near else None)
+
+    return FilmsAtRest(position, totals, tuple(force(i, place) for i, place in enumerate(position.journals)))
 
 
 def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]], omega: float) -> float:
@@ -149,15 +149,15 @@ def place_error(own: Array, others: Sequence[tuple[Array, float]]) -> float:
     return max(errors, default=math.nan)
 
 
-def force_error(static: StaticFilms, i: int, place: Array, total: float) -> float:
-    """Relative error of the force of film i at `place` (c,), from another mesh; NaN where it is not known."""
+def force_error(static: StaticFilms, i: int, place: Array, total: float, load: tuple[float, float]) -> float:
+    """Relative error of the force of film i at `place` (c,), where it carries `load`, from another mesh; NaN where it
+    is not known."""
     if not static.others:
         return math.nan
     other = static.others[0]
     still = np.zeros_like(place)
-    mine, force = (films.system.force(i, place, still, total).force[:2] for films in (static.own, other))
-    size = float(np.hypot(*mine))
-    return other.share * float(np.hypot(*(force - mine))) / size if size > 0.0 else 0.0
+    off, size = other.system.force(i, place, still, total).force[:2] + load, float(np.hypot(*load))
+    return other.share * float(np.hypot(*off)) / size if size > 0.0 else 0.0
 
 
 def resting_film(

@@ -51,15 +51,18 @@ class RestingPosition:
 
 
 def resting_position(
-    system: System, omega: float, start: Array | None = None, search: Search = SEARCH
+    system: System,
+    omega: float,
+    start: Array | None = None,
+    search: Search = SEARCH,
+    held: HeldRotor | None = None,
 ) -> RestingPosition:
     """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
-    gaps there, then from the centre.
+    gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand.
 
     Raises NotConverged if no start leads to one.
     """
-    in_plane = replace(system.rotor, journals=system.rotor.journals[:, :2])
-    held, clearances = held_rotor(in_plane, omega), np.array(system.clearances)[:, None]
+    held, clearances = held or held_in_plane(system, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
     along = np.divide(loads, size, out=np.zeros_like(loads), where=size > 0.0)
@@ -105,6 +108,11 @@ def _remedy(system: System, omega: float) -> str:
     if system.shell is None and _still(system, omega).any():
         return f"{usual} A film between surfaces that do not turn carries nothing: a spring or an elastic shell does."
     return usual
+
+
+def held_in_plane(system: System, omega: float) -> HeldRotor:
+    """The rotor at omega rad/s as the journals see it in their planes, whatever the films. Raises NotConverged."""
+    return held_rotor(replace(system.rotor, journals=system.rotor.journals[:, :2]), omega)
 
 
 def _position(
@@ -169,7 +177,8 @@ def _balance(
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
         slope[own, own] += many * force.by_displacement
-        slope[own] += many * np.outer(by_total(force, position[i]), following[i])
+        if system.ring_count:
+            slope[own] += many * np.outer(by_total(force, position[i]), following[i])
     return ForceBalance(surplus, slope, films)
 
 

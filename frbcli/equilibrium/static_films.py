@@ -103,7 +103,8 @@ class StaticFilms:
         case = warm_case(self.case, viscosities, clearances)
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
-    def with_fields(self) -> tuple[FieldFilms | None, ...]:
+    @cached_property
+    def fields(self) -> tuple[FieldFilms | None, ...]:
         """The films on CELLS and on fewer, for the fields of pressure and flow; None for bearing models, which have
         none."""
         if not self.own.plan.form.solved:
@@ -123,13 +124,14 @@ class StaticFilms:
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
     """The films of a case. load: along -y on a single film in N, default that of the rotor or of [motion]; top_Hz:
     largest rotor speed, default that of the run. Raises InputError."""
-    rotor = _rotor(case, load)
     plan = _plan(case)
+    own = make_system(case, plan, _rotor(case, load), top_Hz)
 
-    def made(plan: Plan, share: float = 0.0) -> MeshFilms:
-        return MeshFilms(plan, make_system(case, plan, rotor, top_Hz), share)
+    def others() -> tuple[MeshFilms, ...]:  # with the same rotor: that of a turbocharger takes as long as its films
+        plans = other_plans(plan)
+        return tuple(MeshFilms(each, make_system(case, each, own.rotor, top_Hz), share) for each, share in plans)
 
-    return StaticFilms(case, made(plan), lambda: tuple(made(*other) for other in other_plans(plan)), top_Hz)
+    return StaticFilms(case, MeshFilms(plan, own), others, top_Hz)
 
 
 def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:

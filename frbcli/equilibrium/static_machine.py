@@ -18,10 +18,12 @@ from frbcli.equilibrium.coefficients import (
     resting_film,
 )
 from frbcli.equilibrium.dynamic_films import DynamicFilm, constant_film, dynamic_film
-from frbcli.equilibrium.resting import SEARCH, resting_position
+from frbcli.equilibrium.newton import Search
+from frbcli.equilibrium.resting import SEARCH, held_in_plane, resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
+from frbcli.rotor.held import HeldRotor
 from frbcli.scene.gate.analysis import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -29,6 +31,9 @@ from frbcli.scene.planning.plan import make_plan
 Array = NDArray[np.float64]
 
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
+# Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
+# law follows, those of others are exact, and a step leaves its square over the gap.
+NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
 CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
 
 @dataclass(frozen=True)
@@ -114,13 +119,15 @@ class StaticMachines:
             static, start = static.warm(viscosities, clearances), warm.resting.displacements
         others: list[tuple[FilmsAtRest, float]] = []
         settled, with_error = not self._memory, with_error and not self._memory
+        held = held_in_plane(static.system, omega)
         brought = near is not None and not (with_error or static.system.remembers)
         if static.on_cells and not brought:  # a coarse mesh also brings the journals near to where they rest
-            start, others = _on_others(static.others if with_error else static.others[:1], omega, start, settled)
-        position = resting_position(static.system, omega, start, self._search)
+            coarse = static.others if with_error else static.others[:1]
+            start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
+        position = resting_position(static.system, omega, start, self._search, held)
         found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
-            _, others = _on_others(static.others, omega, position.displacements)
+            _, others = _on_others(static.others, omega, position.displacements, NEARLY, held)
         counted = others if with_error else []
         films = tuple(_resting_film(static.system, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
@@ -164,14 +171,15 @@ def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicF
 
 
 def _on_others(
-    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None, settled: bool = True
-) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:
+    meshes: tuple[MeshFilms, ...], omega: float, start: Array | None, search: Search, held: HeldRotor,
+    settled: bool = True,
+) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:  # fmt: skip
     """The displacements on the last of several meshes, each sought from those on the one before, and the films of all;
     meshes on which no position is found are left out."""
     found = []
     for mesh in meshes:
         try:
-            position = resting_position(mesh.system, omega, start)
+            position = resting_position(mesh.system, omega, start, search, held)
             found.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
             start = position.displacements
         except NotConverged:

@@ -172,7 +172,7 @@ def sommerfeld_chart(
     require(case, CHART)
     speed = max(_speeds(case)) if speed_Hz is None else speed_Hz
     static = static_films(case, 0.0, speed)
-    system, volumes, omega = static.system, static.with_fields(), 2.0 * math.pi * speed
+    system, volumes, omega = static.system, static.fields, 2.0 * math.pi * speed
     spins = ring_speeds(system, held_rotor(system.rotor, omega), omega, np.zeros((len(system.names), 2)))
     bodies, omegas = np.concatenate([[omega], spins]), system.omegas(omega, spins)
     points = []
@@ -190,7 +190,7 @@ def sommerfeld_chart(
 
 def _states(machine: MachineAtRest) -> list[FilmState]:
     """The states of the films of a machine but those of dampers, which do not turn."""
-    volumes = machine.static.with_fields()[: len(bearing_films(machine.static.case))]
+    volumes = machine.static.fields[: len(bearing_films(machine.static.case))]
     bodies = np.concatenate([[machine.omega], machine.at_rest.position.ring_speeds])
     warm = (math.nan,) * len(volumes) if machine.warm is None else [film.temperature for film in machine.warm.films]
     return [

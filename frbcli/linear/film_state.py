@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
@@ -13,6 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import LEAST, RestingFilm, TiltingFilm, force_error, settled_force
 from frbcli.equilibrium.static_films import FieldFilms, StaticFilms
 from frbcli.errors import NotConverged
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import CavitationFactor, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import gap_height
@@ -165,19 +167,28 @@ class Fields:
     side_flow: float
 
     @classmethod
-    def of(cls, volume: FieldFilm, d: Array, speeds: tuple[float, float], factor: CavitationFactor) -> Fields:
-        """Those of a steady film. d: see FieldFilm; speeds: of journal and shell in rad/s; factor: see loads. Raises
-        NotConverged."""
+    def of(
+        cls, volume: FieldFilm, places: Sequence[Array], speeds: tuple[float, float], factor: CavitationFactor
+    ) -> tuple[Fields, ...]:
+        """Those of a steady film at each of several places d, see FieldFilm. speeds: of journal and shell in rad/s;
+        factor: see loads. Raises NotConverged."""
         journal, shell = speeds
-        p_max, torques, flow = -math.inf, np.zeros(2), 0.0
-        for film, motion in volume.parts(d, journal + shell):
-            solution = FilmSolver(film).steady(motion)
-            found = loads(film, motion, solution, journal - shell, factor)
-            p_max = max(p_max, found.p_max)
-            torques += (found.torque.journal, found.torque.shell)
-            flow += volume.outflow(film, motion, solution)
-        on_journal, on_shell = torques.tolist()
-        return cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow)
+        solvers: dict[VolumeFilm, FilmSolver] = {}
+        found = []
+        for d in places:
+            p_max, torques, flow = -math.inf, np.zeros(2), 0.0
+            for film, motion in volume.parts(d, journal + shell):
+                if film not in solvers:
+                    solvers[film] = FilmSolver(film)
+                solver = solvers[film]
+                solution = solver.steady(motion)
+                its = loads(film, motion, solution, journal - shell, factor)
+                p_max = max(p_max, its.p_max)
+                torques += (its.torque.journal, its.torque.shell)
+                flow += volume.outflow(solver, motion, solution)
+            on_journal, on_shell = torques.tolist()
+            found.append(cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow))
+        return tuple(found)
 
 
 def _further_out(at_rest: RestingFilm) -> RestingFilm:
@@ -194,13 +205,13 @@ def _field_errors(
     out; NaN if the film is not solved on fewer cells."""
     d, out = at_rest.displacement, _further_out(at_rest).displacement
     try:
-        here, there = (astuple(Fields.of(film.coarser, at_rest.seen(place), speeds, factor)) for place in (d, out))
+        both = Fields.of(film.coarser, [at_rest.seen(place) for place in (d, out)], speeds, factor)
     except NotConverged:
         return Fields(*(math.nan,) * len(astuple(found)))
     return Fields(
         *(
             max(film.share * abs(coarse - own) + abs(moved - coarse), LEAST * abs(own))
-            for own, coarse, moved in zip(astuple(found), here, there, strict=True)
+            for own, coarse, moved in zip(*map(astuple, (found, *both)), strict=True)
         )
     )
 
@@ -239,7 +250,7 @@ def film_state(
         error=at_rest.error,
         place_error=at_rest.place_error,
         sommerfeld_number=sommerfeld_number(size, width, section.radius, c, section.viscosity, total),
-        force_error=force_error(static, i, at_rest.seen(d * c), total),
+        force_error=force_error(static, i, at_rest.seen(d * c), total, at_rest.load),
         viscosity=section.viscosity,
         clearance=c,
         temperature=temperature,
@@ -256,7 +267,7 @@ def _with_fields(
     """A state with torque, loss, flow and pressure. at_rest: as the film feels it, in a gap that surfaces which touch
     keep; speeds: of journal and shell, rad/s. Raises NotConverged."""
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
-    found = Fields.of(volume.own, at_rest.seen(at_rest.displacement), speeds, factor)
+    (found,) = Fields.of(volume.own, [at_rest.seen(at_rest.displacement)], speeds, factor)
     errors = _field_errors(volume, found, at_rest, speeds, factor)
     torque, power, flow, power_error = found.torque, found.power, found.side_flow, errors.power
     if state.mixed is not None:

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from frbcli.case.reading.load import load_case
-from frbcli.equilibrium import static_films
+from frbcli.equilibrium import static_films, static_machine
+from frbcli.equilibrium.resting import SEARCH
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
 from frbcli.linear.damped_modes import damped_modes
@@ -115,6 +116,30 @@ def test_a_hopf_point_of_other_films_is_as_uncertain_as_it_is_off() -> None:
     assert same.frequency_uncertainty_Hz == pytest.approx(threshold.frequency_uncertainty_Hz, rel=1e-5)
     more = higher.speed_uncertainty_Hz - same.speed_uncertainty_Hz
     assert more == pytest.approx(0.01 * speed, rel=0.1)
+
+
+@pytest.mark.parametrize("name", ["NEARLY", "NEARLY_ON_CELLS"])
+def test_errors_do_not_depend_on_where_the_search_on_other_meshes_ends(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """They are those of journals at rest there to round-off, and so short a search is enough for them: the law of a
+    penalty film follows the place of its journal, which slopes lack."""
+    settings = {"NEARLY": [], "NEARLY_ON_CELLS": ["film.cavitation=penalty", "bearing.supply.pressure=2 bar"]}[name]
+    case, speeds = load_case("axial-groove" if not settings else "jeffcott", settings), [3.0, 30.0]
+    near = stability_points(case, speeds)[1]
+    monkeypatch.setattr(static_machine, name, SEARCH)
+    for own, settled in zip(near, stability_points(case, speeds)[1], strict=True):
+        mine, exact = own.films[0], settled.films[0]
+        assert (mine.error, mine.place_error) == pytest.approx((exact.error, exact.place_error), rel=0.01)
+        assert own.errors == pytest.approx(settled.errors, rel=0.01)
+
+
+def test_other_meshes_have_the_same_rotor() -> None:
+    """The modes of a shaft of many sections take as long as films on cells; with heat they do at every speed."""
+    static = StaticMachines(CASE).static
+    warm = static.warm(np.array([0.01]), np.array(static.system.clearances))
+    for films in (static, warm):
+        assert all(other.system.rotor is static.system.rotor for other in (films.own, *films.others))
 
 
 def test_without_films_no_error_is_stated() -> None:

@@ -15,7 +15,6 @@ from frbcli.film.cells.balance.feed import supply_line
 from frbcli.film.cells.balance.plain import NO_DISTANCE
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.gap import gap_height
 from frbcli.film.grid import Array
@@ -185,7 +184,7 @@ def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
     width[0] = np.diff(grid.z)
     cells[AREA], cells[SHARE], cells[EXCESS] = grid.area, grid.share, grid.excess
     cells[SHEARED] = (1.0 - grid.cover) * grid.size
-    cells[LOAD] = force_weights(section, grid)
+    cells[LOAD] = film.weights
     around = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
     edge = grid.at != grid.phi[1:, None]
     cells[AROUND], cells[EDGE] = np.where(edge, 0.0, around), np.where(edge, around, 0.0)

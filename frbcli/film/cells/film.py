@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.balance.plain_clipped import clipped_means
-from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, volume_grid
+from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, force_weights, volume_grid
 from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
@@ -103,6 +104,11 @@ class VolumeFilm:
         if self.law.carries_gas:
             return np.full(self.grid.shape, self.law.standing(self.scales))
         return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
+
+    @cached_property
+    def weights(self) -> Array:
+        """(m, k) of the pressures of the cells in the integral over the width."""
+        return force_weights(self.section, self.grid)
 
     def gap(self, d: tuple[float, float], phi: Array) -> Array:
         """H (4.4) at the angles phi (n,)."""

@@ -10,7 +10,6 @@ import numpy as np
 
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.grid import Array
 from frbcli.film.parabola import summit
@@ -123,7 +122,7 @@ def pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     """(x, y) of the force in N of scaled gauge pressures (m, k), or of what else is given over the cells."""
     grid, section = film.grid, film.section
     scale = section.copies * section.radius * section.width * section.pressure_scale
-    along = scale * (force_weights(section, grid) * pressure).sum(axis=1)
+    along = scale * (film.weights * pressure).sum(axis=1)
     return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
 
 
@@ -143,7 +142,7 @@ def torque(
     shear = (1.0 - grid.cover) * grid.size * theta / gap
     if section.flow_roughness > 0.0:
         shear *= shear_stress(gap * section.clearance / section.flow_roughness)
-    pushing = force_weights(section, grid) * pressure
+    pushing = film.weights * pressure
     rise = np.roll(pushing, -1, axis=0) - pushing
     at_faces = gap_on(section, motion, grid.phi[1:], grid.height)
     face = at_faces * 0.5 * (theta + np.roll(theta, -1, axis=0))

@@ -12,6 +12,7 @@ import numpy as np
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
@@ -36,8 +37,8 @@ class FieldFilm(Protocol):
         """The films with the motions that they see, whose forces, torques and flows add up."""
         ...
 
-    def outflow(self, film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
-        """What leaves a part through its open ends, m^3/s."""
+    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
+        """What leaves a part, which the solver has solved, through its open ends, m^3/s."""
         ...
 
 
@@ -61,6 +62,6 @@ class EvenFilm:
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
         return ((film_at(self.film, math.hypot(*motion.d), total), motion),)
 
-    def outflow(self, film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
         """See FieldFilm."""
-        return outflow(film, motion.d, film.pressure(solution.state))
+        return outflow(solver.film, motion.d, solver.film.pressure(solution.state), solver.data)

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SHEARED, SIN
-from frbcli.film.cells.film import VolumeFilm, VolumeSolution
+from frbcli.film.cells.film import VolumeSolution
 from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.balances import tilted_outflow
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import (
@@ -216,6 +217,6 @@ class TiltedField:
         return tuple((land.film, land.motion(place, still, total)) for land in self.film.lands)
 
     @staticmethod
-    def outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:
+    def outflow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
         """See FieldFilm."""
-        return tilted_outflow(film, motion, solution)
+        return tilted_outflow(solver.film, motion, solution)

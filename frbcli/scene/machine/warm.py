@@ -25,7 +25,7 @@ def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clea
     wider = clearances / system.clearances
     films = system.films.scaled(thicker / wider**2, clearances)
     if films is None:
-        return make_system(warm_case(case, viscosities, clearances), plan)
+        return make_system(warm_case(case, viscosities, clearances), plan, system.rotor)
     return replace(system, films=films, drags=tuple((np.array(system.drags) * thicker / wider).tolist()))
 
 

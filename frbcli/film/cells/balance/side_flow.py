@@ -17,6 +17,7 @@ from frbcli.film.cells.data import (
     LENGTH,
     SIN,
     UNKNOWN,
+    VolumeFilms,
     volume_films,
 )
 from frbcli.film.cells.film import VolumeFilm
@@ -50,10 +51,10 @@ def side_flow(
     return total
 
 
-def outflow(film: VolumeFilm, d: tuple[float, float], pressure: Array) -> float:
+def outflow(film: VolumeFilm, d: tuple[float, float], pressure: Array, known: VolumeFilms | None = None) -> float:
     """Outflow through the open ends of the whole bearing in m^3/s. d: displacement over the clearance; pressure (m, k):
-    scaled gauge pressures of the cells."""
-    section, data = film.section, volume_films([film])
+    scaled gauge pressures of the cells; known: the film as arrays, if it is at hand."""
+    section, data = film.section, known or volume_films([film])
     states = np.zeros((STATES, *pressure.shape))
     states[PRESSURE] = pressure
     unit = section.copies * section.radius * section.width * section.clearance
