@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 
@@ -19,6 +20,9 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+# Objects between two searches for garbage, as in the program: kernels that are compiled make many that stay.
+YOUNG = 300_000
+
 # Files that take longest, first: a worker that began one of them last would be waited for alone. Neighbours begin at
 # the same time: they compile no time loop for the same machine.
 LONGEST = (
@@ -32,8 +36,15 @@ def pytest_configure(config: pytest.Config) -> None:
     """Have pytest-xdist keep the order below; its own one begins with the files of most tests."""
     if hasattr(config.option, "loadscopereorder"):
         config.option.loadscopereorder = False
+    gc.set_threshold(YOUNG, *gc.get_threshold()[1:])
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     order = {name: number for number, name in enumerate(LONGEST)}
     items.sort(key=lambda item: order.get(item.path.stem, len(order)))
+
+
+def pytest_collection_finish() -> None:
+    """Thousands of tests and all modules stay to the end: no search for garbage looks at them again."""
+    gc.collect()
+    gc.freeze()

@@ -203,6 +203,7 @@ COMMON = [(unit, text) for unit, factors in units._COMMON.items() for text in fa
 
 
 @pytest.mark.parametrize(("unit", "text"), [*COMMON, ("K", "degC"), ("K", "°C")])
+@settings(deadline=None, max_examples=10)  # a factor, and of temperatures a sum: a few numbers tell
 @given(number=st.floats(-1e6, 1e6, allow_subnormal=False))
 def test_common_units_are_those_of_the_registry(unit: str, text: str, number: float) -> None:
     written = float(f"{number:.9g}")

@@ -235,7 +235,7 @@ def test_contact_at_an_end_on_the_way_is_refused_with_a_remedy_that_helps(test: 
 ])  # fmt: skip
 def test_every_law_and_supply(cavitation: str, supply: str) -> None:
     """A tilt pushes back: the moment of the film turns the journal against it, on the whole."""
-    settings = (f"film.cavitation={cavitation}", f"bearing.supply={supply}", "accuracy.mesh=[16, 64]")
+    settings = (f"film.cavitation={cavitation}", f"bearing.supply={supply}", "accuracy.mesh=[8, 48]")
     result = one(case_of('motion.tilt=["1 mrad", "0 mrad"]', "motion.eccentricity=0.2", *settings))
     assert result.loads is not None
     assert np.hypot(*result.loads.moment) > 1e-3 * 0.012 * np.hypot(*result.loads.force)

@@ -17,9 +17,14 @@ from frbcli.cli.main import COMMANDS, run
 PAGE = DOCS / "command-line.md"
 ROW = re.compile(r"^\| `frb (.+?)` \| (\d+) \| (.*?) \| (.*?) \|$", re.MULTILINE)
 TEXTS = ("--help", "--version", "cases jeffcott", "schema", "export run.h5 -o -")  # no results for people
-# Their documents: tests/cli/test_cli_limit_cycles.py, and that of the same picture that does not move
 PROGRESS = re.compile(r"^.*\d:\d\d left.*\n", re.MULTILINE)  # told on slow machines only
-LONG = ("limit-cycles my.toml --set film.theory=short --csv cycles.csv", "plot run.h5 --what orbit --animate")
+# Their documents: test_cli_limit_cycles.py, that of the same picture that does not move, test_fit.py
+LONG = (
+    "limit-cycles my.toml --set film.theory=short --csv cycles.csv",
+    "plot run.h5 --what orbit --animate",
+    'fit my.toml --set film.theory=short --set "speed.duration=0.3 s" --set "rotor.unbalance=4 g*mm" '
+    "--measured run.h5 --vary rotor.unbalance",
+)
 
 
 class Line(NamedTuple):
