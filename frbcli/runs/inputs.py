@@ -93,6 +93,14 @@ class RunInputs:
         """Whether they change the films, beside the heat."""
         return self.machine is not None and bool(self.machine.limited or self.machine.pressures)
 
+    @property
+    def of_fillings(self) -> RunInputs:
+        """What changes the films at constant inputs: openings whose supplies give a flow at the most."""
+        machine = self.machine
+        if machine is None or not machine.limited:
+            return replace(self, machine=None)
+        return replace(self, machine=replace(machine, supplies=(), walls=(), pressures=()))
+
     def at_start(self, system: System) -> System:
         """The machine as it is at the start of a run."""
         shares = self.shares(np.zeros(1))

@@ -10,13 +10,16 @@ import numpy as np
 import pytest
 
 import frbcli
+from frbcli.case.schema import Case
 from frbcli.cli.main import run
 from frbcli.cycles.result import LimitCycles
 from frbcli.cycles.shooting.fixed_point import Conditions, SlowSpace, fixed_point, ritz, slow_space
-from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back
+from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, Wet, period_map, turned_back, wet_at
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.equilibrium.resting import resting_position
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.steady_force import steady_solution
 
 FED = ('bearing.supply.pressure="2 bar"', "speed.from=74 Hz", "speed.to=84 Hz")
 
@@ -115,6 +118,52 @@ def check_time_loop_ends_in_the_cycle(found: LimitCycles, periods: int, atol: fl
 def test_the_cycle_is_what_the_time_loop_ends_in() -> None:
     """At 82 Hz, where disturbances lose 6 % in a period: after 160 periods, the mean over 80."""
     check_time_loop_ends_in_the_cycle(diagram(), 240, 1e-4)
+
+
+def given_flow(*settings: str) -> Case:
+    """A supply of 2 bar that gives less than the film takes at this pressure."""
+    flow = "bearing.supply.pressure=2 bar", "bearing.supply.flow=4e-7", "accuracy.mesh=[6,32]"
+    return frbcli.load_case("rigid-two-phase", ["film.cavitation=elrod", *flow, *settings])
+
+
+def test_the_filling_of_a_limited_supply_is_part_of_the_state() -> None:
+    """Behind displacements and velocities of the rotor, before the oil; at rest it is that of the settled film."""
+    flow, omega = period_map(given_flow()), 2.0 * math.pi * 90.0
+    system = flow.system
+    rest = resting_position(system, omega)
+    wet = wet_at(flow, rest.displacements, rest.velocities(system), omega)
+    x, y = (rest.journals[0] / system.clearances[0]).tolist()
+    film = steady_solution(system.films.with_fields[0], Motion((x, y), (0.0, 0.0), omega))
+    state = flow.packed(wet, omega)
+    assert flow.slow == 5
+    assert len(state) == 5 + np.count_nonzero(flow.held)
+    assert state[4] == pytest.approx(film.filling, rel=1e-9)
+    assert 0.7 < state[4] < 0.95
+    state[4] -= 0.1
+    other = flow.unpacked(state, wet, omega)
+    assert other.filling == pytest.approx(wet.filling - 0.1)
+    np.testing.assert_allclose(flow.packed(other, omega), state, atol=1e-12)
+    assert flow.motion_of(wet, omega)[4] == 0.0
+
+
+@pytest.mark.nightly  # the time loop of inputs
+def test_the_cycle_at_a_given_flow_is_what_the_time_loop_ends_in() -> None:
+    """At 92 Hz, where disturbances lose 5 % in a period."""
+    found = frbcli.limit_cycles(given_flow("speed.from=84 Hz", "speed.to=92.5 Hz"), [92.0])
+    check_time_loop_ends_in_the_cycle(found, 240, 1e-3)
+    (hopf,) = found.of("hopf")
+    assert hopf.speed_Hz == pytest.approx(86.2, abs=1.5)  # by the linearised film
+
+
+@pytest.mark.nightly  # the time loop of inputs
+def test_whirls_at_a_given_flow_grow_as_the_linearised_film_says() -> None:
+    """What tests/linear/test_stability_of_oil.py has written down."""
+    omega = 2.0 * math.pi * 90.0
+    rest = settled(Shooting(period_map(given_flow(), (48, 6)), omega), omega)
+    assert rest is not None
+    rate = complex(rest.eigenvalues[rest.whirls[0]])
+    assert rate.real == pytest.approx(1.164, abs=0.02)
+    assert abs(rate.imag) == pytest.approx(283.09, rel=1e-4)
 
 
 @pytest.mark.nightly

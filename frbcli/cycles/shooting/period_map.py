@@ -1,7 +1,8 @@
 """What a time of constant speed makes of a machine with films on cells: the map of the time loop that runs use.
 
-The state is x = (q, v, theta): displacements and velocities of the rotor, and the oil fraction of each cell of the
-films that keep their oil, seen from the housing. Plain films have cells that turn with the oil; what they hold is
+The state is x = (q, v, s, theta): displacements and velocities of the rotor, the filling of the openings of each film
+whose supply gives a flow at the most, and the oil fraction of each cell of the films that keep their oil, seen from
+the housing. Plain films have cells that turn with the oil; what they hold is
 brought back over the angle that they have turned by, with cubics through four cells. The steps are of equal length and
 their number is fixed, so that the map is smooth enough for differences: error control would change it from one
 evaluation to the next.
@@ -19,14 +20,17 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import FLOWS
+from frbcli.film.cells.balance.balances import FILLING, FLOWS
+from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.data import UNKNOWN
-from frbcli.film.state import OIL, RATE, W_BEFORE, WET, W
+from frbcli.film.state import OIL, PASSED, RATE, W_BEFORE, WET, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
+from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
+from frbcli.solve.inputs import Inputs
 from frbcli.solve.state import (
     ERROR_SPANS,
     FINISHED,
@@ -56,8 +60,9 @@ MOST_STEPS = 10**6
 @dataclass(frozen=True)
 class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
-    angle 0; theta, rate, w: (fields, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells. a, rate and w
-    follow from the rest within the first step, and are carried along as its guess."""
+    angle 0; theta, rate, w: (fields, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells; filling:
+    (fields,) of the openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried
+    along as its guess."""
 
     q: Array
     v: Array
@@ -65,6 +70,7 @@ class Wet:
     theta: Array
     rate: Array
     w: Array
+    filling: Array
 
 
 @dataclass(frozen=True)
@@ -81,7 +87,8 @@ class PeriodMap:
     """The time loop of a system without unbalance, which has J journals: one in each film, or both ends of one that
     tilts. films: as the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned:
     (F, 1 + rings) shares in the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at
-    the start, which say how the cells lie there; held: (fields, m, k) the cells whose oil is part of the state."""
+    the start, which say how the cells lie there; held: (fields, m, k) the cells whose oil is part of the state;
+    limited: (fields,) the films whose filling is; inputs: with which the loop follows that, () without."""
 
     system: System
     films: Any
@@ -93,6 +100,13 @@ class PeriodMap:
     turned: Array
     begun: Array
     held: NDArray[np.bool_]
+    limited: NDArray[np.bool_]
+    inputs: Inputs | tuple[()]
+
+    @property
+    def slow(self) -> int:
+        """How many numbers of a state, which stand before those of the oil, belong to the rotor and to fillings."""
+        return 2 * self.system.rotor.size - self.system.ring_count + int(np.count_nonzero(self.limited))
 
     @property
     def scale(self) -> float:
@@ -118,17 +132,19 @@ class PeriodMap:
         """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
         kept = self._kept
         oil = wet.theta[self.held] / math.sqrt(np.count_nonzero(self.held))
-        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), oil])
+        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), wet.filling[self.limited], oil])
 
     def unpacked(self, x: Array, near: Wet, omega: float) -> Wet:
         """The machine of a state; near: whose guesses and given cells it takes."""
         n, kept = len(near.q), self._kept
         m = len(kept)
-        q, theta = np.zeros(n), near.theta.copy()
+        q, theta, filling = np.zeros(n), near.theta.copy(), near.filling.copy()
         q[kept] = x[:m] * self.scale
         v = x[m : m + n] / self._slow(np.ones(n), omega)
-        theta[self.held] = x[m + n :] * math.sqrt(np.count_nonzero(self.held))
-        return replace(near, q=q, v=v, theta=theta, w=self.system.films.oil_unknowns(theta, near.theta, near.w))
+        filling[self.limited] = x[m + n : self.slow]
+        theta[self.held] = x[self.slow :] * math.sqrt(np.count_nonzero(self.held))
+        w = self.system.films.oil_unknowns(theta, near.theta, near.w)
+        return replace(near, q=q, v=v, theta=theta, w=w, filling=filling)
 
     def lying(self, share: float) -> PeriodMap:
         """The same map with cells that lie a share of their length further on at the start."""
@@ -147,7 +163,7 @@ class PeriodMap:
     def states_on(self, other: PeriodMap, states: Array) -> Array:
         """(N', k) states (N, k), or what states differ by, of the same machine on the cells of another map."""
         own, others = (int(np.count_nonzero(each.held)) for each in (self, other))
-        size = len(states) - own
+        size = self.slow
         fields = np.zeros((*self.held.shape, states.shape[1]))
         fields[self.held] = states[size:]
         oil = resampled(fields, other.held.shape)[other.held]
@@ -159,16 +175,17 @@ class PeriodMap:
         settled = wet_at(other, wet.q, wet.v, omega)
         theta = np.where(other.held, resampled(wet.theta, other.held.shape), settled.theta)
         w = other.system.films.oil_unknowns(theta, settled.theta, settled.w)
-        return replace(settled, a=wet.a, theta=theta, rate=resampled(wet.rate, other.held.shape), w=w)
+        rate = resampled(wet.rate, other.held.shape)
+        return replace(settled, a=wet.a, theta=theta, rate=rate, w=w, filling=wet.filling)
 
     def motion_of(self, wet: Wet, omega: float) -> Array:
         """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
         moved = np.concatenate([wet.v[self._kept] / self.scale, self._slow(wet.a, omega)])
-        return np.concatenate([moved, np.zeros(np.count_nonzero(self.held))])
+        return np.concatenate([moved, np.zeros(self.slow - len(moved) + np.count_nonzero(self.held))])
 
     def passage(self, wet: Wet, time: float, omega: float, steps: int, samples: int = SAMPLES) -> Passage:
         """After a time in s at a speed in rad/s. Raises Unreachable where the run ends before."""
-        rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]))
+        rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]), self.inputs)
         rotor = rotor._replace(
             unbalance_cos=np.zeros_like(rotor.unbalance_cos),
             unbalance_sin=np.zeros_like(rotor.unbalance_sin),
@@ -218,6 +235,7 @@ class PeriodMap:
         past[:, 0] = first * np.arange(1 - HISTORY, 1)
         past[:, 1:] = (self.journals @ wet.v).ravel()
         flows, errors = np.zeros((2, len(wet.theta), FLOWS)), np.zeros((2, ERROR_SPANS))
+        flows[PASSED, :, FILLING] = wet.filling
         q = wet.q.copy()
         q[list(self.system.spins)] = self.begun[1:]
         return State(numbers, q, wet.v.copy(), wet.a.copy(), past, films, flows, errors)
@@ -233,7 +251,11 @@ class PeriodMap:
         )
         q = state.q.copy()
         q[spins] = 0.0
-        return Wet(q, state.v.copy(), state.a.copy(), theta, rate, w)
+        return Wet(q, state.v.copy(), state.a.copy(), theta, rate, w, self._filling(state))
+
+    def _filling(self, state: State) -> Array:
+        """(fields,) fillings; what a line cannot take up goes back to the supply."""
+        return np.clip(state.flows[PASSED, :, FILLING], self.films.films["lowest"], ALL)
 
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
@@ -241,7 +263,8 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
-    films, own = system.films.loop, system.films
+    inputs, own = RunInputs.of(case, system).of_fillings, system.films
+    films = own.changeable().loop if inputs.change_films else own.loop
     tableau = METHODS[plan.method].tableau
     return PeriodMap(
         system=system,
@@ -254,6 +277,8 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
         turned=system.turning[:, GRID],
         begun=np.zeros(1 + system.ring_count),
         held=(films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None],
+        limited=films.films["given"] > 0.0,
+        inputs=inputs.loop(system),
     )
 
 
@@ -264,7 +289,7 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
     except NotConverged:
         raise Unreachable from None
     theta = state.wet[OIL] / found._gaps(q, found.begun)
-    return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W])
+    return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W], found._filling(state))
 
 
 def resampled(fields: Array, shape: tuple[int, ...]) -> Array:

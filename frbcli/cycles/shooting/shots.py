@@ -283,9 +283,9 @@ class Shooting:
         return found / float(np.linalg.norm(found))
 
     def _first(self, x: Array, known: SlowSpace | None = None) -> Array:
-        """(N, j) unit states of the rotor, and the slow motions that are known already, oil that stays among them."""
-        size = 2 * self.flow.system.rotor.size - self.flow.system.ring_count
-        rotor = np.eye(len(x))[:, :size]
+        """(N, j) unit states of the rotor and of fillings, and the slow motions that are known already, oil that stays
+        among them."""
+        rotor = np.eye(len(x))[:, : self.flow.slow]
         if known is None:
             return rotor
         values, states = ritz(known)
