@@ -184,6 +184,29 @@ def test_a_ladder_of_bubbly_oil_stands_on_a_reference_that_a_finer_run_confirms(
     assert errors[6, 36].force_relative < 0.5 * errors[2, 12].force_relative
 
 
+def test_a_ladder_at_a_given_flow_has_the_errors_that_a_finer_run_tells(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the line of the supply empties: on three times the cells of the plan, to the error of the reference."""
+    monkeypatch.setattr(accuracy_module, "TOLERANCES", (1.0,))
+    supply = "bearing.supply={kind='circumferential-groove', pressure='3 bar', flow=4e-7}"
+    settings = ("film.cavitation=elrod", supply, "accuracy.mesh=[4, 24]", "output.step=1e-3 s")
+    case = load_case("rigid", [*settings, "speed.from=80 Hz", "speed.to=80 Hz", "speed.duration=0.02 s"])
+    found = accuracy(case)
+    assert found.complete
+    assert not found.failed
+    blur = found.reference.error.eccentricity_largest
+    fine = runup(case.with_settings("accuracy.mesh=[12, 72]", "accuracy.tolerance=1e-6"), tmp_path / "fine.h5")
+    assert fine["supply_pressure_Pa"].min() < 2e5
+    errors = {item.rung.mesh: item.error.eccentricity_largest for item in found.ladder}
+    for along, around in ((2, 12), (4, 24), (6, 36)):
+        path = tmp_path / f"{along}.h5"
+        own = runup(case.with_settings(f"accuracy.mesh=[{along}, {around}]"), path)
+        true = np.abs(own["eccentricity"] - fine["eccentricity"]).max()
+        assert true == pytest.approx(errors[along, around], abs=blur)
+    assert blur < 0.2 * errors[2, 12]
+
+
 def test_names_that_there_are_not() -> None:
     with pytest.raises(InputError) as caught:
         accuracy(load_case("jeffcott", QUICK), theories=["long"], couplings=["glue"])

@@ -20,14 +20,12 @@ from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.gate.analysis import FILMS, HEAT, KINEMATIC, RANGE, RUN, SHEETS, STABILITY
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
-AT_FLOW = (RUN, *SHEETS, FILMS, HEAT, *KINEMATIC, STABILITY, RANGE)  # of films whose supply gives a flow at the most
 SMOOTH = 'Write contact.model = "spring"'
 HENRY = 1e7  # Pa, saturation pressure
 ENCLOSED = 0.01  # share of the flow of an open end below which the oil of a film that nothing feeds is enclosed in it
@@ -69,13 +67,6 @@ def limited_supply_faults(case: Case) -> Iterator[Fault]:
         else:
             continue
         yield Fault(at, display(supply.largest_flow, "m^3/s"), None, problem, remedy)
-
-
-def unmodelled_flow_faults(case: Case) -> Iterator[Fault]:
-    """Analyses that take the pressure of a supply as given."""
-    for at, place in _limited_films(case):
-        problem = "is given, which limit cycles and ladders of accuracy do not follow."
-        yield Fault(at, display(place.geometry.supply.largest_flow, "m^3/s"), None, problem, "Leave it out.")
 
 
 def bath_faults(case: Case) -> Iterator[Fault]:

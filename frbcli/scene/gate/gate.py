@@ -65,7 +65,6 @@ RULES = (
     Rule(pulls.pull_faults, ALL),
     Rule(films.supply_faults, ALL),
     Rule(films.limited_supply_faults, ALL),
-    Rule(films.unmodelled_flow_faults, tuple(each for each in ALL if each not in films.AT_FLOW), moving=True),
     Rule(films.bath_faults, ALL),
     Rule(films.sealed_faults, ALL),
     Rule(films.mesh_faults, ALL),

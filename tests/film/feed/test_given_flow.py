@@ -18,7 +18,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.gate.analysis import LADDER, ROTATION, STILL
+from frbcli.scene.gate.analysis import ROTATION, STILL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -150,7 +150,6 @@ def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None
         (("film.cavitation=two-phase", "film.two-phase.form=published"), ROTATION, "films on cells"),
         (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without a tilt"),
         (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
-        (("film.cavitation=elrod",), LADDER, "ladders of accuracy do not follow"),
     ],
 )
 def test_what_does_not_follow_a_flow_refuses_it(settings: tuple[str, ...], analysis: str, told: str) -> None:
