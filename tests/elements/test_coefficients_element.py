@@ -358,15 +358,16 @@ def test_a_seal_of_zero_coefficients_changes_nothing(tmp_path: Path) -> None:
 
 
 def test_a_table_of_equal_rows_is_the_constant_coefficients(tmp_path: Path) -> None:
-    """Beside a film, in a run whose inverse follows the speed."""
+    """Beside a tabulated film, in a run whose inverse follows the speed."""
     constant = {"kind": "coefficients", "name": "seal", "stiffness": matrix(2e5, 5e4, "N/m"), "damping": "50 N*s/m"}
     columns = {"kxx": 2e5, "kxy": 5e4, "kyx": -5e4, "kyy": 2e5, "cxx": 50.0, "cxy": 0.0, "cyx": 0.0, "cyy": 50.0}
     table = {name: [f"{value} {'N/m' if name[0] == 'k' else 'N*s/m'}"] * 3 for name, value in columns.items()}
     rows = {"kind": "coefficients", "name": "seal", "over_speed": {"speed": ["0 Hz", "50 Hz", "90 Hz"], **table}}
     runs = [
-        runup(in_film(element, speed=speed(20.0, 120.0, 0.2), output={"signals": ["force"]}), tmp_path / f"{number}.h5")
+        runup(in_film(element, film={}, speed=speed(20.0, 120.0, 0.2), output={"signals": ["force"]}),
+              tmp_path / f"{number}.h5")
         for number, element in enumerate((constant, rows))
-    ]
+    ]  # fmt: skip
     assert runs[0].cost["steps"] == runs[1].cost["steps"]
     for name in runs[0].signals:
         first, second = (np.array(run[name]) for run in runs)
