@@ -147,9 +147,10 @@ def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
 
 
-def share_of_cells(cells: tuple[int, int], own: tuple[int, int]) -> float:
-    """Share of a difference between results on their own cells and on fewer that is the error of the former."""
-    return float(1.0 / ((own[0] / cells[0]) ** FRONTS - 1.0))
+def share_of_cells(cells: tuple[int, int], own: tuple[int, int], order: float = FRONTS) -> float:
+    """Share of a difference between results on their own cells and on fewer that is the error of the former, which
+    falls with the order."""
+    return float(1.0 / ((own[0] / cells[0]) ** order - 1.0))
 
 
 def _finer(mesh: Mesh) -> Mesh:

@@ -24,6 +24,7 @@ from frbcli.cycles.shooting.period_map import PeriodMap, period_map
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_films import share_of_cells
+from frbcli.film.cavitation.law import FRONTS
 from frbcli.scene.forms.cells import cells_of
 from frbcli.scene.planning.plan import make_plan
 
@@ -31,6 +32,7 @@ Array = NDArray[np.float64]
 
 RESOLVED = 0.5  # length of a slow motion of length 1 on other cells from which on they resolve it
 BESIDE = 0.5  # of the error of a neighbour: differences may change their sign between both
+UPWIND = 1.0  # order in which gas that oil carries becomes exact with smaller cells
 SPREAD = 0.5  # of what places of the cells differ by: the least error
 
 
@@ -59,8 +61,8 @@ def other_cells(case: Case, shooting: Shooting) -> OtherCells | None:
     cells = plan.form.fewer_cells(case, plan)
     if cells is None:
         return None
-    own = cells_of(plan)
-    share = max(share_of_cells(cells, own), share_of_cells(cells[::-1], own[::-1]))
+    own, order = cells_of(plan), UPWIND if len(shooting.flow.system.films.gas_contents) else FRONTS
+    share = max(share_of_cells(cells, own, order), share_of_cells(cells[::-1], own[::-1], order))
     return OtherCells(Shooting(period_map(case, cells), shooting.unit), cells, share)
 
 

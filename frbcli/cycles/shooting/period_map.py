@@ -1,15 +1,17 @@
 """What a time of constant speed makes of a machine with films on cells: the map of the time loop that runs use.
 
-The state is x = (q, v, s, theta): displacements and velocities of the rotor, the filling of the openings of each film
-whose supply gives a flow at the most, and the oil fraction of each cell of the films that keep their oil, seen from
-the housing. Plain films have cells that turn with the oil; what they hold is
-brought back over the angle that they have turned by, with cubics through four cells. The steps are of equal length and
-their number is fixed, so that the map is smooth enough for differences: error control would change it from one
-evaluation to the next.
+The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, the filling of the openings of each
+film whose supply gives a flow at the most, and of each cell of the films that keep their oil its fraction and, where
+the oil carries gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with
+the oil; what they hold is brought back over the angle that they have turned by, with cubics through four cells. The
+steps are of equal length and their number is fixed, so that the map is smooth enough for differences: error control
+would change it from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is
+released and absorbed.
 """
 
 from __future__ import annotations
 
+import itertools
 import math
 from dataclasses import dataclass, replace
 from typing import Any
@@ -23,7 +25,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.data import UNKNOWN
-from frbcli.film.state import OIL, PASSED, RATE, W_BEFORE, WET, W
+from frbcli.film.state import GAS, GAS_RATE, OIL, PASSED, RATE, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.inputs import RunInputs
@@ -60,14 +62,15 @@ MOST_STEPS = 10**6
 @dataclass(frozen=True)
 class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
-    angle 0; theta, rate, w: (fields, m, k) oil fraction, rate of H theta in 1/s and unknown of the cells; filling:
-    (fields,) of the openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried
-    along as its guess."""
+    angle 0; content: (n, m, k) oil fractions of the fields of cells, and behind them, where oil carries gas, their free
+    gas over the oil; rate: those of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
+    openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried along as its
+    guess."""
 
     q: Array
     v: Array
     a: Array
-    theta: Array
+    content: Array
     rate: Array
     w: Array
     filling: Array
@@ -87,8 +90,9 @@ class PeriodMap:
     """The time loop of a system without unbalance, which has J journals: one in each film, or both ends of one that
     tilts. films: as the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned:
     (F, 1 + rings) shares in the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at
-    the start, which say how the cells lie there; held: (fields, m, k) the cells whose oil is part of the state;
-    limited: (fields,) the films whose filling is; inputs: with which the loop follows that, () without."""
+    the start, which say how the cells lie there; held: (n, m, k) which content is part of the state, and its units (n,
+    1, 1), see Wet; limited: (fields,) the films whose filling is; inputs: with which the loop follows that, ()
+    without."""
 
     system: System
     films: Any
@@ -100,6 +104,7 @@ class PeriodMap:
     turned: Array
     begun: Array
     held: NDArray[np.bool_]
+    units: Array
     limited: NDArray[np.bool_]
     inputs: Inputs | tuple[()]
 
@@ -131,20 +136,21 @@ class PeriodMap:
     def packed(self, wet: Wet, omega: float) -> Array:
         """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
         kept = self._kept
-        oil = wet.theta[self.held] / math.sqrt(np.count_nonzero(self.held))
-        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), wet.filling[self.limited], oil])
+        content = (wet.content / self.units)[self.held] / math.sqrt(np.count_nonzero(self.held))
+        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), wet.filling[self.limited], content])
 
     def unpacked(self, x: Array, near: Wet, omega: float) -> Wet:
         """The machine of a state; near: whose guesses and given cells it takes."""
         n, kept = len(near.q), self._kept
         m = len(kept)
-        q, theta, filling = np.zeros(n), near.theta.copy(), near.filling.copy()
+        q, content, filling = np.zeros(n), near.content / self.units, near.filling.copy()
         q[kept] = x[:m] * self.scale
         v = x[m : m + n] / self._slow(np.ones(n), omega)
         filling[self.limited] = x[m + n : self.slow]
-        theta[self.held] = x[self.slow :] * math.sqrt(np.count_nonzero(self.held))
-        w = self.system.films.oil_unknowns(theta, near.theta, near.w)
-        return replace(near, q=q, v=v, theta=theta, w=w, filling=filling)
+        content[self.held] = x[self.slow :] * math.sqrt(np.count_nonzero(self.held))
+        content *= self.units
+        w = self.system.films.oil_unknowns(content, near.content, near.w)
+        return replace(near, q=q, v=v, content=content, w=w, filling=filling)
 
     def lying(self, share: float) -> PeriodMap:
         """The same map with cells that lie a share of their length further on at the start."""
@@ -155,10 +161,10 @@ class PeriodMap:
     def moved(self, wet: Wet, share: float) -> Wet:
         """The same machine seen by cells that lie as `lying` says."""
         angle = -2.0 * math.pi * share / self.held.shape[1]
-        theta, rate, w = (
-            np.stack([turned_back(field, angle) for field in fields]) for fields in (wet.theta, wet.rate, wet.w)
+        content, rate, w = (
+            np.stack([turned_back(field, angle) for field in fields]) for fields in (wet.content, wet.rate, wet.w)
         )
-        return replace(wet, theta=theta, rate=rate, w=w)
+        return replace(wet, content=content, rate=rate, w=w)
 
     def states_on(self, other: PeriodMap, states: Array) -> Array:
         """(N', k) states (N, k), or what states differ by, of the same machine on the cells of another map."""
@@ -173,10 +179,10 @@ class PeriodMap:
         """The same machine on the cells of another map, turning with omega in rad/s. Raises Unreachable where its films
         settle at no oil from which the given cells follow."""
         settled = wet_at(other, wet.q, wet.v, omega)
-        theta = np.where(other.held, resampled(wet.theta, other.held.shape), settled.theta)
-        w = other.system.films.oil_unknowns(theta, settled.theta, settled.w)
+        content = np.where(other.held, resampled(wet.content, other.held.shape), settled.content)
+        w = other.system.films.oil_unknowns(content, settled.content, settled.w)
         rate = resampled(wet.rate, other.held.shape)
-        return replace(settled, a=wet.a, theta=theta, rate=rate, w=w, filling=wet.filling)
+        return replace(settled, a=wet.a, content=content, rate=rate, w=w, filling=wet.filling)
 
     def motion_of(self, wet: Wet, omega: float) -> Array:
         """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
@@ -224,17 +230,20 @@ class PeriodMap:
 
     def _state(self, wet: Wet, time: float) -> State:
         first = FIRST_STEP * time
-        films = np.zeros((WET, *wet.theta.shape))
+        fields = len(wet.w)
+        films = np.zeros((WET if len(wet.content) == fields else WET_WITH_GAS, *wet.w.shape))
         films[W] = films[W_BEFORE] = wet.w
-        films[OIL] = wet.theta * self._gaps(wet.q, self.begun)
-        films[RATE] = wet.rate
+        films[OIL] = wet.content[:fields] * self._gaps(wet.q, self.begun)
+        films[RATE] = wet.rate[:fields]
+        if len(films) > WET:
+            films[GAS], films[GAS_RATE] = wet.content[fields:] * films[OIL], wet.rate[fields:]
         numbers = np.zeros(NUMBERS)
         numbers[STEP] = numbers[STEP_DONE] = first
         numbers[RUN_END] = time
         past = np.zeros((HISTORY, 1 + 2 * len(self.journals)))
         past[:, 0] = first * np.arange(1 - HISTORY, 1)
         past[:, 1:] = (self.journals @ wet.v).ravel()
-        flows, errors = np.zeros((2, len(wet.theta), FLOWS)), np.zeros((2, ERROR_SPANS))
+        flows, errors = np.zeros((2, fields, FLOWS)), np.zeros((2, ERROR_SPANS))
         flows[PASSED, :, FILLING] = wet.filling
         q = wet.q.copy()
         q[list(self.system.spins)] = self.begun[1:]
@@ -243,15 +252,14 @@ class PeriodMap:
     def _end(self, state: State, time: float, omega: float) -> Wet:
         spins = list(self.system.spins)
         bodies = np.concatenate([[self.begun[0] + omega * time], state.q[spins]])
-        theta = state.wet[OIL] / self._gaps(state.q, bodies)
         angles = (self.turned @ (bodies - self.begun))[self.system.films.film_of_cells]
-        theta, rate, w = (
-            np.stack([turned_back(*each) for each in zip(fields, angles, strict=True)])
-            for fields in (theta, state.wet[RATE], state.wet[W])
+        content, rate, w = (
+            np.stack([turned_back(*each) for each in zip(fields, itertools.cycle(angles), strict=False)])
+            for fields in (*content_of(state.wet, self._gaps(state.q, bodies)), state.wet[W])
         )
         q = state.q.copy()
         q[spins] = 0.0
-        return Wet(q, state.v.copy(), state.a.copy(), theta, rate, w, self._filling(state))
+        return Wet(q, state.v.copy(), state.a.copy(), content, rate, w, self._filling(state))
 
     def _filling(self, state: State) -> Array:
         """(fields,) fillings; what a line cannot take up goes back to the supply."""
@@ -265,7 +273,8 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     system = make_system(case, plan)
     inputs, own = RunInputs.of(case, system).of_fillings, system.films
     films = own.changeable().loop if inputs.change_films else own.loop
-    tableau = METHODS[plan.method].tableau
+    tableau, contents = METHODS[plan.method].tableau, own.gas_contents
+    held = (films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None]
     return PeriodMap(
         system=system,
         films=films,
@@ -276,7 +285,8 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
         clearances=np.repeat(system.clearances, own.stations),
         turned=system.turning[:, GRID],
         begun=np.zeros(1 + system.ring_count),
-        held=(films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None],
+        held=np.concatenate([held, held[: len(contents)] & (contents > 0.0)[:, None, None]]),
+        units=np.concatenate([np.ones(len(held)), np.where(contents > 0.0, contents, 1.0)])[:, None, None],
         limited=films.films["given"] > 0.0,
         inputs=inputs.loop(system),
     )
@@ -288,8 +298,17 @@ def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
         state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
     except NotConverged:
         raise Unreachable from None
-    theta = state.wet[OIL] / found._gaps(q, found.begun)
-    return Wet(state.q, state.v, state.a, theta, state.wet[RATE], state.wet[W], found._filling(state))
+    content, rate = content_of(state.wet, found._gaps(q, found.begun))
+    return Wet(state.q, state.v, state.a, content, rate, state.wet[W], found._filling(state))
+
+
+def content_of(wet: Array, gaps: Array) -> tuple[Array, Array]:
+    """(n, m, k) content and rates, see Wet, of films in a state of the time loop whose cells have the gaps H."""
+    content, rates = [wet[OIL] / gaps], [wet[RATE]]
+    if len(wet) > WET:
+        content.append(wet[GAS] / np.where(wet[OIL] > 0.0, wet[OIL], 1.0))
+        rates.append(wet[GAS_RATE])
+    return np.concatenate(content), np.concatenate(rates)
 
 
 def resampled(fields: Array, shape: tuple[int, ...]) -> Array:

@@ -193,10 +193,10 @@ def refilled(
     given = share * oil
     full = np.maximum(new.full(), pressure * w)  # cells with enough oil keep their pressure
     gap = new.gap(d, new.grid.centre)[:, None]
-    return np.where(free, _with_fraction(new, given / gap, full, carried), w), given
+    return np.where(free, unknown_with_fraction(new, given / gap, full, carried), w), given
 
 
-def _with_fraction(film: VolumeFilm, fraction: Array, full: Array, carried: Carried | None) -> Array:
+def unknown_with_fraction(film: VolumeFilm, fraction: Array, full: Array, carried: Carried | None) -> Array:
     """(m, k) unknowns of cells with given oil fractions, at most `full`: they grow with each other."""
     scales = film.scales
     least = -2.0 - (scales.cavitation + scales.ambient) / scales.reference  # neither oil nor pressure

@@ -16,7 +16,7 @@ from frbcli.film.cells.balance.feed import ALL, supply_line, supply_pressure
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm, refilled, supplied
+from frbcli.film.cells.film import VolumeFilm, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
@@ -71,9 +71,27 @@ class CellFilms(Films):
         ring = self.data.ring
         return np.asarray(ring[:, GAP] + d[:, :1] * ring[:, SIN] - d[:, 1:] * ring[:, COS])[:, :, None]
 
-    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
+    @property
+    def sought_near(self) -> tuple[bool, ...]:
+        """See Films.sought_near. Gas has its way to go, and few fronts."""
+        return tuple(not film.remembers or bool(film.carries_gas) for film in self.data.films)
+
+    @property
+    def gas_contents(self) -> Array:
+        """See Films.gas_contents."""
+        laws = [film.law for film in self.own]
+        gassy = any(law.carries_gas for law in laws)
+        return np.array([law.gas_content if law.carries_gas else 0.0 for law in laws if gassy])
+
+    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
         """See Films.oil_unknowns."""
-        return np.stack([unknown_at(*each) for each in zip(self.own, theta, near, w, strict=True)])
+        count = self.count
+        return np.stack([
+            unknown_with_gas(film, content[i::count], near[i::count], w[i])
+            if film.law.carries_gas
+            else unknown_at(film, content[i], near[i], w[i])
+            for i, film in enumerate(self.own)
+        ])  # fmt: skip
 
     @property
     def cavitation_factor(self) -> str:  # type: ignore[override]
@@ -92,8 +110,7 @@ class CellFilms(Films):
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """See Films.force."""
-        follows = not self.remembering[i] or self.own[i].law.carries_gas
-        start = near.field if near is not None and follows else None
+        start = near.field if near is not None and self.sought_near[i] else None
         return steady_force(self.own[i], place, rate, total, start)
 
     @property
@@ -292,6 +309,15 @@ def least_gaps(section: Section, d: Array) -> Array:
     phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     height = gap_height(section, (0.0, 0.0), phi) + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)
     return np.asarray(height.min(axis=1))
+
+
+def unknown_with_gas(film: VolumeFilm, content: Array, before: Array, w: Array) -> Array:
+    """(m, k) unknown of cells with oil fractions and free gas `content` (2, m, k); w: that of cells which had `before`,
+    whose pressure a cell keeps that has too much oil for its gas."""
+    theta, free = content
+    gas = with_own_gas(np.clip(free, 0.0, film.law.gas_content))
+    changed = np.abs(content - before).max(axis=0) > SAME
+    return np.where(changed, unknown_with_fraction(film, theta, np.maximum(film.full(), w), gas), w)
 
 
 def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:

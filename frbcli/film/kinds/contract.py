@@ -206,8 +206,23 @@ class Films(ABC):
         the clearance, in the frame of their openings."""
         raise NotImplementedError
 
-    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
-        """(fields, m, k) unknowns of films with oil theta, from unknowns w of films with the oil near."""
+    @property
+    def sought_near(self) -> tuple[bool, ...]:
+        """(films,) whether a film at rest is sought from one near by: of one that keeps oil alone, fronts lie between
+        other cells there."""
+        return tuple(not keeps for keeps in self.remembering)
+
+    @property
+    def gas_contents(self) -> Array:
+        """(fields,) free and dissolved gas over the oil of each field, 0 of oil that carries none; empty where none
+        does."""
+        return np.zeros(0)
+
+    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
+        """(fields, m, k) unknowns of films with a content, from unknowns w of films with the content near.
+
+        content, near: oil fractions of all fields, and behind them, where oil carries gas, their free gas over the
+        oil."""
         raise NotImplementedError
 
 

@@ -134,10 +134,10 @@ class TiltedFilms(Films):
         near, far = (ring[:, GAP] + end[:, :1] * ring[:, SIN] - end[:, 1:] * ring[:, COS] for end in ends)
         return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
 
-    def oil_unknowns(self, theta: Array, near: Array, w: Array) -> Array:
+    def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
         """See Films.oil_unknowns."""
         films = [land.film for _, land in self._lands]
-        return np.stack([unknown_at(*each) for each in zip(films, theta, near, w, strict=True)])
+        return np.stack([unknown_at(*each) for each in zip(films, content, near, w, strict=True)])
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         """See Films.oil_defect."""

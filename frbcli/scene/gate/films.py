@@ -20,7 +20,7 @@ from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
+from frbcli.scene.keys import bearing_key, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
@@ -96,14 +96,6 @@ def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         if math.isfinite(place.geometry.supply.largest_flow):
             yield f"{key}.supply.flow", place
-
-
-def gas_faults(case: Case) -> Iterator[Fault]:
-    """Films whose oil carries gas, which is a second state of each cell, in analyses that do not follow it."""
-    for key, name in dict(cavitation_keys(case)).items():
-        if law_named(name).carries_gas and form_of(case).solved:
-            problem = "lets the oil carry free gas, which limit cycles do not follow."
-            yield Fault(key, name, None, problem, 'Write "peeken" here, which is its limit of fast exchange.')
 
 
 def saturation_faults(case: Case) -> Iterator[Fault]:

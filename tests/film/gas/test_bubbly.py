@@ -23,7 +23,7 @@ from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
-from frbcli.scene.gate.analysis import BEARING, CYCLES, LADDER, RUN, STABILITY
+from frbcli.scene.gate.analysis import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
 from frbcli.scene.gate.gate import require
 
 NEVER = 1e12  # s
@@ -155,13 +155,13 @@ def test_rotation_states_the_balance_of_the_gas() -> None:
     assert table["free_gas"][1] == gas.share > 0.0
 
 
-def test_limit_cycles_are_refused_with_the_limit_that_has_some() -> None:
+def test_all_analyses_but_whirls_with_unbalance_follow_gas() -> None:
     case = frbcli.load_case("rigid", ["film.cavitation=bubbly"])
     with pytest.raises(frbcli.InputError, match="saturation_pressure = 1000 bar: is above 100 bar"):
         frbcli.make_plan(case.with_settings({"film.bubbly.saturation_pressure": "1000 bar"}))
-    with pytest.raises(frbcli.InputError, match="bubbly: lets the oil carry free gas"):
-        require(case, CYCLES)
-    for analysis in (BEARING, STABILITY, RUN, LADDER):
+    with pytest.raises(frbcli.InputError, match="bubbly: has a force with kinks or a memory in its oil"):
+        require(case, WHIRLS)
+    for analysis in (BEARING, STABILITY, RUN, LADDER, SPEED_CYCLES):
         assert require(case, analysis) is None  # type: ignore[func-returns-value]
 
 
