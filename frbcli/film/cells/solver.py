@@ -211,8 +211,7 @@ class FilmSolver:
     def _carry(self, motion: Motion) -> float:
         """Free gas follows the oil of the states as they are. Returns the most that it has changed by."""
         off = self._follow(motion)
-        film, _, _, cells = self._parts
-        return max(off, carry_gas(film, cells, motion.omega >= 0.0, 0.0, self._paths, self._states))
+        return max(off, carry_gas(self._parts[0], motion.omega >= 0.0, 0.0, self._paths, self._states))
 
     def _follow(self, motion: Motion) -> float:
         """The paths of the oil of the states as they are, see replace_oil."""

@@ -10,11 +10,20 @@ from volume_films import ROTATION, section_of
 
 from frbcli.bearing_tests.march import march, whirl_path
 from frbcli.film.cavitation.bubbly import Bubbly
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED, GridMotion
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, FREE_GAS, STATES, TURNOVER
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    CARRIED_GAS,
+    FREE_GAS,
+    STATES,
+    TURNOVER,
+    cell_states,
+    follow_law,
+)
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure
 from frbcli.film.cells.gas.balance import Carried, KeptGas, OilPaths, brought, oil_paths
@@ -105,6 +114,32 @@ def test_a_film_near_by_begins_with_its_gas_and_ends_where_every_other_start_doe
     assert solver.steady(motion, begun.w).iterations > 0.8 * found.iterations
     pressure = found.state.pressure
     np.testing.assert_allclose(again.state.pressure, pressure, rtol=0.0, atol=1e-11 * np.abs(pressure).max())
+
+
+@pytest.mark.parametrize("omega", [ROTATION.omega, -ROTATION.omega])
+def test_gas_at_given_pressures_settles_where_they_ask_for_more_gas_than_there_is(omega: float) -> None:
+    """Cells whose flows do not balance would gather any amount of gas; what they carry is all gas of the oil at most,
+    and the law makes the free gas of the same."""
+    law, rate = Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), 1e4
+    film, random = film_of(law, "axial-groove"), np.random.default_rng(4)
+    data, motion = volume_films([film]), Motion(ROTATION.d, (0.0, 0.0), omega)
+    found = FilmSolver(film).steady(motion)
+    shape = film.grid.shape
+    states, paths, numbers = np.zeros((STATES, *shape)), np.zeros((PATHS, *shape)), np.empty(LAW_NUMBERS)
+    follow_law(data.films[0], 0.0, 0.0, 0.0, 0.0, 1.0, numbers)
+    states[CARRIED_GAS], states[TURNOVER], states[BEFORE_UPSTREAM] = 0.06, rate, found.before
+    w = found.w + random.uniform(-0.1, 0.1, shape)
+    past = rate * film.gaps(motion) * random.uniform(0.0, 0.12, shape)
+    off = []
+    for _ in range(30):
+        cell_states(data.films[0], data.cells[0], numbers, 0.0, w, states)
+        at = GridMotion(*motion.d, omega, rate=rate)
+        off.append(take_gas_along(data.films[0], data.ring[0], data.width[0], data.cells[0], states, at, past, paths))
+    free = ~film.grid.fixed
+    assert np.any(states[CARRIED_GAS][free] == law.gas_content)
+    assert np.all(states[FREE_GAS] <= law.gas_content)
+    assert off[0] > 1e-3
+    assert off[-1] < 1e-13
 
 
 def test_rates_of_a_step_are_what_it_stores_and_their_flows_add_up() -> None:

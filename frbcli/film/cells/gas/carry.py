@@ -57,8 +57,9 @@ from frbcli.film.cells.data import (
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Layers of the paths of the oil: to the next cell and back through the face after each cell around and along, all that
-# leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, 1 / M and the gas that is known
-# to come; gap, rate at which it is stored, and the past of the gas, which are given.
+# leaves a cell, what comes into it from outside (OilPaths of balance.py); M, see there, and the gas that is known to
+# come; gap, rate at which it is stored, and the past of the gas, which are given; 1 / M; the free gas of a cell into
+# which none comes; and in the first cell of a column the most that gas which comes into it has changed by.
 (
     ONWARD,
     BACKWARD,
@@ -67,13 +68,15 @@ from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_ga
     OUT,
     GIVEN,
     KEPT,
-    PER_KEPT,
     KNOWN,
     HEIGHT,
     FACTOR,
     GAS_PAST,
+    PER_KEPT,
+    OWN,
+    AWAITED,
     PATHS,
-) = range(13)
+) = range(15)
 NONE = 1e-300
 SHARP, SWEEPS = 0.01, 50  # until gas changes by this share of its change in the first sweep, at most so many sweeps
 LITTLE = 0.1  # of what a film in a time step may be off by: sweeps that change less are the last
@@ -191,96 +194,101 @@ def follow_oil(
 
 @compiled()
 def replace_oil(film: np.record, cells: Array, states: Array, paths: Array) -> float:
-    """KEPT and KNOWN of paths, and the layer TURNOVER of states <- by the flows. Returns the most that free gas changes
-    by, to first order, since the oil of its cell is replaced at another rate than before."""
+    """KEPT, KNOWN, PER_KEPT and OWN of paths, and the layer TURNOVER of states <- by the flows; PASSED_ON of given
+    cells <- 0. Returns the most that free gas changes by, to first order, since the oil of its cell is replaced at
+    another rate than before."""
     m, k = states.shape[1], states.shape[2]
-    most = 0.0
+    most, supplied = 0.0, film.supplied_gas
     for i in range(m):
         for j in range(k):
-            if cells[UNKNOWN, i, j] == 0.0:
-                states[FREE_GAS, i, j] = states[CARRIED_GAS, i, j] = film.supplied_gas
-                states[TURNOVER, i, j] = paths[KEPT, i, j] = paths[PER_KEPT, i, j] = paths[KNOWN, i, j] = 0.0
-                continue
-            area, theta = cells[AREA, i, j], states[FRACTION, i, j]
+            unknown, area, theta = cells[UNKNOWN, i, j], cells[AREA, i, j], states[FRACTION, i, j]
+            if unknown == 0.0:
+                states[FREE_GAS, i, j] = states[CARRIED_GAS, i, j] = supplied
             kept = max(area * paths[FACTOR, i, j] * theta + paths[OUT, i, j], NONE)
-            rate, before = kept / max(area * paths[HEIGHT, i, j] * theta, NONE), states[TURNOVER, i, j]
-            taken = abs(states[FREE_GAS, i, j] - states[CARRIED_GAS, i, j]) * states[PASSED_ON, i, j]
-            changed, largest = taken * abs(rate - before), max(rate, before, NONE)
-            if changed > most * largest:
-                most = changed / largest
-            states[TURNOVER, i, j], paths[KEPT, i, j], paths[PER_KEPT, i, j] = rate, kept, 1.0 / kept
-            paths[KNOWN, i, j] = area * paths[GAS_PAST, i, j] + film.supplied_gas * paths[GIVEN, i, j]
+            oil, passed = max(area * paths[HEIGHT, i, j] * theta, NONE), unknown * states[PASSED_ON, i, j]
+            free, carried, before = states[FREE_GAS, i, j], states[CARRIED_GAS, i, j], states[TURNOVER, i, j]
+            kept, per_kept = unknown * kept, unknown / kept
+            most = max(most, abs((free - carried) * passed * (1.0 - before * oil * per_kept)))
+            states[TURNOVER, i, j], states[PASSED_ON, i, j] = kept / oil, passed
+            paths[KEPT, i, j], paths[PER_KEPT, i, j], paths[OWN, i, j] = kept, per_kept, free - passed * carried
+            paths[KNOWN, i, j] = unknown * (area * paths[GAS_PAST, i, j] + supplied * paths[GIVEN, i, j])
     return most
 
 
 @compiled(inline=True)
-def _renew(i: int, b: int, n: int, j: int, most_gas: float, paths: Array, states: Array) -> float:
-    """Gas comes into cell (i, j) from the columns b and n and along its own. Returns by how much the free gas changes.
+def _renew_along(
+    i: int, b: int, n: int, down: bool, back: bool, most_gas: float, paths: Array, states: Array
+) -> float:  # fmt: skip
+    """Gas comes into the cells of column i from the columns b and n, and along the axis, downwards or upwards; back:
+    into those alone into which oil flows that way. Returns the most that free gas changes by.
 
-    No oil has less than no gas, or more than all of its gas: pressures that are far from a solution may ask for it."""
-    comes = paths[KNOWN, i, j] + paths[ONWARD, b, j] * states[FREE_GAS, b, j]
-    comes += paths[BACKWARD, i, j] * states[FREE_GAS, n, j]
-    if j > 0:
-        comes += paths[UPWARD, i, j - 1] * states[FREE_GAS, i, j - 1]
-    if j + 1 < states.shape[2]:
-        comes += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1]
-    carried, before = min(max(comes * paths[PER_KEPT, i, j], 0.0), most_gas), states[FREE_GAS, i, j]
-    free = before + states[PASSED_ON, i, j] * (carried - states[CARRIED_GAS, i, j])
-    free = min(max(free, 0.0), most_gas)
-    states[CARRIED_GAS, i, j], states[FREE_GAS, i, j] = carried, free
-    return float(abs(free - before))
-
-
-@compiled(inline=True)
-def _renew_column(i: int, most_gas: float, cells: Array, paths: Array, states: Array) -> float:
-    """Gas comes into the cells of column i: along the axis as the oil of its first cell flows, and back where other oil
-    does. Returns the most that the free gas changes by."""
-    m, k = states.shape[1], states.shape[2]
-    b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
-    down, most = paths[DOWNWARD, i, 0] > 0.0, 0.0
-    for turn in range(2 * k - 1):
-        back = turn >= k
-        j = 2 * k - 2 - turn if back else turn
+    No oil carries less than no gas, or more than all of its gas: pressures that are far from a solution may ask for it.
+    What the cell before gives stands apart from all else, so that a processor has this ready when it comes."""
+    k, last, most = states.shape[2], 0.0, 0.0
+    for turn in range(k):
+        j = k - 1 - turn if down else turn
+        flow = paths[DOWNWARD, i, j] if down else (paths[UPWARD, i, j - 1] if j > 0 else 0.0)
+        before, per_kept = states[FREE_GAS, i, j], paths[PER_KEPT, i, j]
+        if back and flow == 0.0:
+            last = before
+            continue
+        others = paths[KNOWN, i, j] + paths[ONWARD, b, j] * states[FREE_GAS, b, j]
+        others += paths[BACKWARD, i, j] * states[FREE_GAS, n, j]
         if down:
-            j = k - 1 - j
-        if cells[UNKNOWN, i, j] == 0.0:
-            continue
-        if back and (paths[UPWARD, i, j - 1] if down else paths[DOWNWARD, i, j]) == 0.0:
-            continue
-        most = max(most, _renew(i, b, n, j, most_gas, paths, states))
+            others += paths[UPWARD, i, j - 1] * states[FREE_GAS, i, j - 1] if j > 0 else 0.0
+        else:
+            others += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1] if j + 1 < k else 0.0
+        own, passed = paths[OWN, i, j], states[PASSED_ON, i, j]
+        least, largest = max(own, 0.0), min(own + passed * most_gas, most_gas)
+        taken = passed * per_kept
+        free = (own + taken * others) + (taken * flow) * last
+        states[CARRIED_GAS, i, j] = min(max(per_kept * others + (per_kept * flow) * last, 0.0), most_gas)
+        last = states[FREE_GAS, i, j] = min(max(free, least), largest)
+        most = max(most, abs(last - before))
     return most
 
 
-@compiled()
-def _goes_back(forward: bool, paths: Array) -> bool:
-    """Whether oil flows against the surfaces anywhere."""
-    m, k = paths.shape[1], paths.shape[2]
-    against = BACKWARD if forward else ONWARD
-    for i in range(m):
-        for j in range(k):
-            if paths[against, i, j] > 0.0:
-                return True
-    return False
+@compiled(inline=True)
+def _renew_column(i: int, b: int, n: int, most_gas: float, paths: Array, states: Array) -> float:
+    """See _renew_along: as the oil of the first cell flows, and back where other oil does."""
+    if paths[DOWNWARD, i, 0] > 0.0:
+        most = _renew_along(i, b, n, True, False, most_gas, paths, states)
+        return max(most, _renew_along(i, b, n, False, True, most_gas, paths, states))
+    most = _renew_along(i, b, n, False, False, most_gas, paths, states)
+    return max(most, _renew_along(i, b, n, True, True, most_gas, paths, states))
+
+
+@compiled(inline=True)
+def _await(layer: int, face: int, i: int, change: float, paths: Array) -> None:
+    """The gas of a column has changed: column i awaits it if oil comes through the face."""
+    for j in range(paths.shape[2]):
+        if paths[layer, face, j] > 0.0:
+            paths[AWAITED, i, 0] = max(paths[AWAITED, i, 0], change)
+            break
 
 
 @compiled()
-def carry_gas(film: np.record, cells: Array, forward: bool, close: float, paths: Array, states: Array) -> float:
+def carry_gas(film: np.record, forward: bool, close: float, paths: Array, states: Array) -> float:
     """The layers CARRIED_GAS and FREE_GAS of states <- with the flows of paths from cell to cell; forward: whether the
     surfaces go round in the order of the cells; close: changes of free gas by less need not be carried on. Returns the
     most that free gas has changed by.
 
-    Where no oil flows against the surfaces, what a column changes by bounds that of all columns after it."""
-    m, most_gas, goes_back = states.shape[1], film.gas_content, _goes_back(forward, paths)
-    first = 0.0
+    Once around, and then into columns alone whose neighbours have changed since, and send them oil."""
+    m, most_gas, first = states.shape[1], film.gas_content, 0.0
     for sweep in range(SWEEPS):
-        most = 0.0
+        little, renewed = max(SHARP * first, close), False
         for step in range(m):
-            change = _renew_column(step if forward else m - 1 - step, most_gas, cells, paths, states)
-            most = max(most, change)
-            if sweep > 0 and not goes_back and change <= max(SHARP * first, close):
-                return first
-        first = max(first, most)
-        if most <= max(SHARP * first, close):
+            i = step if forward else m - 1 - step
+            if sweep > 0 and paths[AWAITED, i, 0] <= little:
+                continue
+            b, n = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
+            change, renewed = _renew_column(i, b, n, most_gas, paths, states), True
+            paths[AWAITED, i, 0] = 0.0
+            _await(ONWARD, i, n, change, paths)
+            _await(BACKWARD, b, b, change, paths)
+            if sweep == 0:
+                first = max(first, change)
+        if not renewed:
             break
     return first
 
@@ -300,7 +308,7 @@ def take_gas_along(
     follow_oil(film, ring, width, cells, states, motion, paths)
     off = replace_oil(film, cells, states, paths)
     close = LITTLE * film.settled * film.gas_content
-    return max(off, carry_gas(film, cells, motion.omega >= 0.0, close, paths, states))
+    return max(off, carry_gas(film, motion.omega >= 0.0, close, paths, states))
 
 
 @compiled(inline=True)
