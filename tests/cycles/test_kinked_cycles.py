@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache
 
 import numpy as np
@@ -17,6 +18,8 @@ from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, largest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.linear.stability_point import critical_eigenvalue, eigenvalues
+from frbcli.scene.gate.analysis import SPEED_CYCLES
+from frbcli.scene.gate.gate import faults
 
 REYNOLDS = ("film.cavitation=reynolds", "accuracy.mesh=[6,32]")
 POCKET = '{kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
@@ -156,3 +159,29 @@ def test_a_ring_that_stands_still_has_no_resting_position_under_a_weight() -> No
     blocked = frbcli.load_case("floating-ring", ["bearing.ring.spin=blocked"])
     with pytest.raises(frbcli.InputError, match="outer film carries no weight"):
         check(blocked, shooting=True)
+
+
+@pytest.mark.nightly  # 15 s; in films that are tabulated: test_limit_cycles.py
+def test_a_cycle_of_a_cartridge_closes_in_the_time_loop_by_its_gyroscopic_moments() -> None:
+    """Over three periods with steps a quarter as long; without the moments of the ring it misses its start by more."""
+    case = frbcli.load_case("turbocharger-car-cartridge", [
+        'bearing.inner.supply={kind="circumferential-groove", pressure="3 bar"}', "bearing.ring.inertia=4 kg*mm^2",
+        "bearing.ring.tilt_inertia=4 kg*mm^2", "rotor.cutoff=3 kHz", "rotor.gravity=100 m/s^2",
+        "film.cavitation=reynolds", "accuracy.mesh=[3, 24]",
+    ])  # fmt: skip
+    assert not faults(case, SPEED_CYCLES)
+    flow, omega = period_map(case), 2.0 * math.pi * 243.5
+    shooting = Shooting(flow, omega)
+    rest = settled(shooting, omega)
+    assert rest is not None
+    shot = shooting.from_rest(rest, rest.whirls[0], 0.1)
+    assert shot is not None
+    period, speed = math.exp(shot.p[0]) / omega, math.exp(shot.p[1]) * omega
+    rotor = flow.system.rotor
+    without = replace(rotor, cones=tuple((spin, 0.0 * cone) for spin, cone in rotor.cones))
+    missed = []
+    for each in (flow, replace(flow, system=replace(flow.system, rotor=without))):
+        after = each.passage(shot.wet, 3.0 * period, speed, 12 * shot.steps).displacements
+        missed.append(float(np.abs(after[-1] - shot.displacements[0]).max()))
+    assert missed[0] < 2e-5
+    assert missed[1] > 4.0 * missed[0]

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 import tomllib
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from cycle_machines import machine_of, ring_case, turbocharger
+from cycle_machines import cartridge, machine_of, ring_case, turbocharger
 from rigid_cycles import CLEARANCE, GRAVITY, MASS, RADIUS, WIDTH, UNIT_Hz, diagram, rigid
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
@@ -33,6 +34,8 @@ from frbcli.linear.stability import stability
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.control import control_of
 from frbcli.runs.start import rotor_data, state_at
+from frbcli.scene.gate.analysis import SPEED_CYCLES
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING, make_output
@@ -54,7 +57,9 @@ def test_the_rotor_behind_its_films_is_the_whole_rotor(name: str) -> None:
         np.testing.assert_allclose(kept, space.read @ np.linalg.solve(whole, space.given @ loads), rtol=1e-8)
 
 
-@pytest.mark.parametrize("make", [lambda: rigid(2.0, 1.0, 3.0), ring_case], ids=["rigid", "ring"])
+@pytest.mark.parametrize(
+    "make", [lambda: rigid(2.0, 1.0, 3.0), ring_case, cartridge], ids=["rigid", "ring", "cartridge"]
+)
 def test_derivatives_are_those_of_the_residual(make) -> None:  # type: ignore[no-untyped-def]
     machine = machine_of(make())
     random = np.random.default_rng(0)
@@ -192,6 +197,51 @@ def test_the_circle_without_gravity_solves_its_algebraic_equation(damping: float
     np.testing.assert_allclose(np.hypot(*cycle.orbit().T), eccentricity, atol=1e-7)
 
 
+def test_forces_on_the_journals_do_what_the_gyroscopic_moments_of_a_cartridge_do() -> None:
+    """P^T g of a machine that moves anyhow is -w C^T J C q' of its whole rotor. In a housing that moves the films do
+    not see how the ring tilts."""
+    case = cartridge()
+    system, machine = make_system(case, make_plan(case)), machine_of(case)
+    chance, n, c = np.random.default_rng(2), system.rotor.size - 1, machine.size
+    q, v, speed = 1e-6 * chance.standard_normal(n), 1e-3 * chance.standard_normal(n), 300.0
+    u, rate = np.append(machine.places @ q, speed / machine.pace), np.append(machine.places @ v, 0.0)
+    with_it, without = (
+        film_loads(each, u[None], rate[None], machine.pace).values[0] for each in (machine, replace(machine, cones=()))
+    )
+    expected = -(system.rotor.precession(np.append(np.zeros(n), speed)) @ np.append(v, 0.0))[:n]
+    found = machine.pulls @ (with_it - without)[: c - 1]
+    assert np.abs(expected).max() > 1e-4
+    np.testing.assert_allclose(found, expected, atol=1e-9 * np.abs(expected).max())
+    assert with_it[-1] == without[-1]  # the torque on the ring is that of the films
+    assert not faults(case, SPEED_CYCLES)
+    mounts = [{"position": f"{position} mm", "stiffness": "1e8 N/m"} for position in (20, 80)]
+    housing = {"mass": "4 kg", "inertia": "2 kg*m^2", "position": "50 mm", "mounts": mounts}
+    moved = case.with_settings({"housing": housing})
+    assert [fault.key for fault in faults(moved, SPEED_CYCLES)] == ["bearing.ring.spin"]
+
+
+@pytest.mark.nightly  # 100 s
+def test_a_shaft_in_a_cartridge_whirls_as_in_the_time_loop(tmp_path) -> None:  # type: ignore[no-untyped-def]
+    """The stable cycle at 260 Hz behind the fold of the branch: what a run becomes, whose ring follows with 2 1/s."""
+    constant = {"speed.from": "260 Hz", "speed.to": "260 Hz", "speed.duration": "8 s", "output.step": "5e-5 s"}
+    constant |= {"accuracy.tolerance": "1e-7", "start.displacement": [0.3, -0.3]}
+    run_ = frbcli.runup(cartridge().with_settings(constant), tmp_path / "r.h5").signals
+    last = slice(-2000, None)
+    time, y = np.asarray(run_["time_s"])[last], np.asarray(run_["journal_left_y_m"])[last]
+    motion = CubicSpline(time, y - y.mean())
+    rising = [t for t in motion.roots(extrapolate=False) if motion(t, 1) > 0.0]
+    found = frbcli.limit_cycles(cartridge().with_settings({"speed.from": "220 Hz", "speed.to": "262 Hz"}), [260.0])
+    points = [p for branch in found.branches for p in branch.points if p.kind == "asked" and p.stable]
+    frequency = (len(rising) - 1) / (rising[-1] - rising[0])
+    cycle = min(points, key=lambda point: abs(point.frequency_Hz - frequency))
+    assert cycle.frequency_Hz == pytest.approx(frequency, rel=2e-5)
+    assert cycle.ring_speeds_Hz[0] == pytest.approx(np.mean(np.asarray(run_["ring_speed_left_Hz"])[last]), rel=2e-5)
+    for film, name in enumerate(found.films):
+        seen = CubicSpline(time, np.asarray(run_[f"eccentricity_{name}"])[last])
+        top = seen(seen.derivative().roots(extrapolate=False)).max()
+        assert cycle.eccentricity_max[film] == pytest.approx(top, abs=2e-5)
+
+
 @pytest.mark.parametrize("speed_Hz", [190.0, pytest.param(220.0, marks=pytest.mark.nightly)])
 def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -> None:  # type: ignore[no-untyped-def]
     """Jeffcott rotor, half-Sommerfeld, tabulated film: a run at constant speed after its transients."""
@@ -213,12 +263,16 @@ def test_harmonic_balance_agrees_with_the_time_loop(speed_Hz: float, tmp_path) -
     assert cycle.eccentricity_max[0] == pytest.approx(top, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", ["jeffcott", "ring", pytest.param("turbocharger", marks=pytest.mark.nightly)])
+LONG = [pytest.param(each, marks=pytest.mark.nightly) for each in ("cartridge", "turbocharger")]
+
+
+@pytest.mark.parametrize("name", ["jeffcott", "ring", *LONG])
 def test_a_disturbance_above_the_threshold_grows_by_the_eigenvalue(name: str) -> None:
     """The growing motion at rest, 1 % above the lowest Hopf point, five periods in the time loop: asked is 1 %."""
     case = {
         "jeffcott": lambda: frbcli.load_case("jeffcott", ["rotor.unbalance=0 g*mm"]),
         "ring": ring_case,
+        "cartridge": cartridge,
         "turbocharger": turbocharger,
     }[name]()
     plan = make_plan(case)

@@ -33,3 +33,17 @@ def turbocharger() -> frbcli.Case:
         bearing["inner"]["supply"] = {"kind": "none"}
     case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
     return frbcli.case_from_dict(case)
+
+
+def cartridge() -> frbcli.Case:
+    """A shaft in a heavy cartridge, whose gyroscopic moments count, without openings and unbalance, in short films."""
+    case = tomllib.loads(find_shipped("turbocharger-car-cartridge"))
+    for film in ("inner", "outer"):
+        case["bearing"][film]["supply"] = {"kind": "none"}
+    for disk in case["disk"]:
+        disk.pop("unbalance", None)
+    case["bearing"]["ring"] |= {"inertia": "4 kg*mm^2", "tilt_inertia": "4 kg*mm^2"}
+    case["rotor"] |= {"cutoff": "3 kHz", "gravity": "30 m/s^2"}
+    case["film"] = {"theory": "short", "cavitation": "half-sommerfeld"}
+    case["speed"]["to"] = "400 Hz"
+    return frbcli.case_from_dict(case)

@@ -7,7 +7,7 @@ as in docs/heat.md. A film of s times the viscosity has the force of s times the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -70,7 +70,7 @@ class _Rate:
 def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu: float, omega: float) -> FilmHeats:
     """Means over the period of a motion (H + 1, c) with the frequency nu, rotor speed omega, in rad/s. ends: the flows
     through the ends of the films. Raises OutOfGap."""
-    loads, rate = loads_along(machine, motion, nu, omega)
+    loads, rate = loads_along(replace(machine, cones=()), motion, nu, omega)
     u, _ = motion_along(motion, len(rate))
     speeds = np.column_stack([np.full(len(u), omega), machine.pace * u[:, 2 * machine.film_count :]])
     powers, flows = [], []

@@ -43,6 +43,16 @@ class OutOfGap(Unreachable):
 
 
 @dataclass(frozen=True)
+class Cone:
+    """A cartridge, whose gyroscopic moments change with the speed of its ring along a motion: its films see how it
+    tilts, so that forces on their journals do what the moments do. ring: its number; moments: (2 F, 2 F) N s^2 that
+    these forces fall by, per rate of the displacements over the clearance and per speed of the ring in rad/s."""
+
+    ring: int
+    moments: Array
+
+
+@dataclass(frozen=True)
 class Machine:
     """F films, R rings that turn, c = 2 F + R coordinates u.
 
@@ -54,7 +64,7 @@ class Machine:
     rotor as transfer takes it, see rotor_parts.py; scales: (F,) viscosity of each film over that which it was made
     with; temperatures: (F,) K of the films, empty without heat; orders: how often in a revolution what drives the rotor
     swings, 1 of the unbalance, and then of the forces that change with its angle; asperities: of rough surfaces, whose
-    shells do not turn.
+    shells do not turn; cones: of cartridges, see Cone.
     """
 
     rotor: LinearRotor
@@ -75,6 +85,7 @@ class Machine:
     temperatures: Array
     orders: tuple[int, ...]
     asperities: Asperities | None = None
+    cones: tuple[Cone, ...] = ()
 
     @property
     def film_count(self) -> int:
@@ -163,8 +174,21 @@ def make_machine(system: System, top: float) -> Machine:
         temperatures=np.zeros(0),
         orders=(1, *(abs(round(load.order)) for load in turning_loads(system.rotor))),
         asperities=system.asperities,
+        cones=_cones(system),
     )
     return replace(machine, parts=_parts(machine))
+
+
+def _cones(system: System) -> tuple[Cone, ...]:
+    """Forces on the journals that do the work of the gyroscopic moments of cartridges, in shells that are fixed."""
+    rotor, found = system.rotor, []
+    seen = rotor.journals.reshape(-1, rotor.size)
+    for spin, cone in rotor.cones:
+        x, y = np.linalg.lstsq(seen.T, cone.T)[0].T
+        pulls = np.outer(x, y) - np.outer(y, x)
+        moved, many = np.repeat(system.clearances, 2), np.repeat(rotor.multiplicity, 2)[:, None]
+        found.append(Cone(spin - system.spins[0], pulls * moved / many))
+    return tuple(found)
 
 
 def turning_loads(rotor: LinearRotor) -> tuple[Harmonic, ...]:
@@ -208,7 +232,19 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
     _add_torques(machine, d, speeds, loads)
     if machine.asperities is not None:
         _add_summits(machine, machine.asperities, u, v, speeds, loads)
+    for cone in machine.cones:  # behind the torques, which are of the films alone
+        _add_moments(machine, cone, u, v, loads)
     return loads
+
+
+def _add_moments(machine: Machine, cone: Cone, u: Array, v: Array, loads: Loads) -> None:
+    """The gyroscopic moments of a cartridge."""
+    films = slice(0, 2 * machine.film_count)
+    column = films.stop + cone.ring
+    speed, pull = machine.pace * u[:, column], -v[:, films] @ cone.moments.T
+    loads.values[:, films] += speed[:, None] * pull
+    loads.by_u[:, films, column] += machine.pace * pull
+    loads.by_v[:, films, films] -= speed[:, None, None] * cone.moments
 
 
 def _add_summits(machine: Machine, asperities: Asperities, u: Array, v: Array, speeds: Array, loads: Loads) -> None:

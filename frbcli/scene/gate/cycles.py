@@ -36,10 +36,15 @@ def coefficient_faults(case: Case) -> Iterator[Fault]:
 
 
 def cartridge_faults(case: Case) -> Iterator[Fault]:
-    """The gyroscopic moments of a cartridge follow the speed of its ring, which is no constant of these motions."""
+    """The gyroscopic moments of a cartridge go by its tilt, which its films see where their shells are fixed."""
+    if case.housing is None or by_shooting(case):
+        return
     for key in turning_cartridges(case):
-        problem = "turns a cartridge, whose gyroscopic moments change with the speed of its ring along a limit cycle."
-        yield Fault(f"{key}.ring.spin", "free", None, problem, "Take a run-up, which follows them.")
+        problem = (
+            "turns a cartridge in a housing that moves: its films see its tilt against the housing, and its gyroscopic "
+            "moments go by its own."
+        )
+        yield Fault(f"{key}.ring.spin", "free", None, problem, "Leave the housing out, or take a run-up.")
 
 
 def cycle_heat_faults(case: Case) -> Iterator[Fault]:
