@@ -23,7 +23,7 @@ from frbcli.film.cells.film import VolumeFilm, gap_height
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import TiltedLand, _loads, tilted_film
-from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, EndsMotion, land_balances
+from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, COLUMNS, EndsMotion, land_balances
 from frbcli.film.cells.tilted.loads import land_loads
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
 
@@ -47,8 +47,8 @@ D, V = np.array([0.3, -0.35, -0.2, -0.5]), np.array([120.0, 40.0, -200.0, 90.0])
 G = 2e-5
 
 
-def lands_of(section: Section, law: Law) -> tuple[TiltedVolumes, tuple[TiltedLand, ...]]:
-    film = tilted_film(section, law, (30, 12), 500.0)
+def lands_of(section: Section, law: Law, around: int = 30) -> tuple[TiltedVolumes, tuple[TiltedLand, ...]]:
+    film = tilted_film(section, law, (around, 12), 500.0)
     return tilted_volumes([film]), film.lands
 
 
@@ -91,8 +91,10 @@ def kernel(
 @pytest.mark.parametrize("keeps", [False, True])
 @pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
 @pytest.mark.parametrize("law", [LAWS["reynolds"], LAWS["two-phase"]], ids=["reynolds", "two-phase"])
-def test_balances_are_the_plain_ones(law: Law, section: Section, keeps: bool) -> None:
-    data, lands = lands_of(section, law)
+@pytest.mark.parametrize("around", [30, 3 * COLUMNS + 1], ids=["part", "one-left"])
+def test_balances_are_the_plain_ones(law: Law, section: Section, keeps: bool, around: int) -> None:
+    """Also where the last of the columns that are balanced at a time stands alone."""
+    data, lands = lands_of(section, law, around)
     for number, land in enumerate(lands):
         film = land.film
         states, state = some_states(film)
@@ -100,8 +102,10 @@ def test_balances_are_the_plain_ones(law: Law, section: Section, keeps: bool) ->
         rate, past = (1.0 / G if keeps else 0.0), np.random.default_rng(1).uniform(-90.0, 90.0, film.grid.shape)
         stencil, right, flows = kernel(data, number, states, D, V, G, rate, past)
         phi, z = film.grid.centre[:, None], film.grid.height
-        factor = rate * gap_height(film.section, motion.displacement_at(z), phi) if keeps else gap_rate(
-            motion.velocity_at(z), phi
+        factor = (
+            rate * gap_height(film.section, motion.displacement_at(z), phi)
+            if keeps
+            else gap_rate(motion.velocity_at(z), phi)
         )
         balance = CellBalances(film.section, film.grid, motion, states[BEFORE_UPSTREAM])
         residual, entries = balance.residual(state, Storage(factor, past))
@@ -138,9 +142,7 @@ def test_derivatives_by_velocities_are_those_of_differences(section: Section, ke
             assert np.abs(exact - by_difference).max() < 1e-7 * np.abs(by_difference).max()
 
 
-def loads_of(
-    data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
+def loads_of(data: TiltedVolumes, number: int, states: np.ndarray, fields: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     loads, slopes, push = np.empty(4), np.empty((4, 4)), np.empty((4, *states.shape[1:]))
     given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
     land_loads(*given, states, fields, push, loads, slopes)
