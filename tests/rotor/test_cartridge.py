@@ -297,8 +297,6 @@ def test_what_is_not_modelled_is_refused_once() -> None:
         with pytest.raises(InputError) as refused:
             make_plan(cartridge(*settings))
         assert [fault.key for fault in refused.value.faults] == [key]
-    with pytest.raises(InputError, match="gyroscopic moments"):
-        frbcli.limit_cycles(cartridge("film.cavitation=half-sommerfeld"))
 
 
 def test_text_and_keys_of_a_cartridge() -> None:
