@@ -84,10 +84,13 @@ def stacked(matrices: Sequence[Array]) -> Array:
     return np.array(matrices) if matrices else np.zeros((0, 2, 2))
 
 
-def settled_force(system: System, i: int, place: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+def settled_force(
+    system: System, i: int, place: Array, total: float, near: FilmForce | None = None, slip: float | None = None
+) -> FilmForce:
     """Force and derivatives of film i with its journal at rest at `place` (c,) in m, of a film that keeps oil when this
-    has settled in each of two neighbouring motions. total: omega_J + omega_S. Raises NotConverged."""
-    found = system.force(i, place, np.zeros_like(place), total, near)
+    has settled in each of two neighbouring motions. total: omega_J + omega_S; slip: see System.force. Raises
+    NotConverged."""
+    found = system.force(i, place, np.zeros_like(place), total, near, slip)
     if not system.remembering[i]:
         return found
     step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*system.felt(i, place))))
@@ -95,35 +98,39 @@ def settled_force(system: System, i: int, place: Array, total: float, near: Film
     by_displacement, by_velocity = np.empty((2, 2)), np.empty((2, 2))
     for column, unit in enumerate(np.eye(2)):
         ahead, behind = (
-            system.force(i, place + side * step * unit, np.zeros(2), total).force for side in (1.0, -1.0)
+            system.force(i, place + side * step * unit, np.zeros(2), total, None, slip).force for side in (1.0, -1.0)
         )
         by_displacement[:, column] = (ahead - behind) / (2.0 * step)
-        ahead, behind = (system.force(i, place, side * pace * unit, total).force for side in (1.0, -1.0))
+        ahead, behind = (
+            system.force(i, place, side * pace * unit, total, None, slip).force for side in (1.0, -1.0)
+        )
         by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
     return FilmForce(found.force, by_displacement, by_velocity, found.field)
 
 
 @dataclass(frozen=True)
 class FilmsAtRest:
-    """The films of a machine at rest. position: of the machine; totals: (films,) omega_J + omega_S; forces: of the
-    films."""
+    """The films of a machine at rest. position: of the machine; totals, slips: (films,) omega_J + omega_S and omega_J -
+    omega_S; forces: of the films."""
 
     position: RestingPosition
     totals: Array
+    slips: Array
     forces: tuple[FilmForce, ...]
 
 
 def films_at_rest(system: System, omega: float, position: RestingPosition, settled: bool = True) -> FilmsAtRest:
     """The films of a machine that rests at omega rad/s. settled: whether the derivatives of films that keep oil are
     those of settled_force, else one-sided ones. Raises NotConverged."""
-    totals, near = system.omegas(omega, position.ring_speeds), position.films
+    speeds, near = position.ring_speeds, position.films
+    totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
 
     def force(i: int, place: Array) -> FilmForce:
         if near and not (settled and system.remembering[i]):
             return near[i]
-        return settled_force(system, i, place, float(totals[i]), near[i] if near else None)
+        return settled_force(system, i, place, float(totals[i]), near[i] if near else None, float(slips[i]))
 
-    return FilmsAtRest(position, totals, tuple(force(i, place) for i, place in enumerate(position.journals)))
+    return FilmsAtRest(position, totals, slips, tuple(force(i, place) for i, place in enumerate(position.journals)))
 
 
 def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]], omega: float) -> float:

@@ -154,12 +154,13 @@ def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Ar
 
 
 def _forces(
-    system: System, omegas: Array, places: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
+    system: System, omega: float, speeds: Array, places: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
 ) -> tuple[FilmForce, ...]:
-    """The films with journals at rest at places (films, c); before: near by, from whose fields films on cells are
-    sought."""
+    """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; before: near by, from
+    whose fields films on cells are sought."""
+    omegas, slips = (each.tolist() for each in (system.omegas(omega, speeds), system.slips(omega, speeds)))
     return tuple(
-        system.force(i, place, np.zeros_like(place), float(omegas[i]), before.films[i] if before else None)
+        system.force(i, place, np.zeros_like(place), omegas[i], before.films[i] if before else None, slips[i])
         for i, place in enumerate(places)
     )
 
@@ -170,16 +171,43 @@ def _balance(
     """What rotor and films put on the journals; before: see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
-    omegas = system.omegas(omega, ring_speeds(system, held, omega, position))
+    speeds = ring_speeds(system, held, omega, position)
     following = _following_omegas(system, held, omega, position)
-    films = _forces(system, omegas, position, before)
+    films = _forces(system, omega, speeds, position, before)
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
         slope[own, own] += many * force.by_displacement
         if system.ring_count:
             slope[own] += many * np.outer(by_total(force, position[i]), following[i])
+    if system.rough_rings:
+        slope += _by_rubbed_rings(system, held, omega, position, following)
     return ForceBalance(surplus, slope, films)
+
+
+def _by_rubbed_rings(system: System, held: HeldRotor, omega: float, position: Array, following: Array) -> Array:
+    """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
+    summits, less that as of a film. following: see _following_omegas."""
+    found, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
+
+    def summits(speeds: Array) -> list[FilmForce]:
+        totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
+        return [
+            system.rubbing(i).force(place, still, slip, 0.5 * (total - slip))
+            for i, (place, total, slip) in enumerate(zip(position, totals.tolist(), slips.tolist(), strict=True))
+        ]
+
+    for i, own in enumerate(summits(ring_speeds(system, held, omega, position))):
+        found[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
+    for column in range(position.size):
+        step = np.zeros(position.size)
+        step[column] = NUDGE * system.clearances[column // 2]
+        ahead, behind = (
+            np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved))])
+            for moved in (step.reshape(-1, 2), -step.reshape(-1, 2))
+        )
+        found[:, column] += (ahead - behind) / (2.0 * step[column])
+    return many[:, None] * found
 
 
 def _whole_balance(
@@ -190,7 +218,7 @@ def _whole_balance(
     spins, unit = list(system.spins), _ring_unit(system, omega)
     displacements, speeds = _parted(system, omega, unknowns)
     places = _places(system, held, displacements)
-    films = _forces(system, system.omegas(omega, speeds), places, before)
+    films = _forces(system, omega, speeds, places, before)
     surplus, slope = held.load - held.stiffness @ displacements, -held.stiffness.copy()
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = many * system.rotor.journals[i].T

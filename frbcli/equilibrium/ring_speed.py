@@ -1,5 +1,7 @@
 """How fast a floating ring turns, by the torques (4.17) on it: of films full of oil, with everything at rest.
 
+Between rough surfaces the friction of the summits pulls, too: a ring may stick to its rotor, or to its shell.
+
 A ring with a pin does not turn: the torques hold it at the angle at which the spring of the pin balances them.
 
 Couette's terms pull towards the rotor and towards the housing, Poiseuille's is half the moment of the film's force.
@@ -20,6 +22,7 @@ from frbcli.scene.machine.system import System, film_drag
 Array = NDArray[np.float64]
 
 NUDGE = 1e-6  # of the clearance: of the differences by which the drag follows a journal
+CLOSE, ROUND_OFF = 1e-13, 1e-14  # of the rotor's speed and of a ring's, to which the speed of a ring is found
 SUM, SLIP = range(2)  # of the speeds of journal and shell in System.turning
 
 
@@ -57,8 +60,40 @@ def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) 
     for ring in np.flatnonzero(~system.pinned):
         outer, inner = (system.bodies == ring).T
         driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
-        speeds[ring] = np.sum(driving) / np.sum(drag[inner] + drag[outer])
+        held_by = np.sum(drag[inner] + drag[outer])
+        speeds[ring] = np.sum(driving) / held_by
+        if system.rough_rings:
+            speeds[ring] = _rubbed(system, int(ring), omega, position, speeds, float(held_by))
     return speeds
+
+
+def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Array, drag: float) -> float:
+    """The speed of a ring that its films alone would turn with speeds[ring], and the summits beside them. drag: what
+    the torque of the films falls by per speed, N m s. So does that of friction: the root is the only one."""
+    from scipy.optimize import brentq  # takes long to load
+
+    free = float(speeds[ring])
+
+    def surplus(speed: float) -> float:
+        """In rad/s."""
+        bodies = speeds.copy()
+        bodies[ring] = speed
+        return summit_torque(system, ring, omega, position, bodies) / drag - (speed - free)
+
+    end, close = free + 2.0 * surplus(free), CLOSE * abs(omega)
+    return free if end == free else float(brentq(surplus, *sorted((free, end)), xtol=close, rtol=ROUND_OFF))
+
+
+def summit_torque(system: System, ring: int, omega: float, places: Array, speeds: Array) -> float:
+    """Torque in N m on a ring by the friction of rough surfaces, at speeds (rings,) in rad/s. What the rotor puts on a
+    film is carried by the summits in part, whose force has no share in the moment of the film."""
+    found, totals, slips = 0.0, system.omegas(omega, speeds), system.slips(omega, speeds)
+    for i in np.flatnonzero((system.bodies == ring).any(axis=1)):
+        shell = 0.5 * float(totals[i] - slips[i])
+        on_journal, on_shell, moment = system.rubbing(int(i)).pulled(places[i], float(slips[i]), shell)
+        found += on_journal if system.bodies[i, 0] == ring else on_shell
+        found += 0.5 * moment if system.torque == "all" else 0.0
+    return found
 
 
 def across(place: Array) -> Array:
@@ -115,7 +150,8 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
         bodies = np.append(omega, np.zeros(system.ring_count))
         torques, _, _ = ring_torques(system, bodies, places, films or (none,) * len(places))
         for ring in np.flatnonzero(system.pinned):
-            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]))
+            rubbed = summit_torque(system, int(ring), omega, places, bodies[1:]) if system.rough_rings else 0.0
+            angles[ring] = pin_angle(system.pins[ring], float(torques[ring]) + rubbed)
     return angles
 
 

@@ -165,7 +165,10 @@ def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicF
         if not keeps:
             return constant_film(found.forces[i])
         own = dynamic_film(system.films.with_fields[i], places[i], totals[i], omega)
-        return own if system.asperities is None else own.on(system.rubbing(i).force(places[i], np.zeros(2), totals[i]))
+        if system.asperities is None:
+            return own
+        slip = float(found.slips[i])
+        return own.on(system.rubbing(i).force(places[i], np.zeros(2), slip, 0.5 * (totals[i] - slip)))
 
     return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
 

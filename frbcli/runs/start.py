@@ -131,11 +131,12 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
 def settled_forces(system: System, omega: float, q: Array, v: Array) -> Array:
     """(films, coordinates) forces, and moments, of the films that have settled where the rotor is, none of those that
     starve."""
-    films = system.films
-    forces, omegas = np.zeros((len(system.names), films.coordinates)), system.omegas(omega, v[list(system.spins)])
+    films, spins = system.films, v[list(system.spins)]
+    forces = np.zeros((len(system.names), films.coordinates))
+    omegas, slips = system.omegas(omega, spins).tolist(), system.slips(omega, spins).tolist()
     for i, (selection, standing) in enumerate(zip(system.rotor.journals, films.standing, strict=True)):
         with contextlib.suppress(NotConverged):
-            forces[i] = system.force(i, selection @ q + standing, selection @ v, float(omegas[i])).force
+            forces[i] = system.force(i, selection @ q + standing, selection @ v, omegas[i], None, slips[i]).force
     return forces
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -213,3 +214,35 @@ def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Pat
     assert [(event["kind"], event["film"]) for event in run.events if event["kind"] != "critical-speed"] == [
         ("touch", "inner"), ("touch", "outer"), ("lift-off", "inner"),
     ]  # fmt: skip
+
+
+@pytest.mark.parametrize(("speed", "free"), [(1.0, 2e-4), (4.0, 0.05)])
+def test_a_ring_that_friction_holds_or_brakes_rests_as_at_the_end_of_a_run(
+    speed: float, free: float, tmp_path: Path
+) -> None:
+    """At 1 Hz it sticks to its shell, at 4 Hz it is dragged around on it: the ring of the run, which is light, follows
+    its torques within milliseconds, and the journals would sink or rise."""
+    course = (f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=0.2 s")
+    case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *course])
+    system = make_system(case, make_plan(case))
+    rest = resting_position(system, 2.0 * np.pi * speed)
+    run = runup(case, tmp_path / "run.h5")
+    eccentricities = np.hypot(*rest.journals.T) / system.clearances
+    assert run["asperity_share_outer"][-1] > 0.0
+    for name, expected in zip(("inner", "outer"), eccentricities, strict=True):
+        assert run[f"eccentricity_{name}"][-1] == pytest.approx(expected, abs=2e-5)
+    assert run["ring_speed_Hz"][-1] == pytest.approx(
+        rest.ring_speeds[0] / (2.0 * np.pi), rel=2e-3, abs=2e-6 * speed
+    )
+    films = resting_position(replace(system, asperities=None), 60.0 * np.pi)
+    assert rest.ring_speeds[0] / speed < films.ring_speeds[0] / 30.0
+    assert rest.ring_speeds[0] < 2.0 * np.pi * speed * free
+
+
+def test_a_ring_whose_summits_do_not_touch_rests_as_between_smooth_surfaces() -> None:
+    """Bit for bit."""
+    case = load_case("floating-ring", [*ROUGH, "film.cavitation=half-sommerfeld"])
+    system, omega = make_system(case, make_plan(case)), 2.0 * np.pi * 30.0
+    rough, smooth = (resting_position(each, omega) for each in (system, replace(system, asperities=None)))
+    np.testing.assert_array_equal(rough.ring_speeds, smooth.ring_speeds)
+    np.testing.assert_allclose(rough.displacements, smooth.displacements, rtol=1e-9)

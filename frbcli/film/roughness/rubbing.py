@@ -22,27 +22,36 @@ class Rubbing:
     film: int
     clearance: float
 
-    def force(self, place: Array, rate: Array, slip: float) -> FilmForce:
-        """What the summits do to a journal at `place` (2,) in m with a velocity (2,) in m/s in a shell that does not
-        turn; slip: omega_J - omega_S, rad/s."""
+    def force(self, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
+        """What the summits do to a journal at `place` (2,) in m with a velocity (2,) in m/s; slip: omega_J - omega_S,
+        shell: omega_S, rad/s."""
         if self.surfaces is None:
             return FilmForce(np.zeros(2), np.zeros((2, 2)), np.zeros((2, 2)))
         (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
-        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, 0.0)
+        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
         by_place, by_rate = (np.array(found[first : first + 4]).reshape(2, 2) for first in (2, 6))
         return FilmForce(np.array(found[:2]), by_place, by_rate)
 
-    def beside(self, film: FilmForce, place: Array, rate: Array, slip: float) -> FilmForce:
+    def beside(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
         """A film and its summits, see force."""
         if self.surfaces is None:
             return film
-        own = self.force(place, rate, slip)
+        own = self.force(place, rate, slip, shell)
         return FilmForce(
             film.force + own.force,
             film.by_displacement + own.by_displacement,
             film.by_velocity + own.by_velocity,
             film.field,
         )
+
+    def pulled(self, place: Array, slip: float, shell: float) -> tuple[float, float, float]:
+        """Torques in N m on the journal and on the shell, and the moment of the force on the journal about the middle
+        of the shell, with the journal at rest at `place` (2,) in m; see force."""
+        if self.surfaces is None:
+            return 0.0, 0.0, 0.0
+        e_x, e_y = place[:2].tolist()
+        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
+        return found.torque, found.shell_torque, e_x * found.f_y - e_y * found.f_x
 
     def standing(self, load: float) -> float:
         """Eccentricity in m of a journal that stands still on its summits under a load in N; 0 between smooth

@@ -218,13 +218,15 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
         yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
 
 
-def rough_rest_faults(case: Case) -> Iterator[Fault]:
-    """Rings and heat at rest, in cycles and in tests do not know of boundary friction."""
-    if not case.contact.rough:
-        return
-    if turning_rings(case):
-        problem = "drags a ring along by friction, and outside of runs a ring turns as its films drag it alone."
+def rough_ring_faults(case: Case) -> Iterator[Fault]:
+    """Rings that stick and slip in small motions and cycles, about which their speeds are taken as constant."""
+    if case.contact.rough and turning_rings(case):
+        problem = "lets a ring stick and slip: its speed follows motions about a rest, for which it is constant here."
         yield Fault("contact.model", "asperities", None, problem, f"{SMOOTH}, or take a run-up.")
-    if case.heat is not None:
+
+
+def rough_rest_faults(case: Case) -> Iterator[Fault]:
+    """Heat at rest, in cycles and in tests does not know of boundary friction."""
+    if case.contact.rough and case.heat is not None:
         problem = "makes heat by friction, and outside of runs the heat is that of the films alone."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

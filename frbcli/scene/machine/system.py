@@ -52,15 +52,19 @@ class System:
     pins: Array = field(default_factory=lambda: pin_rows(()))
     shell: ElasticShell | None = None
 
-    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """Force and derivatives of film i, see Films, and of rough surfaces beside it. Their friction has the sense of
-        the total: a ring turns more slowly than its rotor, and a journal that stands still does not rub."""
+    def force(
+        self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None, slip: float | None = None
+    ) -> FilmForce:
+        """Force and derivatives of film i, see Films, and of rough surfaces beside it. slip: omega_J - omega_S; without
+        it their friction has the sense of the total, omega_J + omega_S: a ring turns more slowly than its rotor."""
         if self.shell is not None:
             return self.shell.force(
                 lambda felt, felt_rate: self.films.force(i, felt, felt_rate, total, near), place, rate,
                 self.clearances[i],
             )  # fmt: skip
-        return self.rubbing(i).beside(self.films.force(i, place, rate, total, near), place, rate, total)
+        slip = total if slip is None else slip
+        film = self.films.force(i, place, rate, total, near)
+        return self.rubbing(i).beside(film, place, rate, slip, 0.5 * (total - slip))
 
     def felt(self, i: int, place: Array) -> Array:
         """(coordinates,) what film i feels of a journal at a place: an elastic shell keeps a gap."""
@@ -116,6 +120,15 @@ class System:
     def omegas(self, omega: float, ring_speeds: Array) -> Array:
         """(films,) omega_J + omega_S of each film, rad/s."""
         return np.asarray(self.turning[:, 0] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
+
+    def slips(self, omega: float, ring_speeds: Array) -> Array:
+        """(films,) omega_J - omega_S of each film, rad/s."""
+        return np.asarray(self.turning[:, 1] @ np.concatenate([[omega], ring_speeds]), dtype=np.float64)
+
+    @property
+    def rough_rings(self) -> bool:
+        """Whether the friction of rough surfaces turns rings, or holds them."""
+        return self.asperities is not None and self.ring_count > 0
 
     def motions(self, sample: Array) -> Iterator[tuple[Array, Array, float]]:
         """Of each film: place and rate of its journal in its shell, see Films, and omega_J + omega_S in rad/s. sample:
