@@ -154,14 +154,17 @@ def test_a_run_ends_where_the_machine_rests(held: str, tmp_path: Path) -> None:
         np.testing.assert_allclose(angle, angle[0], rtol=1e-5)
 
 
-def test_a_blocked_ring_rests_on_rough_surfaces() -> None:
+@pytest.mark.parametrize("held", [pin(), BLOCKED], ids=["pin", "blocked"])
+def test_a_ring_that_does_not_turn_rests_on_rough_surfaces(held: str) -> None:
     """Its summits carry it alone: the eccentricity at which they stand under the load."""
-    case = ringed(BLOCKED, *ROUGH, "rotor.gravity=98.1 m/s^2")
+    case = ringed(held, *ROUGH, "rotor.gravity=98.1 m/s^2")
     system = system_of(case)
     rest = resting_position(system, OMEGA)
     np.testing.assert_allclose(rest.journals[1], [0.0, -system.rubbing(1).standing(LOAD)], atol=1e-11)
-    (point,) = frbcli.stability(case, [SPEED]).points
-    assert point.rests
+    assert [state.status for state in frbcli.bearing_sheet(case, [SPEED]).points] == ["resting"] * 2
+    assert bool(faults(case, STABILITY)) == (held != BLOCKED)
+    if held == BLOCKED:
+        assert frbcli.stability(case, [SPEED]).points[0].rests
 
 
 def test_a_response_that_would_lift_a_ring_off_its_shell_is_no_linear_one() -> None:
