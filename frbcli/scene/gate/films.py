@@ -77,8 +77,10 @@ def bath_faults(case: Case) -> Iterator[Fault]:
             continue
         law, form = law_named(case.cavitation(film)), form_of(case)
         remedy = 'Write ends = "oil-bath" or "free-to-air".'
-        if not (form.by_cells and form.follows_supply and law.keeps_oil) or law.carries_gas:
-            problem = "parts the ends, which only films on cells that keep their oil follow."
+        followed = form.by_cells and form.follows_supply and law.keeps_oil
+        if not followed or law.carries_gas:
+            why = "is not modelled with oil that carries free gas"
+            problem = f"parts the ends, which {why if followed else 'only films on cells that keep their oil follow'}."
             remedy = f'Write film.cavitation = "peeken"; or {remedy[0].lower()}{remedy[1:]}'
         elif tilts(case) or any(True for _ in misaligned(case)):
             problem = "parts the ends, which is not modelled with a tilt."

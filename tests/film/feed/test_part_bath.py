@@ -87,6 +87,7 @@ def test_cells_of_a_plain_gap_stay_where_the_bath_is() -> None:
     ("law", "settings", "told"),
     [
         ("reynolds", (), "films on cells that keep their oil"),
+        ("bubbly", (), "not modelled with oil that carries free gas"),
         ("elrod", (), "has no effect"),
         ("peeken", ("motion.tilt=['0.1 mrad', '0 mrad']",), "with a tilt"),
         ("peeken", (f"bearing.supply={{ {IN_JOURNAL} }}",), "turn"),
