@@ -55,11 +55,13 @@ class Search:
 
 @dataclass(frozen=True)
 class SearchEnd(Generic[Films]):
-    """Where a search ended. position: (films, c) in m and rad; settled: whether the journals rest there."""
+    """Where a search ended. position: (films, c) in m and rad; settled: whether the journals rest there; lacking:
+    (c films, c films) what the slopes have been seen to lack on the way."""
 
     position: Array
     balance: ForceBalance[Films]
     settled: bool
+    lacking: Array
 
 
 def search_rest(
@@ -67,22 +69,23 @@ def search_rest(
     start: Array,
     ends: Callable[[Array], Array],
     search: Search,
+    lacking: Array | None = None,
 ) -> SearchEnd[Films]:
     """Where journals rest, sought from `start` (films, c) in m, with tilts in rad where they have any.
 
     balance: of the journals at a position (films, c), and the balance at the position before, if there is one; ends:
-    (k, 2) what has to stay within the gap at a position, over the clearance and linear in it. Raises what balance
-    raises.
+    (k, 2) what has to stay within the gap at a position, over the clearance and linear in it; lacking: what the slopes
+    are known to lack, see SearchEnd. Raises what balance raises.
     """
-    best = here = SearchEnd(start, balance(start, None), False)
+    first = balance(start, None)
+    best = here = SearchEnd(start, first, False, np.zeros_like(first.slope) if lacking is None else lacking)
     still = ends(np.zeros_like(start))
     since = stuck = 0
-    lacking = np.zeros_like(here.balance.slope)
     for _ in range(ITERATIONS):
         found = here.balance
         if found.left < search.force:
             return replace(here, settled=True)
-        slope = found.slope + lacking
+        slope = found.slope + here.lacking
         if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
         solved = np.asarray(np.linalg.solve(slope, -found.residual), dtype=np.float64)
@@ -98,8 +101,9 @@ def search_rest(
             if arrives or new.left < found.left or SHORTER * share <= search.share:
                 break
             share *= SHORTER
-        lacking = _lacking(lacking, found, new, share * solved)
-        here = SearchEnd(following, new, arrives and share == 1.0)
+        settled = arrives and share == 1.0
+        lacks = here.lacking if settled else _lacking(here.lacking, found, new, share * solved)
+        here = SearchEnd(following, new, settled, lacks)
         since = 0 if arrives or new.left < best.balance.left else since + 1
         best = here if since == 0 else best
         stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * found.left else 0

@@ -36,12 +36,14 @@ OUTER_START = 0.9  # eccentricity of the last start that is tried
 class RestingPosition:
     """A machine at rest. displacements: (n,) in m, rings at their angle 0, or against their pin; journals: (films, c)
     in m, with the tilts in rad that films see; ring_speeds: (rings,) rad/s at which the torques on the rings balance,
-    0 of those against a pin; films: the films there, () where nothing turns and nothing has to be carried."""
+    0 of those against a pin; films: the films there, () where nothing turns and nothing has to be carried;
+    lacking: what their slopes were seen to lack, see SearchEnd, None where nothing was sought."""
 
     displacements: Array
     journals: Array
     ring_speeds: Array
     films: tuple[FilmForce, ...]
+    lacking: Array | None = None
 
     def velocities(self, system: System) -> Array:
         """(n,) those of all degrees of freedom: the rings turn."""
@@ -56,9 +58,11 @@ def resting_position(
     start: Array | None = None,
     search: Search = SEARCH,
     held: HeldRotor | None = None,
+    beside: RestingPosition | None = None,
 ) -> RestingPosition:
     """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
-    gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand.
+    gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand;
+    beside: a position near the start, from the fields of whose films, and with what their slopes lack, it is sought.
 
     Raises NotConverged if no start leads to one.
     """
@@ -76,9 +80,10 @@ def resting_position(
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
         starts = [_with_rings(system, held, omega, each) for each in starts]
-    balance = partial(_balance, system, held, omega)
+    films, lacking = ((), None) if beside is None else (beside.films, beside.lacking)
+    balance = partial(_balance, system, held, omega, films)
     if held.journals is not None:
-        balance = partial(_whole_balance, system, held, held.journals, omega)
+        balance = partial(_whole_balance, system, held, held.journals, omega, films)
     tries = [(each, 1.0) for each in starts]
     if system.shell is not None:
         pressed = _on_shells(system, system.shell, _still(system, omega), starts, loads)
@@ -90,10 +95,10 @@ def resting_position(
             tries.insert(0, (near, reach))
     left = np.inf
     for first, reach in (each for each in tries if _outmost(system, held, each[1], each[0]) < 1.0):
-        found = search_rest(balance, first, partial(_ends, system, held, reach), search)
+        found = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
         if found.settled and _outmost(system, held, reach, found.position) < LARGEST_ECCENTRICITY:
             displacements = held.shape + held.following @ found.position.ravel()
-            return _position(system, held, omega, displacements, found.balance.films)
+            return replace(_position(system, held, omega, displacements, found.balance.films), lacking=found.lacking)
         left = min(left, found.balance.left)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
         return _position(system, held, omega, held.shape, ())
@@ -154,26 +159,27 @@ def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Ar
 
 
 def _forces(
-    system: System, omega: float, speeds: Array, places: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
+    system: System, omega: float, speeds: Array, places: Array, near: tuple[FilmForce, ...]
 ) -> tuple[FilmForce, ...]:
-    """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; before: near by, from
-    whose fields films on cells are sought."""
+    """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; near: those near by,
+    from whose fields films on cells are sought, if there are any."""
     omegas, slips = (each.tolist() for each in (system.omegas(omega, speeds), system.slips(omega, speeds)))
     return tuple(
-        system.force(i, place, np.zeros_like(place), omegas[i], before.films[i] if before else None, slips[i])
+        system.force(i, place, np.zeros_like(place), omegas[i], near[i] if near else None, slips[i])
         for i, place in enumerate(places)
     )
 
 
 def _balance(
-    system: System, held: HeldRotor, omega: float, position: Array, before: ForceBalance[tuple[FilmForce, ...]] | None
-) -> ForceBalance[tuple[FilmForce, ...]]:
-    """What rotor and films put on the journals; before: see _forces."""
+    system: System, held: HeldRotor, omega: float, near: tuple[FilmForce, ...], position: Array,
+    before: ForceBalance[tuple[FilmForce, ...]] | None,
+) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
+    """What rotor and films put on the journals; near: films near those of the first position, see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
     speeds = ring_speeds(system, held, omega, position)
     following = _following_omegas(system, held, omega, position)
-    films = _forces(system, omega, speeds, position, before)
+    films = _forces(system, omega, speeds, position, before.films if before else near)
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = slice(2 * i, 2 * i + 2)
         surplus[own] += many * force.force
@@ -211,14 +217,14 @@ def _by_rubbed_rings(system: System, held: HeldRotor, omega: float, position: Ar
 
 
 def _whole_balance(
-    system: System, held: HeldRotor, journals: Array, omega: float, unknowns: Array,
+    system: System, held: HeldRotor, journals: Array, omega: float, near: tuple[FilmForce, ...], unknowns: Array,
     before: ForceBalance[tuple[FilmForce, ...]] | None,
 ) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
-    """What acts on a whole rotor, and the torques on its rings over an arm; before: see _forces."""
+    """What acts on a whole rotor, and the torques on its rings over an arm; near: see _balance."""
     spins, unit = list(system.spins), _ring_unit(system, omega)
     displacements, speeds = _parted(system, omega, unknowns)
     places = _places(system, held, displacements)
-    films = _forces(system, omega, speeds, places, before)
+    films = _forces(system, omega, speeds, places, before.films if before else near)
     surplus, slope = held.load - held.stiffness @ displacements, -held.stiffness.copy()
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = many * system.rotor.journals[i].T

@@ -120,11 +120,15 @@ class StaticMachines:
         others: list[tuple[FilmsAtRest, float]] = []
         settled, with_error = not self._memory, with_error and not self._memory
         held = held_in_plane(static.system, omega)
-        brought = near is not None and not (with_error or static.system.remembers)
-        if static.on_cells and not brought:  # a coarse mesh also brings the journals near to where they rest
+        remembers = static.system.remembers
+        follows = all(static.system.films.sought_near) and not (with_error or (remembers and self._heat))
+        beside = None
+        if near is not None and follows:
+            beside = near.at_rest.position if remembers else None
+        elif static.on_cells:  # a coarse mesh also brings the journals near to where they rest
             coarse = static.others if with_error else static.others[:1]
             start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
-        position = resting_position(static.system, omega, start, self._search, held)
+        position = resting_position(static.system, omega, start, self._search, held, beside)
         found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
             _, others = _on_others(static.others, omega, position.displacements, NEARLY, held)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,8 +11,11 @@ import pytest
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
+from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.film.cells.film import VolumeSolution
 from frbcli.film.cells.loads import FilmLoads
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
 from frbcli.linear.bearing_sheet import sommerfeld_chart
 from frbcli.linear.film_state import FilmState
@@ -112,6 +116,32 @@ def test_at_once_the_rotor_is_as_stable_as_on_peekens_model() -> None:
         growths.append(point.critical)
     assert growths[1] == pytest.approx(growths[0], rel=1e-7)
     assert abs(growths[0].real) < 1e-2 * abs(growths[0])
+
+
+@pytest.mark.usefixtures("_few_cells")
+def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    """At 150 Hz from 155 Hz: the same place, in about three quarters of the iterations of the film (205)."""
+    iterations: list[int] = []
+    solved = FilmSolver.steady
+
+    def counting(solver: FilmSolver, *asked: Any) -> VolumeSolution:
+        found = solved(solver, *asked)
+        iterations.append(found.iterations)
+        return found
+
+    monkeypatch.setattr(FilmSolver, "steady", counting)
+    system = static_films.static_films(with_rates("1 ms", "1 s")).system
+    before = resting_position(system, 2.0 * math.pi * 160.0)
+    near = resting_position(system, 2.0 * math.pi * 155.0, before.displacements, beside=before)
+    foreseen, omega, counts = 2.0 * near.displacements - before.displacements, 2.0 * math.pi * 150.0, []
+    for beside in (None, near):
+        iterations.clear()
+        found = resting_position(system, omega, foreseen, beside=beside)
+        counts.append(sum(iterations))
+        if beside is None:
+            alone = found
+    assert found.journals == pytest.approx(alone.journals, abs=1e-9 * system.clearances[0])
+    assert counts[1] < 0.8 * counts[0]
 
 
 @pytest.mark.nightly

@@ -51,7 +51,8 @@ DRY = -1e-6  # an oil fraction below this is none
 REPEATED = 3  # each leaves a tenth of what the oil fractions of the one before are off by
 GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what free gas is off by; the latter where it does not fall any more
 # How close cells come to their balances where gas is solved with the oil: where it begins to go with the oil, and last.
-BEGUN, CLOSE = 1e-4, 1e-14
+# Solutions that are REPEATED may leave more, times PASSED_ON for each that follows and leaves a tenth of it.
+BEGUN, CLOSE, PASSED_ON = 1e-4, 1e-14, 10.0
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -145,20 +146,21 @@ class FilmSolver:
         """See steady. Each stage begins from that of a film near by, if `start` has it; else the gas is in equilibrium
         first, and then begins to go with the oil."""
         begun = start if start is not None and start.ndim > self._area.ndim else np.zeros((0, 0))
+        closes = [CLOSE, *(GAS_ROUND_OFF * PASSED_ON**number for number in range(1, 1 + repeated))][::-1]
         self._settle_gas()
         if len(begun) == 0:
             solution = self._solve(motion, self.film.full() if start is None else start, storage)
             self._hold_gas(self.film.gaps(motion), storage, 0.0)
             solution = self._again(motion, solution, storage, BEGUN)
-            solution = self._again(motion, solution, storage)
+            solution = self._again(motion, solution, storage, closes[0])
         else:
             self._hold_gas(self.film.gaps(motion), storage, 0.0)
-            solution = self._solve(motion, self._taken(begun[0]), storage)
+            solution = self._solve(motion, self._taken(begun[0]), storage, closes[0])
         stages = [self._stage(solution)]
         for number in range(1, repeated + 1):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             near = self._taken(begun[number]) if number < len(begun) else solution.w
-            found = self._solve(motion, near, storage)
+            found = self._solve(motion, near, storage, closes[number])
             solution = replace(found, iterations=solution.iterations + found.iterations)
             stages.append(self._stage(solution))
         return replace(solution, stages=np.array(stages))
