@@ -32,6 +32,15 @@ from frbcli.scene.planning.short_bearing import short_error
 from frbcli.solve.tableau import METHODS
 
 WITHIN = 2.0  # of the real cost
+LATE, SPAN_s = 0.7, 0.25  # where a part of a run-up begins, over its speeds, and the CPU time that it is to take
+DRYING_s = 1.0  # the same where films that are full at first run dry
+RUNS = (
+    "axial-groove", "axial-groove-two-phase", "cold-start", "floating-ring", "floating-ring-heat",
+    "floating-ring-table-7-1", "jeffcott", "jeffcott-supply-2bar", "jeffcott-table-4-1", "jeffcott-two-phase",
+    "rigid", "rigid-axial-groove", "rigid-two-phase", "run-down", "soft-shaft", "squeeze-film-damper",
+    "turbocharger-car", "turbocharger-car-cartridge", "turbocharger-car-heat", "turbocharger-car-thrust",
+    "turbocharger-engine", "turbocharger-heavy", "turbocharger-heavy-heat", "turbocharger-low-supply",
+)  # fmt: skip
 NARROW = ("bearing.width=1 mm", "accuracy.target=1e-2")
 
 
@@ -110,6 +119,33 @@ def test_predicted_is_near_real_cost_of_cells(law: str, pressure: int, tmp_path:
     cost = expected_cost(case, make_plan(case), run_up_profile(case))
     assert 1 / WITHIN < run.cost["film_solves"] / cost.film_solves < WITHIN
     assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
+
+
+def late_span(case: Case, span_s: float) -> Case:
+    """The case from LATE of its speeds on for a time that is expected to take span_s; all of a speed through points."""
+    speed, length = case.speed, 0.02
+    if speed.times:
+        return case
+    for _ in range(6):
+        begin, end = (speed.start + share * (speed.end - speed.start) for share in (LATE, LATE + length))
+        duration = length * speed.duration
+        part = case.with_settings(
+            f"speed.from={begin!r} Hz", f"speed.to={end!r} Hz", f"speed.duration={duration!r} s",
+            f"output.step={min(case.output.step, duration / 20.0)!r} s",
+        )  # fmt: skip
+        length = min(length * span_s / expected_cost(part, make_plan(part), run_up_profile(part)).cpu_s, 1.0 - LATE)
+    return part
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("name", RUNS)
+def test_announced_film_solves_of_every_shipped_case(name: str, tmp_path: Path) -> None:
+    """Where whirls have begun, on the machine with all that its case has."""
+    case = late_span(load_case(name), DRYING_s if name == "jeffcott-two-phase" else SPAN_s)
+    cost = expected_cost(case, make_plan(case), run_up_profile(case))
+    run = runup(case, tmp_path / "run.h5", uncertainty=False)
+    assert run.status == "finished"
+    assert 1 / WITHIN < run.cost["film_solves"] / cost.film_solves < WITHIN
 
 
 @pytest.mark.parametrize("law", ["elrod", "bubbly"])
