@@ -143,7 +143,10 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
             forces(data, work, clearances, contact_at(touches, stiffness), g, 1, iteration, rows)
             if not cells or work.grids[0].balance != OPEN:
                 return rows
-            move_cells(work.w[0], work.states[0], work.fields[0], work.grids[0], 0.0, 0.0, g, np.zeros(0))
+            move_cells(
+                data.ring[0], data.cells[0], work.w[0], work.states[0], work.fields[0], work.grids[0], 0.0, 0.0, g,
+                np.zeros(0),
+            )  # fmt: skip
         raise AssertionError(f"{kind} did not settle at {d}")
 
     return ask
@@ -287,7 +290,8 @@ def settle(system: System, felt: Array, w: Array, past: Array, g: float, leaps: 
             return iteration, force, states[FRACTION]
         if leaps:
             grid.law[EMPTY] = -math.inf
-        move_cells(work.w[0], work.states[0], work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
+        given = data.ring[0], data.cells[0], work.w[0], work.states[0]  # type: ignore[attr-defined]
+        move_cells(*given, work.fields[0], grid, 0.0, 0.0, g, np.zeros(0))
     return iteration + 1, force, states[FRACTION]
 
 

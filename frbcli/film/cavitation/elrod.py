@@ -63,6 +63,8 @@ class Elrod(Law):
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
         """See Law.cell."""
         if w > 0.0:
+            if parameters[0] == math.inf:  # without exp, which the vector units would take for the cavity as well
+                return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
             packed = w * scales.reference / parameters[0]
             held = math.exp(min(packed, 1.0))
             steep = held * scales.reference / parameters[0]

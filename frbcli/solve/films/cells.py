@@ -25,6 +25,7 @@ from frbcli.film.cells.balance.balances import (
     balances,
 )
 from frbcli.film.cells.balance.newton_step import damp, film_loads, imbalance, store_rates
+from frbcli.film.cells.balance.resting import find_resting, rests
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE_SLOPE, cell_states, follow_law, hold
 from frbcli.film.cells.channels.flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
@@ -104,10 +105,11 @@ def cell_response(
     cell_states(film, cells, grid.law, drop, w, states)
     if iteration == 0:
         hold(states, omega - 2.0 * spin)
+    slots = fields.shape[2] - fields.shape[1] - SIDES
+    find_resting(film, cells, states, omega == 2.0 * spin and slots == 0, fields)
     against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
     stray = stray_gas(film, ring, width, cells, states, against, work, f, drop, w) if film.carries_gas else 0.0
     balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
-    slots = fields.shape[2] - fields.shape[1] - SIDES
     if slots > 0:
         exchange(cells, states, work.channel[f], stencil, fields, flows)
     mean, largest = imbalance(cells, fields)
@@ -136,7 +138,7 @@ def cell_response(
         solve_ring_at(film.solver_at, stencil, work.blocks, fields)
         f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3] = film_loads(film, ring, cells, states, fields)
         for i in range(m):
-            for j in range(k):
+            for j in range(0 if rests(states, i) else k):
                 fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
     xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
     # back from the grid's directions: Q^T B Q
@@ -173,23 +175,33 @@ def held_at_kinks(before: float, after: float, empty: float, pressure_slope: flo
 
 @compiled()
 def move_cells(
-    w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float, g: float, changes: Array,
+    ring: Array, cells: Array, w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float,
+    g: float, changes: Array,
 ) -> int:  # fmt: skip
     """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
-    pressures, changes (slots,); 1 if the film is to be asked again."""
+    pressures, changes (slots,); 1 if the film is to be asked again. Columns that rest follow the gap."""
     m, k = w.shape
     empty = grid.law[EMPTY]
     c, s = math.cos(grid.turn), math.sin(grid.turn)
     x, y = c * u_x + s * u_y, c * u_y - s * u_x
-    grid.x += g * x
-    grid.y += g * y
     for i in range(m):
+        if rests(states, i):
+            per_gap = g / (ring[GAP, i] + grid.x * ring[SIN, i] - grid.y * ring[COS, i])
+            grows = x * ring[SIN, i] - y * ring[COS, i]
+            for j in range(k):
+                before = w[i, j]
+                lacks = fields[i, j, k + BY_ITSELF] / cells[AREA, i, j] - states[FRACTION, i, j] * grows
+                w[i, j] += per_gap * lacks / states[FRACTION_SLOPE, i, j]
+                w[i, j] = held_at_kinks(before, w[i, j], empty, 0.0)
+            continue
         for j in range(k):
             before = w[i, j]
             w[i, j] += fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
             for slot in range(changes.shape[0]):
                 w[i, j] += fields[i, j, k + SIDES + slot] * changes[slot]
             w[i, j] = held_at_kinks(before, w[i, j], empty, states[PRESSURE_SLOPE, i, j])
+    grid.x += g * x
+    grid.y += g * y
     return 1 if grid.balance == OPEN else 0
 
 
@@ -211,6 +223,10 @@ def store_ahead(
     for i in range(m):
         h = ring[GAP, i] + d_x * ring[SIN, i] - d_y * ring[COS, i]
         grows = g * (x * ring[SIN, i] - y * ring[COS, i])
+        if rests(states, i):
+            for j in range(k):
+                rates[i, j] = 0.0
+            continue
         for j in range(k):
             change = fields[i, j, k + BY_ITSELF] + x * fields[i, j, k + BY_X] + y * fields[i, j, k + BY_Y]
             theta = states[FRACTION, i, j]

@@ -199,7 +199,10 @@ def _follow(films, work, correction, share):  # type: ignore[no-untyped-def]
 
 def _move(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
     """move_film of films with cells."""
-    unsettled = move_cells(work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g, work.changes[f])
+    unsettled = move_cells(
+        films.ring[f], films.cells[f], work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g,
+        work.changes[f],
+    )  # fmt: skip
     if films.films[f].remembers and work.grids[f].balance == AHEAD:
         s = work.grids[f].stage
         store_ahead(

@@ -15,6 +15,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.carried import carried_at
 from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS
+from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -47,7 +48,7 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
+from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
@@ -168,6 +169,8 @@ def _flow_around(
     taken = 0.0  # by the openings in cells that are film in part
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
+        if rests(states, i) or rests(states, n):
+            continue
         s, c = ring[FACE_SIN, i], ring[FACE_COS, i]
         h = ring[FACE_GAP, i] + d_x * s - d_y * c
         cube, cube_x, cube_y = h * h * h, 3.0 * h * h * s, -3.0 * h * h * c
@@ -266,6 +269,8 @@ def _flow_along(
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, g = motion.d_x, motion.d_y, motion.g
     for i in range(m):
+        if rests(states, i):
+            continue
         s, c = ring[SIN, i], ring[COS, i]
         h = ring[GAP, i] + d_x * s - d_y * c
         cube, square = flowing_cube(h, film.roughness)
@@ -295,6 +300,10 @@ def _store(
     for i in range(m):
         s, c = ring[SIN, i], ring[COS, i]
         h = ring[GAP, i] + d_x * s - d_y * c
+        if rests(states, i):
+            for j in range(k):
+                right[i, j, k + BY_ITSELF] = cells[AREA, i, j] * (past[i, j] - rate * h * states[FRACTION, i, j])
+            continue
         # how the gap's change depends on the velocities: those turn with the grid
         s_v, c_v = s + g * spin * c, c - g * spin * s
         growth = v_x * s - v_y * c
@@ -330,7 +339,7 @@ def _flow_through_ends(
         if kind == FREE:
             falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):
-            if cells[UNKNOWN, i, j] == 0.0:
+            if cells[UNKNOWN, i, j] == 0.0 or rests(states, i):
                 continue
             s, c = ring[SIN, i], ring[COS, i]
             h = ring[GAP, i] + d_x * s - d_y * c
@@ -379,7 +388,7 @@ def hold_given(cells: Array, stencil: Array, right: Array, flows: Array, sides: 
     m, k = cells.shape[1], cells.shape[2]
     for i in range(m):
         for j in range(k):
-            if cells[UNKNOWN, i, j] == 0.0:
+            if cells[UNKNOWN, i, j] == 0.0:  # no column that rests has any
                 fed = -right[i, j, k + BY_ITSELF]
                 flows[SUPPLY_NET] += fed
                 if fed > 0.0:
@@ -403,13 +412,18 @@ def balances(
     Stored are rate H theta - past (m, k); with rate 0, for a film without memory, the gap's own change with the
     velocity of the motion.
     stencil (ENTRIES, m, k), right (m, k, k + SIDES), its last layers: minus the residual and minus its derivatives by
-    the journal's velocities; flows (FLOWS,).
+    the journal's velocities; flows (FLOWS,). Columns that rest, see resting.py, have the residual alone.
     """
     m, k = past.shape
-    for i in range(m):
-        for j in range(k):
-            for entry in range(5):
+    for entry in range(ENTRIES):
+        for i in range(m):
+            for j in range(k):
                 stencil[entry, i, j] = 0.0
+    for i in range(m):
+        if rests(states, i):
+            stencil[CENTRE, i, 0] = UNASKED
+            continue
+        for j in range(k):
             for side in range(SIDES):
                 right[i, j, k + side] = 0.0
     for flow in range(FLOWS):

@@ -8,6 +8,7 @@ from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, GridMotion, balances
 from frbcli.film.cells.balance.clipped import clipped_push
+from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 from frbcli.film.cells.data import (
     AREA,
@@ -40,6 +41,12 @@ def film_loads(
     f_x, f_y, xx, xy, yx, yy = 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     for i in range(m):
         p, x, y = 0.0, 0.0, 0.0
+        if rests(states, i):
+            for j in range(k):
+                p += cells[LOAD, i, j] * cavity
+            f_x += ring[PUSH_X, i] * p
+            f_y += ring[PUSH_Y, i] * p
+            continue
         for j in range(k):
             weight, slope = cells[LOAD, i, j], states[PRESSURE_SLOPE, i, j]
             here = states[PRESSURE, i, j] + slope * delta[i, j, k + BY_ITSELF]

@@ -12,8 +12,8 @@ from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 
 # Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
 # rate of its oil, as the law takes them, see balance.py in gas/, the free gas of the cell and how much of that which
-# comes in it has at the same pressure; and the oil fraction before the cell upstream of the face after each cell, as it
-# is held, see carried.py.
+# comes in it has at the same pressure; the oil fraction before the cell upstream of the face after each cell, as it is
+# held, see carried.py; and, in the first cell of a column, whether the column keeps its oil, see resting.py.
 (
     PRESSURE,
     FRACTION,
@@ -26,8 +26,9 @@ from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
     FREE_GAS,
     PASSED_ON,
     BEFORE_UPSTREAM,
+    RESTS,
     STATES,
-) = range(12)
+) = range(13)
 CENTRE = 1e-6  # of the clearance, squared: a journal in the centre does not whirl
 WHIRL_EDGE, WHIRL_STEP = 0.3, 0.15  # distance from 0.5 where no whirl is left, and over which it fades
 

@@ -23,6 +23,8 @@ from frbcli.film.cells.elimination.vectors import (
 )
 
 CENTRE, BEFORE, BEHIND, BELOW, ABOVE, ENTRIES = range(6)
+# CENTRE of the first cell of a column whose solution nobody asks for: it keeps its right-hand sides. No other feels it.
+UNASKED = -np.inf
 # Right-hand sides of a film that shares no oil with others: its own, and two for the motion of its journal.
 USUAL = (0,) * 3
 
@@ -81,6 +83,18 @@ def _fill(stencil: Array, i: int, block: Array, columns: Any) -> None:
             block[a, a - 1] = stencil[BELOW, i, a]
         if a < k - 1:
             block[a, a + 1] = stencil[ABOVE, i, a]
+
+
+@compiled()
+def answer_all(stencil: Array, fields: Array) -> None:
+    """Columns that are UNASKED get equations for solve_blocks, which leave their first right-hand side as it is."""
+    m, k = stencil.shape[1], stencil.shape[2]
+    for i in range(m):
+        if stencil[CENTRE, i, 0] == UNASKED:
+            for a in range(k):
+                stencil[CENTRE, i, a] = 1.0
+                for c in range(k + 1, fields.shape[2]):
+                    fields[i, a, c] = 0.0
 
 
 @compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
@@ -170,6 +184,8 @@ def _begin_column(stencil: Array, fields: Array, i: int, rows: Array, column: An
 def unfelt(stencil: Array, i: int) -> bool:
     """Whether no other column feels the unknowns of column i: a cavity at p_cav that turns with the oil."""
     m, k = stencil.shape[1], stencil.shape[2]
+    if stencil[CENTRE, i, 0] == UNASKED:
+        return True
     before, behind = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0
     a = 0
     while a < k and stencil[BEHIND, before, a] == 0.0 and stencil[BEFORE, behind, a] == 0.0:
@@ -207,15 +223,15 @@ def _solve_parted(stencil: Array, fields: Array, cut: int, column: Any, sides: A
             take_in_next(stencil[BEHIND, before], rows[i], rows[before], sizes)
             i = before
     for i in range(m):
-        if unfelt(stencil, i):
-            _follow_neighbours(stencil, fields, i, column, sides)
+        if stencil[CENTRE, i, 0] != UNASKED and unfelt(stencil, i):
+            _follow_neighbours(stencil, fields, i, rows[i], column, sides)
 
 
-@compiled(fastmath={"contract", "reassoc"}, makes_arrays=True)
-def _follow_neighbours(stencil: Array, fields: Array, i: int, column: Any, sides: Any) -> None:
+@compiled(fastmath={"contract", "reassoc"})
+def _follow_neighbours(stencil: Array, fields: Array, i: int, rows: Array, column: Any, sides: Any) -> None:
     """The solution in column i, which is unfelt, from those of the columns beside it: by Thomas' algorithm."""
     m, k, r = stencil.shape[1], len(column), len(sides)
-    before, behind, above = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0, np.empty(k)
+    before, behind, above = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0, rows[0]
     for a in range(k):
         pivot, low, from_before, from_behind = (
             stencil[CENTRE, i, a], stencil[BELOW, i, a], stencil[BEFORE, i, a], stencil[BEHIND, i, a]
@@ -224,7 +240,9 @@ def _follow_neighbours(stencil: Array, fields: Array, i: int, column: Any, sides
             pivot -= low * above[a - 1]
         above[a] = stencil[ABOVE, i, a] / pivot
         for side in range(k, k + r):
-            right = fields[i, a, side] - from_before * fields[before, a, side] - from_behind * fields[behind, a, side]
+            right = fields[i, a, side]
+            if from_before != 0.0 or from_behind != 0.0:  # of a column that is not asked there may be anything
+                right = right - from_before * fields[before, a, side] - from_behind * fields[behind, a, side]
             if a > 0:
                 right -= low * fields[i, a - 1, side]
             fields[i, a, side] = right / pivot

@@ -16,7 +16,7 @@ from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 
 from frbcli.compiled import Array, address_of, c_function, call_of, compiled
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, solve_blocks, solve_known
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, answer_all, solve_blocks, solve_known
 
 UNKNOWN_SIDES = 0
 ANY = 0, UNKNOWN_SIDES  # sizes that have no code of their own
@@ -40,6 +40,7 @@ def _address(size: tuple[int, int]) -> int:
 
 def _any(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
     entries, right = carray(stencil, (ENTRIES, m, k)), carray(fields, (m, k, n))
+    answer_all(entries, right)
     solve_blocks(entries, carray(blocks, (m, k, k)), right, entries[0, 0], right[0, 0])
 
 
