@@ -151,7 +151,7 @@ def _meet_gaps(
                 rows[MIDDLE, row + j] = near + places[MIDDLES, j] * rise
 
 
-@compiled(inline=True)
+@compiled(inline=True, internal=True)
 def _flows_in(rows: Array, first: int, where: slice) -> FaceFlows:
     """Flows that stand in rows from the row `first` on."""
     return FaceFlows(rows[first, where], rows[first + 1, where], rows[first + 2, where], rows[first + 3, where])
