@@ -1,8 +1,7 @@
 """Inputs over time in the time loop, compiled. Two kinds ride in it:
 
 - an empty tuple: a machine whose inputs stay as they are, for which nothing is computed;
-- Inputs: each step has the values in its middle; the filling of a supply that gives a flow at the most goes there with
-  the rate that it had in the step before, so that it is of second order in the step as the rest.
+- Inputs: each step has the values in its middle.
 
 With r times its gauge pressures a film has the pressures of the velocity w / r, r times as large: one table serves all
 pressures of a supply, as one serves all viscosities. Films on cells are given their pressures.
@@ -23,7 +22,7 @@ from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.states import FRACTION, PRESSURE, STATES
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
-from frbcli.film.state import NOW, PASSED
+from frbcli.film.state import PASSED
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.heat import LumpedHeat, NoHeat, have_heat
 from frbcli.solve.stage.loads import row_at
@@ -56,10 +55,10 @@ class Inputs(NamedTuple):
     limited: bool
 
 
-def set_inputs(inputs: Any, films: Any, heat: Any, flows: Array, t: float, step: float) -> None:
-    """Films and heat <- the inputs in the middle of a step in s that begins at t; flows: of the state."""
+def set_inputs(inputs: Any, films: Any, heat: Any, flows: Array, t: float) -> None:
+    """Films and heat <- the inputs at the time t in s; flows: of the state."""
     if isinstance(inputs, Inputs):
-        _set(inputs, films, heat, flows, t, 0.5 * step)
+        _set(inputs, films, heat, flows, t)
 
 
 def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
@@ -68,10 +67,10 @@ def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
 
 
 @overload(set_inputs, inline="always")
-def _set_inputs(inputs, films, heat, flows, t, step):  # type: ignore[no-untyped-def]
+def _set_inputs(inputs, films, heat, flows, t):  # type: ignore[no-untyped-def]
     if getattr(inputs, "instance_class", None) is not Inputs:
-        return lambda inputs, films, heat, flows, t, step: None
-    return lambda inputs, films, heat, flows, t, step: _set(inputs, films, heat, flows, t, 0.5 * step)
+        return lambda inputs, films, heat, flows, t: None
+    return lambda inputs, films, heat, flows, t: _set(inputs, films, heat, flows, t)
 
 
 @compiled()
@@ -104,8 +103,7 @@ def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _set(inputs: Inputs, films: Any, heat: Any, flows: Array, begin: float, half: float) -> None:
-    t = begin + half
+def _set(inputs: Inputs, films: Any, heat: Any, flows: Array, t: float) -> None:
     give_temperatures(inputs, heat, t)
     now = heat.now
     for i in range(inputs.pressures.shape[0]):
@@ -118,7 +116,7 @@ def _set(inputs: Inputs, films: Any, heat: Any, flows: Array, begin: float, half
             scale = now[SCALE, f]
             now[SHARE_OF_SUPPLY, f] = share
         inputs.scales[f] = scale / share
-        supplied(films, inputs.ends, f, filled(films, inputs.ends, flows, f, share, half), scale)
+        supplied(films, inputs.ends, f, filled(films, inputs.ends, flows, f, share), scale)
 
 
 @compiled()
@@ -133,22 +131,20 @@ def _supply_cells(films: VolumeFilms, ends: CellEnds, f: int, share: float, scal
             films.channels[k].groove_pressure = ends.groove_pressure[k] * share
 
 
-def filled(films: Any, ends: Any, flows: Array, f: int, share: float, half: float) -> float:
-    """The share of the gauge pressures that the openings of film f have after half a step in s, whose supply has
-    `share` of them: less where it gives a flow at the most. Films on cells and flows <- their oil fraction, and their
-    filling within its bounds."""
+def filled(films: Any, ends: Any, flows: Array, f: int, share: float) -> float:
+    """The share of the gauge pressures that the openings of film f have, whose supply has `share` of them: less where
+    it gives a flow at the most. Films on cells and flows <- their oil fraction, and their filling within its bounds."""
     raise NotImplementedError
 
 
 @compiled(makes_arrays=True)
-def _fill_cells(films: VolumeFilms, ends: CellEnds, flows: Array, f: int, share: float, half: float) -> float:
+def _fill_cells(films: VolumeFilms, ends: CellEnds, flows: Array, f: int, share: float) -> float:
     """filled of films on cells, as feed_at of feed.py."""
     film, made = films.films[f], ends.films[f]
     if film.given == 0.0:
         return share
     filling = min(max(flows[PASSED, f, FILLING], film.lowest), 1.0)
     flows[PASSED, f, FILLING], film.fraction = filling, 1.0
-    filling = min(max(filling + half * flows[NOW, f, FILLING], film.lowest), 1.0)
     supply, cavity = ends.supplies[f], made.scales.cavitation
     if filling > 0.0:
         return float(share if filling == 1.0 else (cavity + filling * (share * supply - cavity)) / supply)
@@ -164,8 +160,8 @@ def _fill_cells(films: VolumeFilms, ends: CellEnds, flows: Array, f: int, share:
 by_kind(
     filled,
     inline=True,
-    others=lambda films, ends, flows, f, share, half: share,
-    cells=lambda films, ends, flows, f, share, half: _fill_cells(films, ends, flows, f, share, half),
+    others=lambda films, ends, flows, f, share: share,
+    cells=lambda films, ends, flows, f, share: _fill_cells(films, ends, flows, f, share),
 )
 by_kind(
     supplied,
