@@ -18,9 +18,10 @@ from numpy.typing import NDArray
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.equilibrium.ring_speed import NUDGE, SUM, by_total, drags, pin_angles, ring_speeds, ring_torques
 from frbcli.errors import NotConverged
+from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.elastic_shell import GIVES_WAY, ElasticShell
+from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.rotor.held import HeldRotor, held_rotor, whole_rotor
 from frbcli.scene.machine.system import System
 
@@ -87,10 +88,10 @@ def resting_position(
     tries = [(each, 1.0) for each in starts]
     if system.shell is not None:
         pressed = _on_shells(system, system.shell, _still(system, omega), starts, loads)
-        tries += [(each, GIVES_WAY) for each in pressed]
+        tries += [(each, ELASTIC_LIMIT) for each in pressed]
     if start is not None:
         near = system.rotor.journals @ start if held.journals is None else _with_rings(system, held, omega, start)
-        reach = 1.0 if system.shell is None or _outmost(system, held, 1.0, near) < 1.0 else GIVES_WAY
+        reach = 1.0 if system.shell is None or _outmost(system, held, 1.0, near) < 1.0 else ELASTIC_LIMIT
         if _outmost(system, held, reach, near) < LARGEST_ECCENTRICITY:
             tries.insert(0, (near, reach))
     left = np.inf

@@ -8,6 +8,7 @@ from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 
 KEPT = 0.2  # of the gap at which the surfaces touch: what no load presses out
+ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic contact
 LATEST = 1.0 - (1.0 - LARGEST_ECCENTRICITY) / KEPT  # beginning from which films can be computed in the gap that is kept
 
 

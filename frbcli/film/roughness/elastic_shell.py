@@ -14,8 +14,6 @@ from frbcli.film.contact_gap import closes_freely_until, contact_gap
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 
-GIVES_WAY = 1.5  # eccentricity that no journal exceeds in an elastic shell, as in the time loop
-
 
 @dataclass(frozen=True)
 class ElasticShell:

@@ -65,7 +65,7 @@ def _opens_in_turning(place: FilmPlace) -> bool:
     return place.feed_holes is not None or (not is_plain(place.geometry) and place.grid_body != HOUSING)
 
 
-GIVES_WAY = 'let its shell give way, contact = {policy = "elastic", stiffness = "1e8 N/m"}, on which it rests'
+ELASTIC_SHELL = 'let its shell give way, contact = {policy = "elastic", stiffness = "1e8 N/m"}, on which it rests'
 
 
 def held_ring_faults(case: Case) -> Iterator[Fault]:
@@ -74,7 +74,7 @@ def held_ring_faults(case: Case) -> Iterator[Fault]:
     sinks = "its outer film has no wedge and carries no weight, and the ring sinks until it touches its shell."
     for held in _held_rings(case) if not case.contact.gives_way else ():
         problem = f"{held.what}: {sinks}"
-        yield Fault(held.key, held.value, None, problem, f"{held.remedy}, or {GIVES_WAY}.")
+        yield Fault(held.key, held.value, None, problem, f"{held.remedy}, or {ELASTIC_SHELL}.")
 
 
 def held_film_faults(case: Case) -> Iterator[Fault]:

@@ -7,8 +7,7 @@ import math
 import numpy as np
 
 from frbcli.compiled import compiled
-from frbcli.film.contact_gap import closes_freely_until, contact_gap
-from frbcli.solve.stage.equations import ELASTIC_LIMIT
+from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_gap
 from frbcli.solve.state import Array, Control
 
 

@@ -15,10 +15,9 @@ import math
 from typing import NamedTuple
 
 from frbcli.compiled import Array, Indices, compiled
+from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.solve.stage.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.state import INVERSE_SPEED
-
-ELASTIC_LIMIT = 1.5  # eccentricity that no journal exceeds even under elastic contact
 
 # Rows of the scratch arrays: of a stage at the rotor's n degrees of freedom, and at the journals' m = 2 films.
 # FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
