@@ -12,6 +12,7 @@ from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
 SMALLEST = 1e-16  # stands for no deviation at all
+COST_SPAN = 4.0  # of the axis at least: costs that differ by the noise of a clock lie side by side
 
 
 def accuracy_figure(ladder: AccuracyLadder) -> Figure:
@@ -37,12 +38,16 @@ def accuracy_figure(ladder: AccuracyLadder) -> Figure:
         axes.set_xscale("log")
         plain_numbers(axes.xaxis)
         axes.set_yscale("log")
-        groups = dict.fromkeys(_group(item.rung, several) for item in ladder.ladder)
+        rungs = sorted((item.rung for item in ladder.ladder), key=lambda rung: np.prod(rung.mesh or (0,)))
+        groups = dict.fromkeys(_group(rung, several) for rung in rungs)
         for index, group in enumerate(groups):
             items = [item for item in ladder.ladder if _group(item.rung, several) == group]
             items.sort(key=lambda item: item.rung.tolerance)
             axes.plot([_cost(item) for item in items], [_error(item) for item in items], linewidth=0.7, markersize=5.0,
                       marker=MARKS[index % len(MARKS)], color=COLOURS[index % len(COLOURS)], label=group)  # fmt: skip
+        least, most = axes.get_xlim()
+        wider = max(1.0, np.sqrt(COST_SPAN * least / most))
+        axes.set_xlim(least / wider, most * wider)
         _draw_front(axes, ladder)
         for item in ladder.ladder:
             if item.planned:
