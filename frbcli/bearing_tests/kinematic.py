@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
@@ -18,6 +17,7 @@ from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.compilation import working_time
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
@@ -234,7 +234,7 @@ def _moment_count(case: Case, plan: KinematicPlan) -> int:
 
 def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
-    begun, displacement, warm = time.process_time(), (math.nan, math.nan), None
+    begun, displacement, warm = working_time().cpu_s, (math.nan, math.nan), None
     omega = 2.0 * math.pi * (case.motion.speed or 0.0)
     try:
         with advised(with_model(case, plan.cavitation)):
@@ -259,7 +259,7 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
         force_error=moment.force_error,
         field=moment.field,
         history=None,
-        cpu_s=time.process_time() - begun,
+        cpu_s=working_time().cpu_s - begun,
         unknowns=moment.unknowns,
         newton_iterations=moment.iterations,
         plan=plan,
@@ -290,7 +290,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
 
 def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
     assert case.motion is not None
-    motion, begun, warm = case.motion, time.process_time(), None
+    motion, begun, warm = case.motion, working_time().cpu_s, None
     assert motion.eccentricity is not None
     assert motion.frequency is not None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
@@ -317,7 +317,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
         force_error=course.force_error,
         field=course.field,
         history=course.history,
-        cpu_s=time.process_time() - begun,
+        cpu_s=working_time().cpu_s - begun,
         unknowns=course.unknowns,
         newton_iterations=course.iterations,
         plan=plan,
@@ -327,7 +327,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
 
 
 def _failed(plan: KinematicPlan, displacement: tuple[float, float], begun: float, problem: str) -> KinematicResult:
-    spent = time.process_time() - begun
+    spent = working_time().cpu_s - begun
     nan = math.nan
     return KinematicResult(
         plan.cavitation, NOT_CONVERGED, displacement, None, nan, nan, None, None, spent, 0, 0, plan, problem

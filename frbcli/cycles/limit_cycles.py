@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Sequence
 from dataclasses import replace
 
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import warm_walk
@@ -71,7 +71,7 @@ def limit_cycles(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.limit_cycles(case)  # doctest: +SKIP
     """
-    begun = time.process_time()
+    begun = working_time().cpu_s
     slowest, fastest = check(case, True, with_unbalance)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
@@ -89,7 +89,7 @@ def limit_cycles(
             walk = _walk(case, plan, system, machine, slowest, fastest, asked)
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
-    found = _with_missing(diagram(case, walk, observe, lambda: time.process_time() - begun), speeds_Hz)
+    found = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
     if case.heat is not None:
         found = with_hopf_errors(found, walk)
     elif found.of(HOPF):
@@ -99,9 +99,9 @@ def limit_cycles(
     changes = case.heat is not None or system.rotor.over_speed is not None
     unbalance = machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()
     if changes or not (unbalance or machine.rotor.loads):
-        return replace(found, cost=replace(found.cost, cpu_s=time.process_time() - begun))
+        return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
     response = synchronous_response(machine, walk.resting.points[-1], slowest)
-    return with_response(found, walk, response, time.process_time() - begun)
+    return with_response(found, walk, response, working_time().cpu_s - begun)
 
 
 def _walk(

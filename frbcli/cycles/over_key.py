@@ -7,12 +7,12 @@ method/changing.py.
 from __future__ import annotations
 
 import math
-import time
 from dataclasses import replace
 
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors
 from frbcli.cycles.family import Family, positive_range
 from frbcli.cycles.faults import check
@@ -77,7 +77,7 @@ def limit_cycles_over(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.limit_cycles_over(case, "oil.viscosity", "8 mPa*s", "14 mPa*s", 200.0)  # doctest: +SKIP
     """
-    begun = time.process_time()
+    begun = working_time().cpu_s
     check(case)
     first, last, unit = positive_range(case, key, low, high)
     family = Family(case, key, last, unit, 2.0 * math.pi * speed_Hz)
@@ -89,8 +89,8 @@ def limit_cycles_over(
     others = [(family.on_mesh(number), other.share) for number, other in enumerate(other_films(plan))]
     meshes = tuple(OtherMesh(other, KeyFollower(other, lowest), share) for other, share in others)
     walk = Walk(key, family, resting, last, KeyFollower(family, lowest), meshes, why_no_error(plan))
-    found = with_hopf_errors(diagram(case, walk, observe, lambda: time.process_time() - begun), walk)
-    return replace(found, cost=replace(found.cost, cpu_s=time.process_time() - begun))
+    found = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
+    return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
 
 
 def resting_over(family: Family, lowest: float) -> Resting:

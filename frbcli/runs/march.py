@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
@@ -11,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
@@ -124,6 +124,7 @@ class March:
         self._samples = np.empty((0, 2 * system.rotor.size + 1 + len(system.remembering) + warm))
         self._expected, self._course = expected_cost(case, plan, profile), expected_course(case, plan, profile)
         self._cpu_s = self._wall_s = 0.0
+        self._compiled_s = compiled_s()
         self._budget = FIRST_BUDGET
         self._most_steps = max(FEWEST_STEPS, RUNAWAY * self._expected.steps)
 
@@ -210,11 +211,12 @@ class March:
 
     def chunk(self) -> tuple[int, dict[str, Array]]:
         """Advance a while. Returns (status, signals of the output times passed)."""
-        cpu, wall = time.process_time(), time.perf_counter()
+        begun = working_time()
         budget = self._kept.steps(self.time, self._control.longest_step, self._budget)
         status, rows = self._go(budget)
-        spent = time.perf_counter() - wall
-        self._cpu_s += time.process_time() - cpu
+        ended = working_time()
+        spent = ended.wall_s - begun.wall_s
+        self._cpu_s += ended.cpu_s - begun.cpu_s
         self._wall_s += spent
         self._budget = max(1, min(BUDGET, int(budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
         self._kept.take(self._now, self._state, self._profile.angle(self.time))
@@ -302,12 +304,13 @@ class March:
         check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step)
 
     def cost(self) -> dict[str, float]:
-        """The cost of the run so far, without compilation and without tabulating the films."""
+        """The cost of the run so far, compilation apart and without tabulating the films."""
         numbers = self._state.numbers
         wall = max(self._wall_s, 1e-9)
         return {
             "cpu_s": self._cpu_s,
             "error_cpu_s": 0.0,  # known when the run has ended
+            "compile_cpu_s": compiled_s() - self._compiled_s,  # of this process
             "predicted_cpu_s": self._expected.cpu_s,
             "wall_s": self._wall_s,
             "steps": int(numbers[STEPS]),

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from frbcli.analysis.events import find_events
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.files.container import refuse
 from frbcli.results.files.lock import locked
@@ -186,9 +187,9 @@ def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer
 
 def _with_second_run(march: March, writer: RunWriter, run: Run, observe: Observer | None) -> Run:
     """A run that has ended, with its uncertainties, in its file."""
-    began = time.process_time()
+    began = working_time()
     events, error = with_second_run(march, run, observe)
-    cost = {**run.cost, SECOND_RUN: time.process_time() - began}
+    cost = {**run.cost, SECOND_RUN: working_time().cpu_s - began.cpu_s}
     return writer.finish(run.status, cost, error, events, run.t_end_s)
 
 
@@ -221,9 +222,10 @@ def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: flo
         ended = STARVED
     so_far = writer.so_far(ended)
     events = [asdict(event) for event in find_events(so_far)]
-    until, began = quiet_until(events, march.time), time.process_time()
+    until, begun = quiet_until(events, march.time), working_time()
     error = march.error(until, on_fewer_cells(march, until, observe))
-    cost = {**so_far.cost, "error_cpu_s": time.process_time() - began, SECOND_RUN_PREDICTED: second_s}
+    error_s = working_time().cpu_s - begun.cpu_s
+    cost = {**march.cost(), "error_cpu_s": error_s, SECOND_RUN_PREDICTED: second_s}
     return writer.finish(ended, cost, error, events, march.time)
 
 

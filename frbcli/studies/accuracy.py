@@ -5,7 +5,6 @@ from __future__ import annotations
 import functools
 import itertools
 import math
-import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -14,6 +13,7 @@ from tempfile import TemporaryDirectory
 
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.stability import stability
 from frbcli.nearest import did_you_mean
@@ -208,9 +208,9 @@ def _tabulating(case: Case, rung: Rung) -> float:
     """CPU time in s that it takes to tabulate the films of a rung, which the cost of a run leaves out."""
     rung_case = _with_rung(case, rung)
     plan = make_plan(rung_case)
-    began = time.process_time()
+    began = working_time().cpu_s
     make_system(rung_case, plan)
-    return time.process_time() - began
+    return working_time().cpu_s - began
 
 
 def _until(case: Case, until: float | None) -> Case:

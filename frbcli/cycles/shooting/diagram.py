@@ -4,13 +4,13 @@ films keep, Hopf points, and from each the branch of cycles by shooting."""
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.cycles.branch import AT_REST
 from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
 from frbcli.cycles.method.cycle import HOPF
@@ -46,7 +46,7 @@ def limit_cycles_by_shooting(
 
     Raises NotConverged where no resting position is found.
     """
-    begun = time.process_time()
+    begun = working_time().cpu_s
     flow = period_map(case)
     shooting = Shooting(flow, fastest)
     rests = resting(shooting, slowest, fastest)
@@ -81,7 +81,7 @@ def limit_cycles_by_shooting(
         branches=tuple(branches),
         special=(*special, *special_cycles(branches)),
         notes=tuple(_notes(shooting, other, rests, hopf)),
-        cost=Cost(time.process_time() - begun, told.count),
+        cost=Cost(working_time().cpu_s - begun, told.count),
     )
 
 

@@ -31,6 +31,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
     return [
         ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.2g} ms/h"),
+        *_compiled(cost),
         (
             "steps",
             f"{cost['steps']}",
@@ -69,6 +70,12 @@ def _of(run: Run) -> str:
     if "length_m" not in run.references:
         return "of the eccentricity"
     return f"of displacements, over {1e6 * run.references['length_m']:.4g} um"
+
+
+def _compiled(cost: Mapping[str, Any]) -> list[tuple[str, str, str]]:
+    """What a first start takes beside the run."""
+    spent = cost.get("compile_cpu_s", 0.0)
+    return [("CPU time of compiling", f"{spent:.3g} s", "once: kernels are kept")] if spent > 0.0 else []
 
 
 def _second_run(cost: Mapping[str, Any]) -> list[tuple[str, str, str]]:

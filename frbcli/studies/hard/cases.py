@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -17,6 +16,7 @@ from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, w
 from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.results.store import Run
@@ -103,7 +103,7 @@ def run_hard_cases(names: Sequence[str] = (), observe: Observer | None = None) -
 def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
     """One hard case in this process, with all deviations from the list. Raises nothing: a bug is a result as well."""
     hard, reference = task
-    begun = time.process_time()
+    begun = working_time().cpu_s
     try:
         result = _compared(hard, outcome(hard.command, hard.case()), reference)
     except InputError as error:
@@ -113,7 +113,7 @@ def hard_case_result(task: tuple[HardCase, Reference | None]) -> HardResult:
     except Exception as error:
         result = HardResult(hard, ERROR, f"{type(error).__name__}: {error}", problems=("a bug",))
     problems = [*result.problems, *_unexpected(result)]
-    return replace(result, problems=tuple(problems), cpu_s=time.process_time() - begun)
+    return replace(result, problems=tuple(problems), cpu_s=working_time().cpu_s - begun)
 
 
 @dataclass(frozen=True)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -10,6 +9,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from frbcli.case.schema import Case
+from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import threshold_alone
 from frbcli.runs.run import runup
@@ -100,9 +100,10 @@ def _run_file(kept: Path | None) -> Iterator[Path]:
 
 
 def _threshold(task: Task) -> SweepPoint:
-    cpu, wall = time.process_time(), time.perf_counter()
+    begun = working_time()
     found = threshold_alone(task.case)
-    cost = {"cpu_s": time.process_time() - cpu, "wall_s": time.perf_counter() - wall}
+    ended = working_time()
+    cost = {"cpu_s": ended.cpu_s - begun.cpu_s, "wall_s": ended.wall_s - begun.wall_s}
     at = found.threshold
     if at is None:
         status = FINISHED if any(point.rests for point in found.sweep) else NOT_CONVERGED
