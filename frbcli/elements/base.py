@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -23,6 +23,8 @@ class BaseElement(MachineElement):
 
     name: str
     given: Base
+
+    arrow: ClassVar[tuple[str, str] | None] = ("B", "a motion of the ground")
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

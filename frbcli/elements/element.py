@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import Link, NodeForce
+from frbcli.rotor.assembly import GROUND, Link, NodeForce
 from frbcli.rotor.body import Body
 from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart
@@ -50,6 +50,8 @@ class MachineElement(ABC):
     key: str
 
     symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/element_symbols.py
+    arrow: ClassVar[tuple[str, str] | None] = None  # letter and words of its arrow in a sketch
+    beside: ClassVar[bool] = False  # whether it lets the shells of bearings move, or pulls at the shaft beside them
 
     @classmethod
     @abstractmethod
@@ -59,6 +61,16 @@ class MachineElement(ABC):
     @abstractmethod
     def told(self, site: Site) -> Line:
         """Its line of the plan."""
+
+    @property
+    def acts_on(self) -> str:
+        """The node at which a sketch draws its arrow, "" of the ground."""
+        return GROUND
+
+    @property
+    def linear(self) -> LinearPart | None:
+        """Its coefficients over the speed, where these hold the shaft as a bearing does."""
+        return None
 
     def parts(self, site: Site) -> Parts:
         """What it adds to the machine."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,11 +32,18 @@ class ForceElement(MachineElement):
     node: str
     given: AppliedForce
 
+    arrow: ClassVar[tuple[str, str] | None] = ("F", "a force")
+
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
         for number, force in enumerate(case.forces):
             yield cls(f"force.{number}", f"force {number + 1}", node_at(case, force.at), force)
+
+    @property
+    def acts_on(self) -> str:
+        """See MachineElement."""
+        return self.node
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""

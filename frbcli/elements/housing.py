@@ -14,13 +14,12 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.housing import Housing, shape
-from frbcli.case.surroundings.housing_rules import KEY, SYMMETRIC_PLACE
+from frbcli.case.surroundings.housing import KEY, SYMMETRIC_PLACE, Housing, shape
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.body import Array, Body
 from frbcli.units import display
@@ -34,6 +33,8 @@ class HousingElement(MachineElement):
 
     given: Housing
     bearings: tuple[tuple[str, float], ...]
+
+    beside: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -27,12 +27,20 @@ class MagneticPullElement(MachineElement):
     stator: str
     given: MagneticPull
 
+    arrow: ClassVar[tuple[str, str] | None] = ("M", "a magnetic pull")
+    beside: ClassVar[bool] = True
+
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
         """See MachineElement."""
         for number, pull in enumerate(case.magnetic_pulls):
             stator = node_at(case, pull.stator) if pull.stator else GROUND
             yield cls(f"magnetic_pull.{number}", node_at(case, pull.at), stator, pull)
+
+    @property
+    def acts_on(self) -> str:
+        """See MachineElement."""
+        return self.node
 
     def parts(self, site: Site) -> Parts:
         """See MachineElement."""

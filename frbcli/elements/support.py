@@ -29,6 +29,7 @@ class SupportElement(MachineElement):
     given: Support
 
     symbol: ClassVar[str] = "spring"
+    beside: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

@@ -7,6 +7,7 @@ cylinder of its mass and inertias. Around the axis clearances are magnified; ang
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,10 +16,9 @@ from frbcli.case.bearing import FilmBearing, GivenBearing
 from frbcli.case.elements import Element
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.places import node_at
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.support import SupportElement
-from frbcli.elements.table import symbols_at
+from frbcli.elements.table import elements_of, symbols_at
 from frbcli.report.element_symbols import FLAT, HIGH, height, stack
 from frbcli.report.svg import box, curve, drawing, element, line, text
 from frbcli.scene.films import HOUSING as STILL
@@ -71,13 +71,8 @@ def rotor_sketch(case: Case) -> tuple[str, str]:
 
 
 def _arrows_told(case: Case) -> str:
-    """A sentence about the arrows of loads, "" without any."""
-    named = (
-        ("F a force", case.forces),
-        ("M a magnetic pull", case.magnetic_pulls),
-        ("B a motion of the ground", case.bases),
-    )
-    told = ", ".join(words for words, any_of_it in named if any_of_it)
+    """A sentence about the arrows of elements, "" without any."""
+    told = ", ".join(dict.fromkeys(" ".join(each.arrow) for each in elements_of(case) if each.arrow))
     return f" Arrows show places, not directions: {told}, numbered as in the case." if told else ""
 
 
@@ -266,17 +261,20 @@ def _symmetric(case: Case) -> str:
 def _forces(
     case: Case, scale: _SketchScale, housing: float, places: Callable[[str], tuple[float, ...]]
 ) -> Iterator[str]:
-    """An arrow with its number for each force F and each magnetic pull M of a case at the places of its node, in m; it
-    shows no direction. housing: its distance from the axis, in the drawing's units."""
-    acting = [(f"F{number}", force.at) for number, force in enumerate(case.forces, start=1)]
-    acting += [(f"M{number}", pull.at) for number, pull in enumerate(case.magnetic_pulls, start=1)]
-    for name, place in acting:
-        node = node_at(case, place)
+    """An arrow with its letter and number for each element that acts on a node of the machine, at the places of that in
+    m; it shows no direction. housing: its distance from the axis, in the drawing's units."""
+    drawn: Counter[str] = Counter()
+    for each in elements_of(case):
+        node = each.acts_on
+        if each.arrow is None or not node:
+            continue
+        letter, _ = each.arrow
+        drawn[letter] += 1
         y = scale.middle - (housing + FLAT if node.startswith("housing") else 0.0)
         for at in places(node):
             x = scale.left + scale.per_m * at
             yield from _arrow([(x, y - FORCE), (x, y)])
-            yield text(x + 6.0, y - 0.6 * FORCE, name, anchor="start")
+            yield text(x + 6.0, y - 0.6 * FORCE, f"{letter}{drawn[letter]}", anchor="start")
 
 
 def _place(case: Case, number: int) -> float:

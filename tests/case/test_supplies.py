@@ -12,7 +12,7 @@ import frbcli
 from frbcli import load_case
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import json_schema
-from frbcli.case.supplies.supply import OilSupply
+from frbcli.case.supplies.supply import OilSupply, Outline
 from frbcli.case.supplies.table import SUPPLIES, kind_of, supply_named
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.section import film_section
@@ -60,6 +60,21 @@ def test_what_a_supply_says_of_the_gap_is_what_its_section_has(row: type[OilSupp
     assert film.supply.divides is bool(section.grooves)
     assert film.supply.rectangular is not bool(section.holes)
     assert film.supply.splits is (section.far == "groove" and section.copies == 2)
+
+
+@pytest.mark.parametrize(("places", "copies"), [((10e-3,), 2), ((6e-3,), 1), ((6e-3, 14e-3), 1)])
+def test_half_of_the_width_is_solved_where_all_openings_lie_in_its_middle(
+    places: tuple[float, ...], copies: int
+) -> None:
+    class Rows(OilSupply):
+        kind: str = "rows"
+
+        def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+            return tuple(Outline(0.0, axial, 1e-3 / radius, 0.05 * width) for axial in places)
+
+    found = Rows().openings(12.5e-3, 20e-3, "free-to-air", AMBIENT)
+    assert (found.copies, found.far) == (copies, "symmetry" if copies == 2 else "free-to-air")
+    assert tuple(hole.axial for hole in found.holes) == places
 
 
 def test_kinds_are_rows_of_their_own_and_no_other_word_is_one() -> None:

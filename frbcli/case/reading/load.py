@@ -21,8 +21,7 @@ from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.housing_rules import housing_breaches
-from frbcli.case.surroundings.places import base_breaches, force_breaches, pull_breaches
+from frbcli.case.surroundings.machine_table import machine_breaches
 from frbcli.case.surroundings.speed_points import with_speed_points
 from frbcli.case.surroundings.time_tables import with_input_files, with_time_tables
 from frbcli.errors import Fault, InputError
@@ -203,7 +202,7 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     if wrong:  # from, to and duration would follow
         found = [breach for breach in found if breach.path[0] != "speed"]
     if case is not None and not (found or unfit):
-        found = [*force_breaches(case), *pull_breaches(case), *base_breaches(case), *housing_breaches(case)]
+        found = list(machine_breaches(case))
     if unread:  # what the file would have completed is no fault of the case
         found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
     return case, data, [*unknown, *unfit, *found]

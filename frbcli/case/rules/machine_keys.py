@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import re
 
+from frbcli.case.schema import Case
 from frbcli.errors import Fault
 
-TABLES = (
-    "rotor", "shaft", "disk", "bearing", "housing", "force", "magnetic_pull", "base", "thrust_bearing", "axial", "oil",
-    "film", "thermal", "contact",
-)  # fmt: skip
+OF_THE_RUN = ("name", "title", "confirm", "speed", "motion", "start", "accuracy", "output")
+TABLES = tuple(
+    key for key in (field.alias or name for name, field in Case.model_fields.items()) if key not in OF_THE_RUN
+)
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
 # course and the end of a run.
 OTHERS = re.compile(

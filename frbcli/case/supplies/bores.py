@@ -11,8 +11,7 @@ from pydantic import Field
 from frbcli.case.quantities import Angle, Count, Fraction, Length
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number
-from frbcli.case.supplies.supply import MIDDLE, LargestFlow, Openings, Outline, Ramp, SpacedSupply, SupplyPressure
-from frbcli.film.gap import Edge
+from frbcli.case.supplies.supply import LargestFlow, Outline, Ramp, SpacedSupply, SupplyPressure
 from frbcli.units import NUMBER, display
 
 
@@ -43,11 +42,6 @@ class Bores(SpacedSupply):
         """See OilSupply."""
         axial, size = self.axial_position * width, 0.5 * self.diameter
         return tuple(Outline(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
-
-    def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
-        """See OilSupply."""
-        holes = self.holes(radius, width, ambient)
-        return Openings(holes=holes) if self.axial_position == MIDDLE else Openings(1, ends, holes=holes)
 
     @property
     def words(self) -> str:

@@ -143,8 +143,12 @@ class OilSupply(Model):
         return ()
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
-        """How it opens into a film; radius, width of the bearing in m, its ends, the ambient pressure in Pa."""
-        return Openings(holes=self.holes(radius, width, ambient))
+        """How it opens into a film; radius, width of the bearing in m, its ends, the ambient pressure in Pa. Half of
+        the width is solved if all openings lie in its middle."""
+        holes = self.holes(radius, width, ambient)
+        if all(hole.axial == MIDDLE * width for hole in holes):
+            return Openings(holes=holes)
+        return Openings(1, ends, holes=holes)
 
     def holes(self, radius: float, width: float, ambient: float) -> tuple[Hole, ...]:
         """Its outlines as holes with its pressure."""

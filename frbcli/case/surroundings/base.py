@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
 from frbcli.case.bearing import ONE_OR_MANY
-from frbcli.case.model import Model
 from frbcli.case.quantities import Angle, Label, Quantity, Speed
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.force import Order
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.over_time import OverTime
+from frbcli.case.surroundings.places import table_breaches
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
 
 AccelerationEntry = Annotated[float, Quantity("m/s^2", "2 m/s^2")]
 
 
-class Base(Model):
+class Base(MachineTable):
     """Motion of the ground that the machine stands on: harmonic, or a table over time. Displacements are those against
     the ground."""
 
@@ -36,6 +43,8 @@ class Base(Model):
         default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
     )
 
+    alone: ClassVar[bool] = True
+
     @property
     def amplitude(self) -> tuple[float, float]:
         """Amplitude along x and y in m/s^2, the factors of a table over time."""
@@ -54,6 +63,23 @@ class Base(Model):
             return self.over_time.told
         of = "" if self.speed is None else f" of {self.speed:g} Hz"
         return f"order {1.0 if self.order is None else self.order:g}{of}"
+
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        """See MachineTable."""
+        if case.housing is not None and case.housing.modes and not case.housing.masses:
+            problem = "acts on masses, and those of the housing are not known: its modes do not say them."
+            yield Breach(path, problem, "Give housing.masses, or a rigid housing.")
+        if self.over_time is not None:
+            yield from table_breaches(path, self, self.over_time, ("order", "speed", "phase"))
+            return
+        if self.acceleration is None:
+            yield Breach((*path, "acceleration"), "is missing.", 'Write e.g. ["2 m/s^2", "0 m/s^2"], or a file.')
+        elif self.order is None and self.speed is None:
+            problem = "would not change: a ground that is only accelerated moves away."
+            yield Breach((*path, "acceleration"), problem, "Give an order, the speed of what shakes, or a file.")
+        for key in ("order", "speed"):
+            if getattr(self, key) == 0.0:
+                yield Breach((*path, key), "is 0.", "Give what the ground swings with.")
 
 
 def _as_list(given: object) -> object:

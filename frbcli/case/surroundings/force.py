@@ -2,20 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from frbcli.case.model import Model
 from frbcli.case.quantities import Angle, Identifier, Label, Quantity, SignedSpeed
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.over_time import OverTime
+from frbcli.case.surroundings.places import no_place, node_at, table_breaches
 from frbcli.units import NUMBER
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
 
 ForceEntry = Annotated[float, Quantity("N", "10 N")]
 Order = Annotated[float, Quantity(NUMBER, "2")]
 
 
-class AppliedForce(Model):
+class AppliedForce(MachineTable):
     """A force on a disk, a journal, a ring or a support: constant; harmonic with an order of the rotor speed or a
     frequency of its own, in a direction or rotating; or a table over time."""
 
@@ -68,3 +75,19 @@ class AppliedForce(Model):
             return self.over_time.told
         order, frequency = self.turns
         return f"order {order:g}" if order else f"{frequency:g} Hz" if frequency else ""
+
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        """See MachineTable."""
+        if not node_at(case, self.at):
+            yield Breach((*path, "at"), *no_place(case, self.at))
+        if self.order is not None and self.frequency is not None:
+            yield Breach((*path, "frequency"), "is given beside order.", "Keep one of the two.")
+        for key in ("order", "frequency"):
+            if getattr(self, key) == 0.0:
+                yield Breach((*path, key), "is 0.", "Leave it out: the force is then constant.")
+        if self.over_time is not None:
+            yield from table_breaches(path, self, self.over_time, ("order", "frequency", "rotating", "phase"))
+        elif self.force is None:
+            yield Breach((*path, "force"), "is missing.", 'Write e.g. ["10 N", "0 N"].')
+        elif self.phase and self.constant:
+            yield Breach((*path, "phase"), "has no effect: the force is constant.", "Remove it, or give an order.")

@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
 from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import Fraction, Identifier, Label, Position, Quantity, RingInertia, ShellMass
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.support import DIRECTIONS, Dampings, Stiffnesses
+from frbcli.nearest import did_you_mean
 from frbcli.units import NUMBER, SPEED
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+
+KEY = "housing"
+ORTHONORMAL = 0.01  # of 1: modes that are written with two digits
+RIGID = ("mass", "inertia", "position", "mounts")
+SYMMETRIC_PLACE = "bearing"  # of a symmetric rotor, whose bearings move alike
 
 Entry = Annotated[float, Quantity(NUMBER, "0.3")]
 Inertias = Annotated[tuple[RingInertia, RingInertia], *DIRECTIONS]
@@ -60,7 +72,7 @@ class HousingMode(Model):
     )
 
 
-class Housing(Model):
+class Housing(MachineTable):
     """What all bearings stand in, in place of the ground: a rigid body with mass, inertia and mounts, or modes."""
 
     mass: ShellMass | None = Field(default=None, description="of a rigid housing; above 0")
@@ -83,6 +95,10 @@ class Housing(Model):
         "checked to be orthonormal, and the housing has its weight",
     )
 
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        """See MachineTable."""
+        return _modal(path, case, self) if self.modes else _rigid(path, case, self)
+
 
 def shape(mode: HousingMode) -> Mapping[str, tuple[float, float]]:
     """Displacements of a mode by places, 1/sqrt(kg)."""
@@ -97,3 +113,63 @@ def modal_products(housing: Housing) -> Iterator[tuple[int, int, float]]:
         for k, other in enumerate(shapes[: j + 1]):
             shared = one.keys() & other.keys() & masses.keys()
             yield j, k, sum(masses[p] * sum(a * b for a, b in zip(one[p], other[p], strict=True)) for p in shared)
+
+
+def _rigid(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
+    if housing.masses:
+        yield Breach((*path, "masses"), "has no effect without modes.", "Remove it, or give the housing by its modes.")
+    if not housing.mass:
+        problem = "is 0, and the housing is a body" if housing.mass == 0.0 else "is missing, and there are no modes"
+        yield Breach((*path, "mass"), f"{problem}.", 'Write e.g. mass = "50 kg".')
+    if not housing.mounts:
+        remedy = 'Add e.g. mounts = [{ stiffness = "1e8 N/m" }].'
+        yield Breach((*path, "mounts"), "is missing: nothing holds the housing.", remedy)
+    if case.rotor.symmetric:
+        problem = "has no effect: both ends of a symmetric rotor move alike, and the housing does not tilt."
+        places: list[tuple[Path, object]] = [((*path, key), getattr(housing, key)) for key in ("inertia", "position")]
+        places += [((*path, "mounts", i, "position"), mount.position) for i, mount in enumerate(housing.mounts)]
+        yield from (Breach(key, problem, "Remove it.") for key, value in places if value is not None)
+        return
+    for key, example in (("inertia", "2 kg*m^2"), ("position", "80 mm")):
+        if getattr(housing, key) is None:
+            yield Breach((*path, key), "is missing: a rigid housing tilts.", f'Write e.g. {key} = "{example}".')
+    for number, mount in enumerate(housing.mounts):
+        if mount.position is None:
+            yield Breach((*path, "mounts", number, "position"), "is missing.", 'Write e.g. position = "20 mm".')
+    if housing.mounts and len({mount.position for mount in housing.mounts}) == 1:
+        problem = "are at one position, about which the housing tilts freely."
+        yield Breach((*path, "mounts"), problem, "Add another one.")
+
+
+def _modal(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
+    for key in RIGID:
+        if getattr(housing, key) not in (None, ()):
+            yield Breach((*path, key), "is given beside modes.", "Keep the keys of a rigid housing, or its modes.")
+    carried = (SYMMETRIC_PLACE,) if case.rotor.symmetric else tuple(bearing.name for bearing in case.placed_bearings)
+    known = {each.place for each in housing.masses}
+    for number, mode in enumerate(housing.modes):
+        yield from _at((*path, "modes", number, "at"), mode, carried, known)
+    if not housing.masses:
+        return
+    for j, k, product in modal_products(housing):
+        wanted = float(j == k)
+        if abs(product - wanted) > ORTHONORMAL:
+            which = "with itself" if j == k else f"with mode {k + 1}"
+            problem = f"has a sum of masses times displacements {which} of {product:.4g} in place of {wanted:g}."
+            remedy = "Give orthonormal modes, each divided by the root of its modal mass, and all masses."
+            yield Breach((*path, "modes", j, "at"), problem, remedy)
+
+
+def _at(path: Path, mode: HousingMode, carried: tuple[str, ...], known: set[str]) -> Iterator[Breach]:
+    places = [each.place for each in mode.at]
+    for place in carried:
+        if place not in places:
+            yield Breach(path, f"has no displacement at {place}.", f"Write e.g. {place} = [0.3, 0].")
+    for place in dict.fromkeys(places):
+        if place not in carried and place not in known:
+            problem = f"has a displacement at {place}, which is neither a bearing nor a place of housing.masses."
+            yield Breach(path, problem, did_you_mean(place, (*carried, *known)))
+        if places.count(place) > 1:
+            yield Breach(path, f"has {places.count(place)} displacements at {place}.", "Keep one.")
+    if not any(any(displacement) for displacement in shape(mode).values()):
+        yield Breach(path, "is zero everywhere: no mode.", "Give its displacements.")

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from frbcli.case.model import Model
 from frbcli.case.quantities import Identifier, Quantity
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
+from frbcli.case.surroundings.places import no_place, node_at
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
 
 Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
 
 
-class MagneticPull(Model):
+class MagneticPull(MachineTable):
     """The unbalanced magnetic pull on a rotor out of the middle of its stator: in proportion to its displacement and
     along it, a spring of negative stiffness."""
 
@@ -21,3 +28,11 @@ class MagneticPull(Model):
     stator: Identifier = Field(
         default="", description="place that the stator is fixed to, such as `housing`; the ground if not given"
     )
+
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        """See MachineTable."""
+        for key, place in (("at", self.at), ("stator", self.stator)):
+            if (place or key == "at") and not node_at(case, place):
+                yield Breach((*path, key), *no_place(case, place))
+        if self.stator and node_at(case, self.stator) == node_at(case, self.at):
+            yield Breach((*path, "stator"), "is the place of the rotor.", "Name what carries the stator, or remove it.")

@@ -16,10 +16,11 @@ from frbcli.scene.films import bearing_films
 from frbcli.scene.keys import bearing_key, film_keys
 from frbcli.scene.tilt import as_text
 
-LEFT_OUT = {
-    "given_rotor": None, "shaft": (), "disks": (), "forces": (), "magnetic_pulls": (), "bases": (),
-    "thrust_bearings": (), "housing": None, "given_speed": None,
+OF_THE_FILM = {
+    "name", "title", "confirm", "given_bearings", "given_oil", "film", "thermal", "motion", "start", "contact",
+    "accuracy", "output",
 }  # fmt: skip
+LEFT_OUT = {name: field.default for name, field in Case.model_fields.items() if name not in OF_THE_FILM}
 
 
 def tested_case(case: Case) -> Case:

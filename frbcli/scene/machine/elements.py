@@ -12,10 +12,8 @@ from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.housing import HousingElement
-from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
-from frbcli.elements.thrust import ThrustElement
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
 from frbcli.rotor.linear import Array, LinearRotor
@@ -132,7 +130,7 @@ def element_springs(case: Case, omega: float) -> Array:
     """(e,) N/m of each bearing without a film at omega rad/s, then N m of a collar that is held in tilt: the mean of
     the direct stiffness of both directions, as far as it holds the shaft; cross-coupling, damping and mass are left
     out."""
-    parts = (each.linear for kind in (GivenCoefficients, ThrustElement) for each in kind.of(case))
+    parts = (element.linear for element in elements_of(case))
     stiffness = (part.at(omega)[0] for part in parts if part is not None)
     return np.array([max(0.5 * float(np.trace(each)), 0.0) for each in stiffness])
 
@@ -161,8 +159,7 @@ def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
 
 def beside_bearings(case: Case) -> tuple[MachineElement, ...]:
     """What lets the shells of bearings move, or pulls at the shaft beside them."""
-    kinds = DamperElement, SupportElement, HousingElement, MagneticPullElement
-    return tuple(element for kind in kinds for element in kind.of(case))
+    return tuple(element for element in elements_of(case) if element.beside)
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:
