@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import (
+    LEAST,
     FilmsAtRest,
     RestingFilm,
     coefficient_error,
@@ -34,7 +35,9 @@ SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a h
 # Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
 # law follows, those of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
+NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
+
 
 @dataclass(frozen=True)
 class MachineAtRest:
@@ -58,6 +61,13 @@ class MachineAtRest:
     def system(self) -> System:
         """The machine."""
         return self.static.system
+
+    @property
+    def apart(self) -> Array | float:
+        """(n,) how far its displacements on the first other mesh are from its own, 0 without any."""
+        if not self.others:
+            return 0.0
+        return self.others[0][0].position.displacements - self.at_rest.position.displacements
 
     def foreseen(self, omega: float) -> Array:
         """(n,) displacements at another speed in rad/s, on a straight line."""
@@ -131,12 +141,22 @@ class StaticMachines:
         position = resting_position(static.system, omega, start, self._search, held, beside)
         found = films_at_rest(static.system, omega, position, settled)
         if with_error and not static.on_cells:
-            _, others = _on_others(static.others, omega, position.displacements, NEARLY, held)
+            begun = position.displacements + (0.0 if near is None else near.apart)
+            _, others = _on_others(static.others, omega, begun, _nearly(static.system, held), held)
         counted = others if with_error else []
         films = tuple(_resting_film(static.system, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
         changes = _by_omega(near, omega, position.displacements)
         return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic, changes)
+
+
+def _nearly(system: System, held: HeldRotor) -> Search:
+    """How closely rest is sought on another mesh than cells. LEAST of the load moves a journal by less than LEAST of
+    its clearance, the least error that is stated of its place: to solve the films once more would tell nothing. Moments
+    on films that see tilts have another scale."""
+    if system.films.coordinates > 2:
+        return NEARLY
+    return replace(NEARLY, force=NEARLY_CARRIED * float(np.linalg.norm(held.load)))
 
 
 def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) -> Array | float:

@@ -11,12 +11,14 @@ from frbcli.case.reading.load import load_case
 from frbcli.equilibrium import static_films, static_machine
 from frbcli.equilibrium.resting import SEARCH
 from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.film.rectangles.film import FilmForce
 from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.threshold import threshold_at
+from frbcli.scene.machine.system import System
 
 SPEEDS = [40.0, 90.0]
 CASE = load_case("rigid-axial-groove", ["rotor.unbalance=3 g*mm"])
@@ -125,13 +127,34 @@ def test_errors_do_not_depend_on_where_the_search_on_other_meshes_ends(
     """They are those of journals at rest there to round-off, and so short a search is enough for them: the law of a
     penalty film follows the place of its journal, which slopes lack."""
     settings = {"NEARLY": [], "NEARLY_ON_CELLS": ["film.cavitation=penalty", "bearing.supply.pressure=2 bar"]}[name]
-    case, speeds = load_case("axial-groove" if not settings else "jeffcott", settings), [3.0, 30.0]
+    case, speeds = load_case("axial-groove" if not settings else "jeffcott", settings), [3.0, 10.0, 30.0]
     near = stability_points(case, speeds)[1]
     monkeypatch.setattr(static_machine, name, SEARCH)
+    monkeypatch.setattr(static_machine, "NEARLY_CARRIED", 0.0)
     for own, settled in zip(near, stability_points(case, speeds)[1], strict=True):
         mine, exact = own.films[0], settled.films[0]
         assert (mine.error, mine.place_error) == pytest.approx((exact.error, exact.place_error), rel=0.01)
         assert own.errors == pytest.approx(settled.errors, rel=0.01)
+
+
+def test_films_of_another_mesh_are_solved_once_at_each_speed(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Between grooves their elements are solved at each call, nine times as many: the journals begin as far from those
+    of the own mesh as at the speed before, where next to nothing is left over. At the first speed they move."""
+    machines = StaticMachines(load_case("axial-groove"))
+    (other,) = machines.static.others
+    solved: list[bool] = []
+    force = type(other.system).force
+
+    def solve(system: System, *motion: Any) -> FilmForce:
+        solved.append(system is other.system)
+        return force(system, *motion)
+
+    monkeypatch.setattr(type(other.system), "force", solve)
+    near = None
+    for speed in (100.0, 95.0, 90.0):
+        solved.clear()
+        near = machines.at(2.0 * np.pi * speed, near)
+        assert sum(solved) == (2 if speed == 100.0 else 1) * len(other.system.names)
 
 
 def test_other_meshes_have_the_same_rotor() -> None:
