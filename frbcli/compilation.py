@@ -22,6 +22,11 @@ class Compilations(Listener):
         self.functions, self.cpu_s, self.wall_s = 0, 0.0, 0.0
         self._observe, self._depth, self._began = observe, 0, (0.0, 0.0)
 
+    @property
+    def spent_s(self) -> float:
+        """CPU time so far, also while one is going on."""
+        return self.cpu_s + (time.process_time() - self._began[0] if self._depth else 0.0)
+
     def on_start(self, _event: Any) -> None:
         """A function is about to be compiled, maybe within another one."""
         if not self._depth:

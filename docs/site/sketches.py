@@ -154,8 +154,8 @@ def ring(figure: Figure) -> None:
     pointed(left, "shell (housing)", (1.05, 0.68), (1.42, 1.2))
     pointed(left, "outer film", (1.04, 0.26), (1.42, 0.8))
     pointed(left, "floating ring", (0.82, 0.05), (1.42, 0.4))
-    pointed(left, "inner film", (0.6, -0.32), (1.42, 0.0))
-    pointed(left, "journal", (0.45, -0.3), (1.42, -0.4))
+    pointed(left, "journal", (0.45, -0.1), (1.42, 0.0))
+    pointed(left, "inner film", (0.605, -0.25), (1.42, -0.4))
     pointed(left, "channel between\nthe feed holes", (0.72, -0.45), (1.42, -0.85))
     for sign in (1.0, -1.0):
         for low, high, half in ((1.0, 1.15, 0.9), (0.5, 0.6, 0.7)):

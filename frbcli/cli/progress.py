@@ -162,23 +162,22 @@ def compilation_shown(shown: Display, case: Case, also: Iterable[Case] = ()) -> 
     from frbcli.compilation import counted  # heavy: only where kernels are used
     from frbcli.scene.costs.preparation import compile_s
 
-    told, began_s, about = 0.0, 0.0, ""
+    told, about = 0.0, ""
 
     def observe() -> None:
-        nonlocal told, began_s, about
+        nonlocal told, about
         now = time.monotonic()
         if told == 0.0:
             from frbcli.solve.time_loop import some_are_kept
 
             most = "at most " if some_are_kept() else ""  # of which this machine needs some, maybe
             about = f"{most}about {compile_s([case, *also]) * slowness():.0f} s of CPU time."
-            told, began_s = now, time.process_time()
+            told = now
             shown.line(f"Compiling the kernels, once: {about}")
         elif compilations.functions and (shown.redraws or now - told > COMPILING_EVERY_s):
             told = now
-            spent_s = time.process_time() - began_s  # as announced: the clock runs faster where others compute, too
             line = f"Compiling the kernels, once: {compilations.functions} functions"
-            shown.line(f"{line}, {spent_s:.0f} s of {about}")
+            shown.line(f"{line}, {compilations.spent_s:.0f} s of {about}")
 
     with counted(observe) as compilations:
         yield

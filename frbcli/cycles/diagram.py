@@ -48,6 +48,7 @@ class CycleCount:
     count: int = 0
 
     def __call__(self, value: float, eccentricity_max: Array) -> None:
+        """Count a cycle, and tell its place and eccentricities."""
         self.count += 1
         if self.observe is not None:
             self.observe(self.count, value, float(eccentricity_max.max()))

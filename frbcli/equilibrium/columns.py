@@ -8,7 +8,7 @@ from frbcli.columns import Column, Shown
 
 # Of a FilmTemperature, all of one bearing
 WARM_FILMS = (
-    Column("film", "", "name of the film", shown=(Shown("film"),)),
+    Column("film", "", "name of the film", shown=(Shown("film", lambda name: name.replace("_", " ")),)),
     Column("temperature", "K", "temperature of the film", shown=(Shown("degC", ".1f", "degC"),)),
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("clearance", "m", "clearance", shown=(Shown("gap, um", ".4g", "um"),)),

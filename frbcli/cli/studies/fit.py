@@ -52,16 +52,20 @@ def command(
 ) -> None:
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
+    from frbcli.case.reading.listing import values as listed
     from frbcli.results.files.kinds import NEW
     from frbcli.studies.fit import fit
+    from frbcli.units import display
 
     places = outputs.check(here(case.name, "-fit.png"), (save, NEW))
     limits = _bounds(case, bounds)
     measured = run_of(file, measurement)
+    units = {value.key: value.unit for value in listed(case)}
     with computing(terminal, case) as shown:
 
-        def watch(number: int, values: Mapping[str, float]) -> None:
-            shown.redraw(f"run {number}: " + ", ".join(f"{key} {value:.5g}" for key, value in values.items()))
+        def watch(number: int, tried: Mapping[str, float]) -> None:
+            told = (f"{key} {display(float(f'{value:.5g}'), units.get(key, ''))}" for key, value in tried.items())
+            shown.redraw(f"run {number}: {', '.join(told)}")
 
         found = fit(case, measured, vary, limits, signal, watch)
     _tell(terminal, found)

@@ -153,14 +153,17 @@ class Linearised:
 
     @cached_property
     def counts(self) -> tuple[int, int]:
+        """(n_a, n_b): at how many phases the films are asked."""
         return grid_of(self.torus.orders)
 
     @cached_property
     def passing(self) -> Transfer:
+        """Its motions by forces at the frequencies of the motion."""
         return transfer(self.machine, self.torus.frequencies, self.torus.omega)
 
     @cached_property
     def loads(self) -> Loads:
+        """The forces of the films at all phases, with their derivatives."""
         torus, c = self.torus, self.machine.size
         u = self.sampled(torus.motion)
         v = self.sampled(1j * torus.frequencies[:, None] * torus.motion)
@@ -188,9 +191,11 @@ class Linearised:
         return np.asarray(row / np.linalg.norm(row))
 
     def sampled(self, motion: Complex) -> Array:
+        """(n_a, n_b, c): a motion (m, c) at all phases."""
         return samples(self.torus.orders, motion, self.counts)
 
     def analysed(self, values: Array) -> Complex:
+        """(m, ...) harmonics of values (n_a n_b, ...) at all phases."""
         return harmonics(values.reshape(*self.counts, -1), self.torus.orders)
 
     def residual(self, driven: Sequence[tuple[int, Complex]]) -> Array:
