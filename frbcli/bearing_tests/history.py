@@ -177,7 +177,7 @@ def collected(found: Iterator[Moved], observe: Callable[[int], None] | None = No
 
 
 def mean_heat(case: Case, plan: KinematicPlan, path: Path, times: Array) -> tuple[float, float]:
-    """What a film dissipates, W, and what leaves through its open ends, m^3/s, on the average of the last period.
+    """Power in W that a film dissipates and flow in m^3/s out of its open ends, averaged over the last period.
 
     As film_course. The power is -M_J omega - F . v of the journal in the lab. Raises NotConverged.
     """

@@ -220,7 +220,7 @@ def _test(
 
 
 def _telling(observe: Observer, done: int, plans: Sequence[KinematicPlan], case: Case) -> Tell:
-    """What counts the moments of one model on behind those of the models before it."""
+    """A function that observes the moments of one model, numbered on from those of the models before it."""
     counts = [_moment_count(case, plan) for plan in plans]
     before, whole = sum(counts[:done]), sum(counts)
     return lambda number: observe(before + number, whole)

@@ -75,7 +75,7 @@ def resting_displacement(
 
 
 def _capacity(case: Case, plan: KinematicPlan, omega: float, force_of: ForceOf) -> str:
-    """What the film carries on the way to contact, in words."""
+    """A sentence on the force that the film carries on the way to contact."""
     side = math.copysign(1.0, omega)
     forces: dict[float, float] = {}
     for e in sorted(STARTS):

@@ -256,9 +256,9 @@ def output_options(function: Function) -> Function:
         is_eager=True,  # the terminal is made of both options, in the callback of --quiet
         expose_value=False,
         callback=_remember_json,
-        help="One JSON document on stdout.",
+        help="Print the results as one JSON document.",
     )
-    quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="No text, errors excepted.")
+    quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="Print errors only.")
     return as_json(quiet(function))
 
 

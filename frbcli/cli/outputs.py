@@ -85,7 +85,7 @@ def picture_option(default: str) -> Callable[[Function], Function]:
     return click.option("-o", "--output", metavar="PICTURE", type=OUTPUT, help=words)
 
 
-picture_switch = click.option("--picture/--no-picture", default=True, help="Draw the picture, or none.")
+picture_switch = click.option("--picture/--no-picture", default=True, help="Draw a picture or not. [it is drawn]")
 
 
 def outputs_options(default: str) -> Callable[[Function], Function]:

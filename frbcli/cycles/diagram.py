@@ -56,9 +56,9 @@ class CycleCount:
 
 @dataclass(frozen=True)
 class Walk:
-    """What a diagram goes over. over: name of the number; course, resting: the resting positions, whose values times
-    `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles; unknown:
-    why there are none."""
+    """The number over which a diagram is computed. over: its name; course, resting: the resting positions, whose values
+    times `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles;
+    unknown: why there are none."""
 
     over: str
     course: EquilibriumCourse
@@ -156,7 +156,7 @@ def _certain(point: CyclePoint) -> bool | None:
 
 
 def _uncertain(walk: Walk, point: SpecialPoint) -> str:
-    """What is to be said of a fold that was not found on films of another mesh."""
+    """Notes on folds that were not found on films of another mesh."""
     at = f"{point.value:.4g} {walk.unit}".rstrip()
     return f"The fold at {at} is uncertain: it was not found with the same films on another mesh."
 
@@ -190,7 +190,7 @@ def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s
 
 
 def _notes(case: Case, walk: Walk) -> list[str]:
-    """What is to be said of feed holes, and where no whirl begins."""
+    """Notes on feed holes, and where no whirl begins."""
     points, notes = walk.resting.points, [walk.unknown]
     if any(place.geometry.supply.turns for place in film_places(case)):
         notes.append("Feed holes that turn with a ring enter by their mean over the angle.")

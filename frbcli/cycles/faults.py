@@ -1,4 +1,4 @@
-"""What limit cycles cannot be computed of, told before anything is."""
+"""Cases whose limit cycles cannot be computed, refused before any computation."""
 
 from __future__ import annotations
 

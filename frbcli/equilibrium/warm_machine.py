@@ -58,7 +58,7 @@ class WarmMachine:
 
     @property
     def balance(self) -> float:
-        """What is left over of the power, relative."""
+        """Power that the balances of heat leave over, as a share of all power."""
         return self.steady.balance
 
 

@@ -60,7 +60,7 @@ class BearingSheet(Tabular):
 
     @property
     def columns(self) -> tuple[Column, ...]:
-        """What is told of each film and state."""
+        """The columns of the sheet."""
         tilting = any(point.tilting is not None for point in self.points)
         return sheet_columns(self.case.contact.rough, tilting)
 

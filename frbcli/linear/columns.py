@@ -1,4 +1,4 @@
-"""What static and linear results tell: the columns of bearing sheet, stability and unbalance response."""
+"""The columns of static and linear results: bearing sheet, stability and unbalance response."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ MIXED_FRICTION = (
 
 
 def sheet_columns(rough: bool, tilting: bool) -> tuple[Column, ...]:
-    """Of the FilmStates of a case: whether its surfaces are rough, and whether its journals tilt."""
+    """Columns of the FilmStates of a case. rough: whether its surfaces are; tilting: whether its journals tilt."""
     return (*SHEET, *(TILTING if tilting else ()), *(MIXED_FRICTION if rough else ()))
 
 

@@ -39,7 +39,7 @@ class SpeedWords:
 
     @property
     def head(self) -> str:
-        """What a table of cells names the unit."""
+        """The unit of speeds in the head of a table."""
         other = "Hz" if self.rpm else "rpm"
         return f"{self.unit} ({other})" if self.both else self.unit
 

@@ -164,7 +164,7 @@ def whirl_modes(modes: FreeModes, springs: Array, stiffness: Array, omega: float
 
 
 def reduction_error(modes: FreeModes, count: int, springs: Array, stiffness: Array, omega: float) -> ReductionError:
-    """What keeping the lowest `count` of all modes leaves out; the other arguments as in `whirl_modes`."""
+    """The error of keeping only the lowest `count` of all modes; the other arguments as in `whirl_modes`."""
     left_out = springs[:, count:] / modes.frequencies[count:]
     full = whirl_modes(modes, springs, stiffness, omega)
     reduced = whirl_modes(modes.lowest(count), springs[:, :count], stiffness, omega)

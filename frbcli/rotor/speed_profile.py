@@ -39,7 +39,7 @@ class SpeedProfile:
         return self.rotation(t)[2]
 
     def with_stops(self, times: Iterable[float]) -> SpeedProfile:
-        """The same speeds with kinks of no angle at those of the times (s) that lie within."""
+        """The same speeds with additional points at those of the times in s that lie within the profile."""
         kinks = [t for t in times if self.times[0] < t < self.times[-1]]
         t = np.union1d(self.times, np.array(kinks))
         return speed_profile(t.tolist(), self.speed(t).tolist())

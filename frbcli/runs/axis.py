@@ -31,7 +31,8 @@ class RunAxis:
 
     @classmethod
     def of(cls, case: Case, profile: SpeedProfile, step: float) -> RunAxis | None:
-        """Of a run of a case with an output step in s, None without an axial load. Raises as axial_motion."""
+        """The axial motion in a run of a case with an output step in s, None without an axial load. Raises as
+        axial_motion."""
         motion = axial_motion(case, profile, shaft_of(case).mass)
         if motion is None:
             return None

@@ -95,7 +95,7 @@ class RunInputs:
 
     @property
     def of_fillings(self) -> RunInputs:
-        """What changes the films at constant inputs: openings whose supplies give a flow at the most."""
+        """The inputs that change films while all else is constant: openings whose supplies give a flow at the most."""
         machine = self.machine
         if machine is None or not machine.limited:
             return replace(self, machine=None)

@@ -323,7 +323,7 @@ def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
         raise InputError(case.name, (Fault("--vary", key, None, "is no number of the case.", remedy),))
     value = known[key].value
     if not isinstance(value, float) or not value > 0.0:
-        raise InputError(case.name, (Fault("--vary", key, None, "is not a number above zero.", "Vary others."),))
+        raise InputError(case.name, (Fault("--vary", key, None, "is not a number above zero.", "Vary other keys."),))
     low, high = bounds or (value / SPAN, value * SPAN)
     if not low < high:
         raise InputError(case.name, (Fault("--bounds", key, None, "has a lower bound that is not below the upper one.",

@@ -349,14 +349,14 @@ mesh = [1, 2.5]
         ('kind = "single-film"', "", "bearing.kind", "missing"),
         ("[bearing]", "[contact]\npolicy = 'elastic'\n[bearing]", "contact.stiffness", "missing"),
         ("[bearing]", "[contact]\neccentricity = 1\n[bearing]", "contact.eccentricity", "at most 0.9999"),
-        ("[bearing]", "[contact]\nroughness = '1 um'\n[bearing]", "contact.roughness", "of rough surfaces"),
+        ("[bearing]", "[contact]\nroughness = '1 um'\n[bearing]", "contact.roughness", "on rough surfaces only"),
         ("[bearing]", "[contact]\nmodel = 'asperities'\n[bearing]", "contact.summit_radius", "is missing"),
-        ("[bearing]", "[contact]\nmodel = 'asperities'\npolicy = 'stop'\n[bearing]", "contact.policy", "of a spring"),
+        ("[bearing]", "[contact]\nmodel = 'asperities'\npolicy = 'stop'\n[bearing]", "contact.policy", "smooth surf"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '-1 um'\n[bearing]", "contact.roughness", "greater than"),
         ("[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nwear = 1e-7\n[bearing]", "contact.hardness", "is missing"),
         (
             "[bearing]", f"{ASPERITIES}\nroughness = '1 um'\njournal_roughness = '1 um'\n[bearing]",
-            "contact.journal_roughness", "of flow factors",
+            "contact.journal_roughness", "on flow factors only",
         ),
         (
             "[bearing]", f"{ASPERITIES}\nroughness = '1 um'\nflow_factors = true\njournal_roughness = 2e-6\n[bearing]",

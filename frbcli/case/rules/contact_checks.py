@@ -24,7 +24,8 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield Breach(("contact", "stiffness"), problem, 'Add stiffness = "1e8 N/m".')
         for key in (*OF_ASPERITIES, *WITH_DEFAULT):
             if key in contact:
-                yield Breach(("contact", key), "is of rough surfaces.", 'Add model = "asperities", or remove it.')
+                problem = "has an effect on rough surfaces only."
+                yield Breach(("contact", key), problem, 'Add model = "asperities", or remove it.')
     elif contact["model"] == "asperities":
         yield from _breaches_of_asperities(contact)
 
@@ -32,7 +33,7 @@ def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
 def _breaches_of_asperities(contact: Mapping[str, Any]) -> Iterator[Breach]:
     for key in OF_SPRING:
         if key in contact:
-            yield Breach(("contact", key), "is of a spring between smooth surfaces.", "Remove it.")
+            yield Breach(("contact", key), "has an effect between smooth surfaces only.", "Remove it.")
     for key, example in OF_ASPERITIES.items():
         if key not in contact:
             yield Breach(("contact", key), "is missing; asperities need it.", f"Add {key} = {example}.")
@@ -41,7 +42,8 @@ def _breaches_of_asperities(contact: Mapping[str, Any]) -> Iterator[Breach]:
     roughness, radius = number(contact, "roughness", "m"), number(contact, "summit_radius", "m")
     journal = number(contact, "journal_roughness", "m")
     if journal is not None and contact.get("flow_factors") is not True:
-        yield Breach(("contact", "journal_roughness"), "is of flow factors.", "Add flow_factors = true, or remove it.")
+        problem = "has an effect on flow factors only."
+        yield Breach(("contact", "journal_roughness"), problem, "Add flow_factors = true, or remove it.")
     elif journal and roughness and journal > roughness:
         problem = "is more than roughness, which is that of both surfaces."
         yield Breach(("contact", "journal_roughness"), problem, "Correct one of the two.")

@@ -79,7 +79,7 @@ class Base(MachineTable):
             yield Breach((*path, "acceleration"), problem, "Give an order, the speed of what shakes, or a file.")
         for key in ("order", "speed"):
             if getattr(self, key) == 0.0:
-                yield Breach((*path, key), "is 0.", "Give what the ground swings with.")
+                yield Breach((*path, key), "is 0.", "Give the order or the speed of what shakes the ground.")
 
 
 def _as_list(given: object) -> object:

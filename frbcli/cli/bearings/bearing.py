@@ -31,8 +31,8 @@ SETTLED = "Coefficients of mass-conserving films are of oil that has settled; th
 @click.command()
 @case_argument
 @click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
-              help="Number that is varied; over the eccentricity the load follows.")  # fmt: skip
-@speeds_option("20 over the range; over the eccentricity one, the highest")
+              help="Number that is varied; over the eccentricity the load is computed.")  # fmt: skip
+@speeds_option("20 over the range; with --over eccentricity the highest")
 @click.option("--load", type=LOAD_OPTION, metavar="LOAD", help='Load along -y on a single film, e.g. "30 N". '
               "[that of the rotor]")  # fmt: skip
 @click.option("--ross", metavar="FILE", type=OUTPUT,

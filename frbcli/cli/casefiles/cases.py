@@ -13,7 +13,7 @@ from frbcli.cli.files import OUTPUT, check_outputs
 @click.command()
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
-@click.option("--hard", is_flag=True, help="The hard cases in place of the others.")
+@click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
 @click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
 @output_options
 def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool, terminal: Terminal) -> int | None:

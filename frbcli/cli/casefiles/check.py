@@ -26,7 +26,7 @@ TURNING_TOLD = 0.02  # of the gap
 
 @click.command()
 @case_argument
-@click.option("--all", "everything", is_flag=True, help="All values of the case in SI, too.")
+@click.option("--all", "everything", is_flag=True, help="Show all values of the case in SI, too.")
 @output_options
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""

@@ -52,16 +52,19 @@ class Range:
 @click.option("--over", default="speed", metavar="KEY",
               help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
-              help="Curves of Hopf points and folds over --over and this key, e.g. bearing.clearance.")  # fmt: skip
+              help="Draw a map: curves of Hopf points and folds over --over and this key, "
+                   "e.g. bearing.clearance.")  # fmt: skip
 @click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
 @click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
 @click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
 @click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
-              help="Number of values of --and at which diagrams are computed, where curves begin. [3]")  # fmt: skip
+              help="Number of values of --and at which diagrams are computed; the curves begin at "
+                   "their points. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
-              help="Add what stable cycles become with unbalance: whirls of two frequencies or locked in; to a map of "
-                   "--and the curves of torus points and flips, also of the synchronous response.")  # fmt: skip
+              help="Compute, too, what stable cycles become with unbalance: whirls of two frequencies or "
+                   "locked in; in a map of --and the curves of torus points and flips, also of the synchronous "
+                   "response.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")

@@ -40,7 +40,8 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 @click.option("--map", "as_map", is_flag=True,
               help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
 @click.option("--excitation", default="unbalance", metavar="LOAD",
-              help='The one load that excites, as "force 2"; else the unbalance with all of order 1.')  # fmt: skip
+              help='The one load that excites the rotor, e.g. "force 2". '
+                   "[the unbalance and all loads of order 1]")  # fmt: skip
 @outputs_options("CASE-response.png, here")
 @output_options
 def command(

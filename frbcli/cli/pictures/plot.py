@@ -46,8 +46,8 @@ class Times:
 @click.argument("run_files", metavar="RUN.h5...|CASE", type=INPUT, nargs=-1, required=True)
 @click.option("--what", metavar="SUBJECT", type=click.Choice(SUBJECTS), default="eccentricity", show_default=True,
               help=f"One of {', '.join(SUBJECTS)}.")
-@click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Begin of what is drawn, e.g. "6.4 s".')
-@click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End of what is drawn.")
+@click.option("--from", "from_time", metavar="TIME", type=TIME_OPTION, help='Start of the drawn time, e.g. "6.4 s".')
+@click.option("--to", "to_time", metavar="TIME", type=TIME_OPTION, help="End of the drawn time.")
 @over_option("time")
 @signal_option(None)
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", help=f"{SETTING} With --what law.")

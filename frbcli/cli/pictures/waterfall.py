@@ -56,7 +56,7 @@ class View:
     show_default=True,
     help="One coordinate, or the motion that turns with the rotor.",
 )
-@click.option("--log", is_flag=True, help="Logarithmic frequency; with --order amplitude.")
+@click.option("--log", is_flag=True, help="Logarithmic frequency axis; with --order logarithmic amplitudes.")
 @click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
 @click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
 @click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [those of free whirls]")

@@ -72,7 +72,8 @@ def run_options(function: Function) -> Function:
 @case_argument
 @run_options
 @click.option("--onset-spread", is_flag=True,
-              help="Run again with other ramps, steps and cells: between which speeds a whirl begins.")  # fmt: skip
+              help="Repeat the run with other ramps, steps and cells: the range of speeds in which a "
+                   "whirl begins.")  # fmt: skip
 @output_options
 def runup(case: Case, options: RunOptions, onset_spread: bool, terminal: Terminal) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""

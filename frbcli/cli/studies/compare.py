@@ -72,7 +72,8 @@ def command(
     """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or set a
     measurement beside RUN.h5.
 
-    Without --cavitation, --theory and --coupling it is compared with all models whose films have no state and low cost.
+    Without --cavitation, --theory and --coupling CASE is compared with all models of low cost whose films keep
+    neither oil nor gas.
     """
     from frbcli.scene.planning.kinematic_plan import TESTS, with_model
     from frbcli.studies.compare import compare

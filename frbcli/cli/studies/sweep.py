@@ -74,9 +74,10 @@ class Machines:
               help="Values of a key, or LOW..HIGH UNIT / COUNT; several keys make a grid, KEY=V1,V2;KEY=V1,V2 change "
               "together. One value holds for all. Repeatable.")  # fmt: skip
 @click.option("--samples", type=int, default=64, show_default=True, metavar="N",
-              help="Machines, a power of 2, of keys that scatter: KEY=normal(MEAN, DEVIATION), uniform(LOW, HIGH) or "
-              "truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
-@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R", help="Of two of them. Repeatable.")
+              help="Number of machines, a power of 2, whose keys scatter: KEY=normal(MEAN, DEVIATION), "
+              "uniform(LOW, HIGH) or truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
+@click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R",
+              help="Correlation of two keys that scatter. Repeatable.")  # fmt: skip
 @click.option("--seed", type=int, default=0, show_default=True, help="Seed of the Sobol sequence of the machines.")
 @click.option("--below", type=SPEED_OPTION, metavar="SPEED",
               help="Speed below which the share of machines that whirl is given. [the highest of CASE]")  # fmt: skip

@@ -113,7 +113,8 @@ def step_from(equations: Equations, place: Place, length: float, guess: Array | 
 def halved_until(
     stepped: Callable[[float], Found | None], length: float, shortest: float
 ) -> tuple[Found | None, float]:
-    """What a step leads to, and its length, which is halved until it leads to something or is not above `shortest`."""
+    """The place that a step reaches, and the length of the step, which is halved until it reaches one or is not above
+    `shortest`."""
     found = stepped(length)
     while found is None and length > shortest:
         length *= 0.5

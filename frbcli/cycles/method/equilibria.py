@@ -158,7 +158,8 @@ def resting_curve(system: System, machine: Machine, slowest: float, fastest: flo
 
 
 def resting_along(course: SpeedCourse, near: Array, slowest: float, fastest: float) -> Resting:
-    """The same of a course; near: (c,) u near to the resting position at the fastest speed. Raises Unreachable."""
+    """Resting positions along a course of the speed; near: (c,) u near to the one at the fastest speed. Raises
+    Unreachable."""
     places = [first_place(course.equations, near, fastest / course.pace)]
     for place, _ in follow(course.equations, places[0], STRIDES):
         places.append(place)

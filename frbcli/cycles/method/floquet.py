@@ -47,7 +47,7 @@ class Multipliers:
 
     @property
     def relaxed(self) -> Multipliers:
-        """The same as told to a cycle close by, which tries intervals of double length first."""
+        """These multipliers for the search of those of a cycle near by, which tries double intervals first."""
         return replace(self, intervals=self.intervals // 2)
 
     @property

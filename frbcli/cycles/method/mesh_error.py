@@ -113,8 +113,8 @@ def _found_again(own: Follower, followers: Sequence[Follower], cycle: Cycle) -> 
 
 
 def _in_stages(seek: Seek, here: Equations, there: Equations, near: Place, machine: Machine) -> Place | None:
-    """What is sought on other films. Those that differ much, such as those of two theories, are changed into each other
-    in stages."""
+    """The sought place on other films. Films that differ much, such as those of two theories, are changed into each
+    other in stages."""
     for stages in (1, STAGES):
         found: Place | None = near
         for stage in range(1, stages + 1):

@@ -256,7 +256,8 @@ class Linearised:
 
 
 class _ByMean:
-    """The same with the films' derivatives replaced by their mean over b: harmonics of different k are decoupled."""
+    """Linearised with the derivatives of the films replaced by their mean over b, which decouples harmonics of
+    different k."""
 
     def __init__(self, balance: Linearised) -> None:
         from scipy.linalg import lu_factor

@@ -81,7 +81,7 @@ class AxialMotion:
         return load.over(speed) if isinstance(load, LoadAtSpeed) else load
 
     def _viscosity(self, side: float, t: float, omega: float) -> float:
-        """Of the oil on a side, in Pa s: with heat that at rest at this speed."""
+        """Viscosity of the oil on a side in Pa s, with heat the one of a collar that rests at this speed."""
         if self.collar.thermal is None:
             return self.collar.viscosity
         is_loaded = (side == TO_RIGHT) == (self.load(t) >= 0.0) or len(self._sides) == 1

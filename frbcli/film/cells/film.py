@@ -73,7 +73,7 @@ class VolumeSolution:
 
     @property
     def field(self) -> Array:
-        """What a steady film near by begins from: w, or the stages."""
+        """The start of the search for a steady film near by: w, or the stages."""
         return self.w if self.stages is None else self.stages
 
 

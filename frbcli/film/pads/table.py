@@ -91,7 +91,7 @@ def gap_table(pad: Pad, pads: int, thin: float, wide: float, mesh: tuple[int, in
 
 
 def _functions(mesh: PadMesh, pad: Pad, pads: int, gap: float) -> list[float]:
-    """What is interpolated, at a gap in m, from the film of unit viscosity and speed."""
+    """The tabulated numbers at a gap in m, from the film of unit viscosity and speed."""
     heights = gap + pad.depth(mesh.theta)
     film: PadFilm = ring_of_pads(pad_film(mesh, heights, PadOil(1.0, SOMMERFELD), 1.0), pads)
     size = pad.outer_radius**2

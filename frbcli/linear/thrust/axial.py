@@ -29,18 +29,19 @@ class AxialState:
 
     @property
     def eigenvalue(self) -> complex:
-        """Of the motion along the axis in 1/s: of a pair that with a positive imaginary part, else the slower one."""
+        """Eigenvalue of the axial motion in 1/s: of a pair the one with a positive imaginary part, else the slower."""
         roots = np.roots([self.mass, self.films.damping, self.films.stiffness])
         return complex(max(roots, key=lambda root: (root.imag, root.real)))
 
     @property
     def frequency(self) -> float:
-        """Of that motion in Hz, 0 where it does not oscillate."""
+        """Frequency of the axial motion in Hz, 0 if it does not oscillate."""
         return self.eigenvalue.imag / (2.0 * np.pi)
 
 
 def axial_state(case: Case, omega: float) -> AxialState | None:
-    """Of a case at a speed in rad/s; None without an axial load. Raises NotConverged if no film carries it."""
+    """The collar of a case at rest at a speed in rad/s; None without an axial load. Raises NotConverged if no film
+    carries it."""
     collar = collar_of(case)
     if collar is None:
         return None

@@ -1,4 +1,4 @@
-"""What a sheet of thrust bearings does not take, each with its reason."""
+"""Cases whose sheet of thrust bearings cannot be computed, each with its reason."""
 
 from __future__ import annotations
 

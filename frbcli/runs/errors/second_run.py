@@ -92,7 +92,7 @@ def _shared(event: Record) -> Record:
 
 
 def _least_amplitude(error: Record) -> float:
-    """What amplitudes are uncertain by at least: the error of the eccentricities before a whirl, without that of the
+    """Least uncertainty of amplitudes: the error of the eccentricities before a whirl, without that of the
     short-bearing theory, which both runs have."""
     own = error.get("eccentricity") if error.get("model_relative") is None else error.get("time_integration")
     return float(own or 0.0)

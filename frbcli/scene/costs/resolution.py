@@ -27,7 +27,7 @@ CHOICE = "resolution"
 
 
 def resolution_decisions(case: Case, plan: Plan) -> Iterator[Decision]:
-    """What the steps that are expected at the top speed resolve of each load and each input over time."""
+    """How well the steps that are expected at the top speed resolve each load and each input over time."""
     loads = [load for _, load in element_parts(case).loads]
     given = [load for load in loads if isinstance(load, Tabulated)]
     tables = [(load.name, load.times, load.factors(load.times, load.times)) for load in given]
@@ -62,7 +62,7 @@ def _of_table(name: str, times: Array, values: Array, step: float, shown: float)
 
 
 def _unseen(frequency: float, shown: float) -> str:
-    """What is to be said of a frequency that the samples of a run do not show."""
+    """A remark on a frequency that the samples of a run do not show."""
     if frequency <= shown:
         return ""
     return f", above the {shown:.3g} Hz that samples of output.step show"

@@ -82,7 +82,7 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
         problem = "is not modelled with films that tilt: its gap is the same along the axis."
         yield Fault("contact.model", "asperities", None, problem, f'Write contact.model = "spring". {without}')
     if case.heat is not None:
-        problem = "has temperatures of films with a gap that is even along the axis."
+        problem = "computes temperatures only of films whose gap is the same along the axis."
         yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
 
 

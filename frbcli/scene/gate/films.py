@@ -53,7 +53,7 @@ def limited_supply_faults(case: Case) -> Iterator[Fault]:
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
         least = max(oil.ambient_pressure, oil.cavitation_pressure)
         if not (form.by_cells and form.follows_supply) or tilts(case) or any(True for _ in misaligned(case)):
-            problem = "is given, which only films on cells without a tilt follow."
+            problem = "is given, and only films on cells without a tilt follow it."
             remedy = 'Write film.cavitation = "elrod" and no tilt; or leave it out.'
         elif not law.keeps_oil or law.carries_gas:
             problem = f"is given, and {law.name} does not conserve the oil, or has its gas to follow."

@@ -70,7 +70,7 @@ def kept_film_faults(case: Case) -> Iterator[Fault]:
     if form is not CELLS:
         problem = f"asks for the oil of cells, and the films are: {form}."
     elif coupling_of(case).in_turn:
-        problem = "asks for films at single steps, which a co-simulation does not take."
+        problem = "asks for the films of single steps, and a co-simulation does not have them."
     elif not all(law_named(name).keeps_oil for name in case.cavitations):
         problem = "asks for the oil of the films, and their model does not keep any."
     else:

@@ -81,8 +81,8 @@ class System:
 
     @property
     def length(self) -> float:
-        """What displacements count over that are in no film, m: the clearance of the first film, or without films a
-        length of the machine (reference_length.py)."""
+        """Length in m by which displacements outside of films are divided: the clearance of the first film, or without
+        films a length of the machine (reference_length.py)."""
         return self.clearances[0] if self.clearances else self.own_length
 
     def journals_of(self, q: Array) -> Array:
@@ -131,7 +131,7 @@ class System:
         return self.asperities is not None and self.ring_count > 0
 
     def motions(self, sample: Array) -> Iterator[tuple[Array, Array, float]]:
-        """Of each film: place and rate of its journal in its shell, see Films, and omega_J + omega_S in rad/s. sample:
+        """Place and rate of the journal of each film in its shell, see Films, and omega_J + omega_S in rad/s. sample:
         (2 n + 1 ...) q, v and the speed of the rotor in rad/s."""
         n = self.rotor.size
         q, v = sample[:n], sample[n : 2 * n]

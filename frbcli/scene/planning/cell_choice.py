@@ -46,7 +46,7 @@ class CellError:
     growth: float = 0.0
 
     def at(self, eccentricity: float) -> CellError:
-        """The same up to an eccentricity."""
+        """This error for a journal that goes up to an eccentricity."""
         return replace(self, around=self.around * float(gap_ratio(MEASURED_AT, eccentricity) ** self.growth))
 
     def of(self, cells: tuple[int, int]) -> float:

@@ -63,7 +63,8 @@ def scatter(found: Sweep, below_Hz: float | None = None) -> Scatter:
     speeds = np.array([whirl_speed(point) for point in found.points])
     known = ~np.isnan(speeds)
     if not known.any():
-        raise InputError("sweep", (Fault("--set", "", None, "no machine has a result.", "See the table's reasons."),))
+        remedy = "The table gives the reason for each machine."
+        raise InputError("sweep", (Fault("--set", "", None, "no machine has a result.", remedy),))
     ordered = np.sort(speeds[known])
     limit = max(abs(found.case.speed.start), abs(found.case.speed.end)) if below_Hz is None else below_Hz
     share = float(np.mean(ordered < limit))

@@ -119,7 +119,7 @@ class _Settled:
         self.rated = 1.0 / (1.0 + self.time * gas.carried.turnover)
 
     def state(self, w: Array, free: Array) -> CellState:
-        """Of cells with the free gas (m, k) as it is given."""
+        """State of cells with a given free gas (m, k)."""
         return self.film.cells(w, with_own_gas(free))
 
     def gap(self, motion: Motion) -> Array:
