@@ -93,14 +93,6 @@ class RunInputs:
         """Whether they change the films, beside the heat."""
         return self.machine is not None and bool(self.machine.limited or self.machine.pressures)
 
-    @property
-    def of_fillings(self) -> RunInputs:
-        """The inputs that change films while all else is constant: openings whose supplies give a flow at the most."""
-        machine = self.machine
-        if machine is None or not machine.limited:
-            return replace(self, machine=None)
-        return replace(self, machine=replace(machine, supplies=(), walls=(), pressures=()))
-
     def at_start(self, system: System) -> System:
         """The machine as it is at the start of a run."""
         shares = self.shares(np.zeros(1))
@@ -113,7 +105,7 @@ class RunInputs:
     def loop(self, system: System) -> Inputs | tuple[()]:
         """The inputs as the time loop takes them."""
         machine = self.machine
-        if machine is None:
+        if machine is None or not (machine.supplies or machine.walls or machine.pressures):
             return ()
         groups = machine.supplies, machine.walls, machine.pressures
         tables = [table for group in groups for _, table in group]
@@ -135,8 +127,7 @@ class RunInputs:
             machine.largest,
             np.ones(films),
             np.ones(films),
-            system.films.heat_ends() if machine.pressures or machine.limited else (),
-            bool(machine.limited),
+            system.films.heat_ends() if machine.pressures else (),
         )
 
     def units(self) -> dict[str, str]:

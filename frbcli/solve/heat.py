@@ -311,7 +311,8 @@ def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, referen
     scale = now[SCALE, f]
     film, made = films.films[f], ends.films[f]
     film.scales.cavitation, film.scales.ambient = made.scales.cavitation / scale, made.scales.ambient / scale
-    film.far.pressure, film.centrifugal = made.far.pressure / scale, made.centrifugal / scale
+    film.far.pressure, film.supply = made.far.pressure / scale, made.supply / scale
+    film.centrifugal = made.centrifugal / scale
     film.force_scale, film.roughness = made.force_scale * scale, made.roughness * reference / now[CLEARANCE, f]
     film.given = made.given * reference / now[CLEARANCE, f]
     film.line = made.line * reference / now[CLEARANCE, f]

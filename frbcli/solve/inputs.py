@@ -13,16 +13,11 @@ from __future__ import annotations
 
 from typing import Any, NamedTuple
 
-import numpy as np
 from numba.extending import overload
 
 from frbcli.compiled import Array, Indices, compiled
-from frbcli.film.cavitation.compiled import LAW_NUMBERS, call_cells
-from frbcli.film.cells.balance.balances import FILLING
-from frbcli.film.cells.balance.states import FRACTION, PRESSURE, STATES
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
-from frbcli.film.state import PASSED
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.heat import LumpedHeat, NoHeat, have_heat
 from frbcli.solve.stage.loads import row_at
@@ -36,8 +31,7 @@ class Inputs(NamedTuple):
     that has it, the film whose supply has this absolute pressure in Pa. ambient: Pa; least: share of a gauge pressure
     that counts as none; largest (F,): gauge pressures in
     Pa that the films were made with; shares (F,): of these now; scales (F,): by which the velocities of tabulated films
-    are multiplied now; ends: films on cells as they were made, see Films.heat_ends; limited: whether the supply of one
-    of them gives a flow at the most, with which the pressure of its openings changes.
+    are multiplied now; ends: films on cells as they were made, see Films.heat_ends.
     """
 
     first: Indices
@@ -52,13 +46,12 @@ class Inputs(NamedTuple):
     shares: Array
     scales: Array
     ends: Any
-    limited: bool
 
 
-def set_inputs(inputs: Any, films: Any, heat: Any, flows: Array, t: float) -> None:
-    """Films and heat <- the inputs at the time t in s; flows: of the state."""
+def set_inputs(inputs: Any, films: Any, heat: Any, t: float) -> None:
+    """Films and heat <- the inputs at the time t in s."""
     if isinstance(inputs, Inputs):
-        _set(inputs, films, heat, flows, t)
+        _set(inputs, films, heat, t)
 
 
 def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
@@ -67,10 +60,10 @@ def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
 
 
 @overload(set_inputs, inline="always")
-def _set_inputs(inputs, films, heat, flows, t):  # type: ignore[no-untyped-def]
+def _set_inputs(inputs, films, heat, t):  # type: ignore[no-untyped-def]
     if getattr(inputs, "instance_class", None) is not Inputs:
-        return lambda inputs, films, heat, flows, t: None
-    return lambda inputs, films, heat, flows, t: _set(inputs, films, heat, flows, t)
+        return lambda inputs, films, heat, t: None
+    return lambda inputs, films, heat, t: _set(inputs, films, heat, t)
 
 
 @compiled()
@@ -103,26 +96,27 @@ def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _set(inputs: Inputs, films: Any, heat: Any, flows: Array, t: float) -> None:
+def _set(inputs: Inputs, films: Any, heat: Any, t: float) -> None:
     give_temperatures(inputs, heat, t)
     now = heat.now
     for i in range(inputs.pressures.shape[0]):
         f = inputs.pressures[i, 1]
         gauge = value_at(inputs, inputs.pressures[i, 0], t) - inputs.ambient
         inputs.shares[f] = max(gauge / inputs.largest[f], inputs.least)
-    for f in range(inputs.shares.shape[0] if inputs.pressures.shape[0] > 0 or inputs.limited else 0):
+    for f in range(inputs.shares.shape[0] if inputs.pressures.shape[0] > 0 else 0):
         share, scale = inputs.shares[f], 1.0
         if now.shape[0] > 0:
             scale = now[SCALE, f]
             now[SHARE_OF_SUPPLY, f] = share
         inputs.scales[f] = scale / share
-        supplied(films, inputs.ends, f, filled(films, inputs.ends, flows, f, share), scale)
+        supplied(films, inputs.ends, f, share, scale)
 
 
 @compiled()
 def _supply_cells(films: VolumeFilms, ends: CellEnds, f: int, share: float, scale: float) -> None:
     """supplied of films on cells."""
     films.films[f].far.pressure = ends.films[f].far.pressure * share / scale
+    films.films[f].supply = ends.films[f].supply * share / scale
     for i in range(films.cells.shape[2]):
         for j in range(films.cells.shape[3]):
             films.cells[f, GIVEN_PRESSURE, i, j] = ends.given[f, i, j] * share / scale
@@ -131,38 +125,6 @@ def _supply_cells(films: VolumeFilms, ends: CellEnds, f: int, share: float, scal
             films.channels[k].groove_pressure = ends.groove_pressure[k] * share
 
 
-def filled(films: Any, ends: Any, flows: Array, f: int, share: float) -> float:
-    """The share of the gauge pressures that the openings of film f have, whose supply has `share` of them: less where
-    it gives a flow at the most. Films on cells and flows <- their oil fraction, and their filling within its bounds."""
-    raise NotImplementedError
-
-
-@compiled(makes_arrays=True)
-def _fill_cells(films: VolumeFilms, ends: CellEnds, flows: Array, f: int, share: float) -> float:
-    """filled of films on cells, as feed_at of feed.py."""
-    film, made = films.films[f], ends.films[f]
-    if film.given == 0.0:
-        return share
-    filling = min(max(flows[PASSED, f, FILLING], film.lowest), 1.0)
-    flows[PASSED, f, FILLING], film.fraction = filling, 1.0
-    supply, cavity = ends.supplies[f], made.scales.cavitation
-    if filling > 0.0:
-        return float(share if filling == 1.0 else (cavity + filling * (share * supply - cavity)) / supply)
-    unknown, state, law = np.empty(1), np.zeros(STATES), np.zeros(LAW_NUMBERS)
-    unknown[0] = filling
-    for p in range(made.parameters.shape[0]):
-        law[p] = made.parameters[p]
-    call_cells(made.cells_at, 1, law, made.scales, unknown, state)
-    film.fraction = min(max(state[FRACTION], 0.0), 1.0)
-    return float(state[PRESSURE] / supply)
-
-
-by_kind(
-    filled,
-    inline=True,
-    others=lambda films, ends, flows, f, share: share,
-    cells=lambda films, ends, flows, f, share: _fill_cells(films, ends, flows, f, share),
-)
 by_kind(
     supplied,
     inline=True,

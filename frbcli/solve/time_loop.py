@@ -196,7 +196,7 @@ def _advance(
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
-        set_inputs(rotor.inputs, films, heat, flows, t + 0.5 * step)
+        set_inputs(rotor.inputs, films, heat, t + 0.5 * step)
         begin_past(past_now, own.past)
         begin_stages(v, a, stage_v, stage_a)
         g, solved, speed = gamma * step, True, 0.0

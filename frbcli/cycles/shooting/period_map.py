@@ -32,7 +32,6 @@ from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.inputs import Inputs
 from frbcli.solve.state import (
     ERROR_SPANS,
     FINISHED,
@@ -91,8 +90,7 @@ class PeriodMap:
     tilts. films: as the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned:
     (F, 1 + rings) shares in the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at
     the start, which say how the cells lie there; held: (n, m, k) which content is part of the state, and its units (n,
-    1, 1), see Wet; limited: (fields,) the films whose filling is; inputs: with which the loop follows that, ()
-    without."""
+    1, 1), see Wet; limited: (fields,) the films whose filling is."""
 
     system: System
     films: Any
@@ -106,7 +104,6 @@ class PeriodMap:
     held: NDArray[np.bool_]
     units: Array
     limited: NDArray[np.bool_]
-    inputs: Inputs | tuple[()]
 
     @property
     def slow(self) -> int:
@@ -191,7 +188,7 @@ class PeriodMap:
 
     def passage(self, wet: Wet, time: float, omega: float, steps: int, samples: int = SAMPLES) -> Passage:
         """After a time in s at a speed in rad/s. Raises Unreachable where the run ends before."""
-        rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]), self.inputs)
+        rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]))
         rotor = rotor._replace(
             unbalance_cos=np.zeros_like(rotor.unbalance_cos),
             unbalance_sin=np.zeros_like(rotor.unbalance_sin),
@@ -271,8 +268,8 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
-    inputs, own = RunInputs.of(case, system).of_fillings, system.films
-    films = own.changeable().loop if inputs.change_films else own.loop
+    own = system.films
+    films = own.changeable().loop if RunInputs.of(case, system).limited else own.loop
     tableau, contents = METHODS[plan.method].tableau, own.gas_contents
     held = (films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None]
     return PeriodMap(
@@ -288,7 +285,6 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
         held=np.concatenate([held, held[: len(contents)] & (contents > 0.0)[:, None, None]]),
         units=np.concatenate([np.ones(len(held)), np.where(contents > 0.0, contents, 1.0)])[:, None, None],
         limited=films.films["given"] > 0.0,
-        inputs=inputs.loop(system),
     )
 
 

@@ -13,7 +13,7 @@ class CellEnds(NamedTuple):
     """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
     the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
     (channels,) over the viscosity; groove_pressure (channels,) Pa; exponents (F, p): by which the parameters of the
-    laws follow the scale of the pressures; supplies (F,): the largest gauge pressures in their openings, scaled."""
+    laws follow the scale of the pressures."""
 
     far_open: Indices
     units: Array
@@ -23,4 +23,3 @@ class CellEnds(NamedTuple):
     resistance: Array
     exponents: Array
     groove_pressure: Array
-    supplies: Array

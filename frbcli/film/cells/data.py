@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.ends import end_slopes
-from frbcli.film.cells.balance.feed import supply_line
+from frbcli.film.cells.balance.feed import supply_line, supply_pressure
 from frbcli.film.cells.balance.plain import NO_DISTANCE
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
@@ -43,8 +43,8 @@ END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
 # gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
 # of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces that it flows
 # between, and shear: see Section; parameters: of its law, of a centred journal at 1 rad/s.
-# Its openings hold the oil fraction `fraction`; of a supply that gives a flow at the most: given, line and lowest of
-# supply_line.
+# Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply` is the largest; of
+# a supply that gives a flow at the most: given, line and lowest of supply_line.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),
@@ -65,6 +65,8 @@ FILM = record(
     ("roughness", "f8"),
     ("shear", "f8"),
     ("fraction", "f8"),
+    ("share", "f8"),
+    ("supply", "f8"),
     ("given", "f8"),
     ("line", "f8"),
     ("lowest", "f8"),
@@ -166,7 +168,8 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
         own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
     own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
     own.parameters[:] = given_parameters(law)
-    own.fraction, (own.given, own.line, own.lowest) = 1.0, supply_line(film)
+    own.fraction, own.share, own.supply = 1.0, 1.0, supply_pressure(section) / section.pressure_scale
+    own.given, own.line, own.lowest = supply_line(film)
 
 
 def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:

@@ -32,7 +32,7 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
-from frbcli.film.cells.data import GIVEN_PRESSURE, volume_films
+from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
@@ -119,11 +119,8 @@ class FilmSolver:
 
     def fill(self, filling: float) -> None:
         """Fill the openings for what is solved from here on, see feed.py."""
-        own, _, _, cells = self._parts
-        share, own.fraction = feed_at(self.film, filling)
-        far = self.film.section.far_pressure / self.film.section.pressure_scale
-        own.far.pressure = share * far if self.film.section.far == "groove" else 0.0
-        cells[GIVEN_PRESSURE] = share * self.film.grid.fixed_pressure
+        own, _, _, _ = self._parts
+        own.share, own.fraction = feed_at(self.film, filling)
 
     def _steady(self, motion: Motion, start: Array | None, upwind: bool) -> VolumeSolution:
         grid, law = self.film.grid, self.film.law

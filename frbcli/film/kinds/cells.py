@@ -12,7 +12,7 @@ import numpy as np
 
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
-from frbcli.film.cells.balance.feed import ALL, supply_line, supply_pressure
+from frbcli.film.cells.balance.feed import ALL, supply_line
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
@@ -229,7 +229,6 @@ class CellFilms(Films):
             resistance=self.data.channels["resistance"] / self.viscosity,
             exponents=self.exponents,
             groove_pressure=self.data.channels["groove_pressure"].copy(),
-            supplies=np.array([supply_pressure(film.section) / film.section.pressure_scale for film in self.own]),
         )
 
     @property

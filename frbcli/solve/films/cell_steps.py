@@ -12,12 +12,13 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balance.balances import FLOWS, SIDES
+from frbcli.film.cells.balance.balances import FILLING, FLOWS, SIDES
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURNOVER
 from frbcli.film.cells.data import SHEARED, Records, VolumeFilms
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.gas.carry import NONE, PATHS
 from frbcli.film.state import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W
+from frbcli.solve.films.fillings import begin_filling, within
 from frbcli.solve.films.grid import GRID
 from frbcli.solve.stage.equations import lagrange
 
@@ -139,6 +140,8 @@ def begin_cells(films, work, wet, flows, weights, s, step, g, ahead, lag):  # ty
                 for p in range(s):
                     total += weights[s, p] * work.stage_oil[p, f, i, j]
                 work.past[f, i, j] = (wet[OIL, f, i, j] + step * total) / g
+        if films.films[f].given > 0.0:
+            begin_filling(films.films[f], work.grids[f], f, flows, work.stage_flows, weights, s, step, g)
         guess_unknowns(work.w[f], work.first[f], wet[W, f], wet[W_BEFORE, f], weights, s, ahead)
         if films.films[f].carries_gas:
             _begin_gas(work, wet, weights, s, step, g, f)
@@ -195,6 +198,8 @@ def accept_cells(films, work, wet, flows, weights, step):  # type: ignore[no-unt
                 wet[RATE, f, i, j] = work.stage_oil[last, f, i, j]
         for flow in range(FLOWS):
             flows[NOW, f, flow] = work.stage_flows[last, f, flow]
+        if films.films[f].given > 0.0:
+            flows[PASSED, f, FILLING] = within(films.films[f], flows[PASSED, f, FILLING])
         if films.films[f].carries_gas:
             _accept_gas(work, wet, weights, step, f)
 

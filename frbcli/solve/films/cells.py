@@ -43,6 +43,7 @@ from frbcli.film.cells.film import ABOVE_KINK
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.solve.films.cell_steps import oil_fraction
+from frbcli.solve.films.fillings import follow_filling
 from frbcli.solve.stage.equations import FilmMotion
 
 # Layers of fields: the elimination takes the first ones; then two of them keep what the journal's velocities did to the
@@ -102,20 +103,25 @@ def cell_response(
     if iteration == 0:  # what the law follows stays as it is at the guess: its derivatives are left out
         follow_law(film, d_x, d_y, v_x, v_y, omega, grid.law)
     drop, rate = film.centrifugal * spin * spin, 1.0 / g if remembers else 0.0
-    cell_states(film, cells, grid.law, drop, w, states)
-    if iteration == 0:
-        hold(states, omega - 2.0 * spin)
-    slots = fields.shape[2] - fields.shape[1] - SIDES
-    find_resting(film, cells, states, omega == 2.0 * spin and slots == 0, fields)
-    against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
-    stray = stray_gas(film, ring, width, cells, states, against, work, f, drop, w) if film.carries_gas else 0.0
-    balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
-    if slots > 0:
-        exchange(cells, states, work.channel[f], stencil, fields, flows)
-    mean, largest = imbalance(cells, fields)
     pace = 0.5 * abs(omega - 2.0 * spin) + math.sqrt(v_f * v_f + v_g * v_g) + SLOWEST
-    left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
-    left = max(left, stray / film.settled)
+    slots, left = fields.shape[2] - fields.shape[1] - SIDES, 0.0
+    against = GridMotion(x, y, omega - 2.0 * spin, v_f, v_g, spin, g, rate)
+    for weighing in range(2):
+        cell_states(film, cells, grid.law, drop, w, states)
+        if iteration == 0:
+            hold(states, omega - 2.0 * spin)
+        find_resting(film, cells, states, omega == 2.0 * spin and slots == 0, fields)
+        stray = stray_gas(film, ring, width, cells, states, against, work, f, drop, w) if film.carries_gas else 0.0
+        balances(film, ring, width, cells, states, against, past, stencil, fields, flows)
+        if slots > 0:
+            exchange(cells, states, work.channel[f], stencil, fields, flows)
+        mean, largest = imbalance(cells, fields)
+        left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
+        left = max(left, stray / film.settled)
+        if weighing == 1 or left >= 1.0 or film.given == 0.0:
+            break
+        if not follow_filling(film, grid, flows, g, film.settled * pace):
+            break
     balanced = left < 1.0
     if balanced and remembers:
         store_stage(film, ring, cells, work, f, g, flows)
@@ -127,8 +133,10 @@ def cell_response(
                 fields[i, j, k + BY_X], fields[i, j, k + BY_Y] = fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y]
         f_x, f_y, _, _, _, _ = film_loads(film, ring, cells, states, fields)
     else:
-        # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas.
+        # Films that share oil have to balance as they are: what passes between them is known for that alone. So is gas,
+        # and what openings take that give way.
         alone = iteration < PLAIN and slots == 0 and not film.carries_gas
+        alone = alone and (film.given == 0.0 or grid.filling == 1.0)
         soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
         grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
         if iteration >= PLAIN:  # kinks make plain steps go to and fro: w is kept back, less and less

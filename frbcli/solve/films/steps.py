@@ -90,8 +90,8 @@ def begin_stage(
     ahead: float,
     lag: float,
 ) -> None:
-    """Prepare the films for stage s: past, and a guess of w. ahead, lag: how far the stage and
-    the one before it lie from the start of the step, over the step before and over this one."""
+    """Prepare the films for stage s: past, and guesses of w and of the filling of openings. ahead, lag: how far the
+    stage and the one before it lie from the start of the step, over the step before and over this one."""
     raise NotImplementedError
 
 

@@ -335,7 +335,7 @@ def _flow_through_ends(
         kind, j, b, rise, bend = section_end(film, k, far)
         if kind == CLOSED:
             continue
-        groove = film.far.pressure if far else 0.0
+        groove = film.share * film.far.pressure if far else 0.0
         if kind == FREE:
             falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)
         for i in range(m):

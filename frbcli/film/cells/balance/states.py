@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cavitation.compiled import ECCENTRICITY, MOTION, SPEED, WHIRL, call_cells, call_follow
+from frbcli.film.cavitation.compiled import ECCENTRICITY, LAW_NUMBERS, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 
 # Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
@@ -65,12 +65,30 @@ def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array
         for j in range(k):
             if cells[UNKNOWN, i, j] == 0.0:
                 states[PRESSURE, i, j], states[FRACTION, i, j], states[SOURCE, i, j] = (
-                    cells[GIVEN_PRESSURE, i, j] - drop,
+                    film.share * cells[GIVEN_PRESSURE, i, j] - drop,
                     film.fraction,
                     0.0,
                 )
                 for layer in range(PRESSURE_SLOPE, CARRIED_GAS):
                     states[layer, i, j] = 0.0
+
+
+@compiled(makes_arrays=True)
+def fill_openings(film: np.record, filling: float) -> None:
+    """film <- the share of the given pressures and the oil fraction of its openings at a filling: feed_at of feed.py,
+    which is kept within its bounds."""
+    held, film.share, film.fraction = min(max(filling, film.lowest), 1.0), 1.0, 1.0
+    if held > 0.0:
+        if held < 1.0:
+            cavity = film.scales.cavitation
+            film.share = (cavity + held * (film.supply - cavity)) / film.supply
+        return
+    unknown, state, law = np.empty(1), np.zeros(STATES), np.zeros(LAW_NUMBERS)
+    unknown[0] = held
+    for p in range(film.parameters.shape[0]):
+        law[p] = film.parameters[p]
+    call_cells(film.cells_at, 1, law, film.scales, unknown, state)
+    film.share, film.fraction = state[PRESSURE] / film.supply, min(max(state[FRACTION], 0.0), 1.0)
 
 
 @compiled()

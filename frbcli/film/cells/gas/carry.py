@@ -170,7 +170,7 @@ def _through_ends(
                 h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]
                 cube, _ = flowing_cube(h, film.roughness)
                 conductance = cube * film.aspect * ring[LENGTH, i] * rise
-                groove = film.far.pressure if far else 0.0
+                groove = film.share * film.far.pressure if far else 0.0
                 flow, _, _, _ = end_flow(
                     kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness,
                     falls[i], ring[BATHED, i],

@@ -319,7 +319,7 @@ def _flow_through_ends(
         kind, j, b, slope, bend = section_end(film, k, far)
         if kind == CLOSED:
             continue
-        groove, z = film.far.pressure if far else 0.0, places[EDGES, k if far else 0]
+        groove, z = film.share * film.far.pressure if far else 0.0, places[EDGES, k if far else 0]
         if kind == FREE:
             d_x, d_y = d[0] + z * (d[2] - d[0]), d[1] + z * (d[3] - d[1])
             falls_to_air(film, ring, states[PRESSURE], d_x, d_y, far, falls)

@@ -1,0 +1,64 @@
+"""The filling of openings whose supply gives a flow at the most, see feed.py, in one stage of the time loop. Compiled.
+
+It is a state as the oil of the cells is: filling' = (given - taken) / line, so that a stage asks for filling = past +
+g filling'. What a film takes is known once its cells balance. A step changes the filling far less than the line could
+be emptied in that time: what the equation leaves then becomes a small correction, by the secant of two of them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from frbcli.compiled import Array, compiled
+from frbcli.film.cells.balance.balances import FILLING
+from frbcli.film.cells.balance.feed import RESPONSE
+from frbcli.film.cells.balance.states import fill_openings
+from frbcli.film.state import PASSED
+from frbcli.solve.stage.equations import lagrange
+
+PLAIN = 1.0  # by how much less a filling is off after it has risen by 1, at the least: the film takes the more
+
+
+@compiled(inline=True)
+def within(film: np.record, filling: float) -> float:
+    """A filling within its bounds: what a full line cannot take up stays in the supply."""
+    return float(min(max(filling, film.lowest), 1.0))
+
+
+@compiled()
+def begin_filling(
+    film: np.record, grid: np.record, f: int, flows: Array, stage_flows: Array, weights: Array, s: int, step: float,
+    g: float,
+) -> None:  # fmt: skip
+    """The openings of film f at stage s <- a guess of their filling, by the rates of the stages before."""
+    total = at = at_first = at_last = 0.0
+    for p in range(weights.shape[1]):
+        at, at_first, at_last = at + weights[s, p], at_first + weights[1, p], at_last + weights[s - 1, p]
+    for p in range(s):
+        total += weights[s, p] * stage_flows[p, f, FILLING]
+    start, first, last = stage_flows[0, f, FILLING], stage_flows[1, f, FILLING], stage_flows[s - 1, f, FILLING]
+    if s == 1:
+        rate, grid.per_filling = start, PLAIN
+    elif s == 2:
+        rate = start + (first - start) * at / at_first
+    else:
+        a, b, c = lagrange(0.0, at_first, at_last, at)
+        rate = a * start + b * first + c * last
+    grid.filling_past = flows[PASSED, f, FILLING] + step * total
+    grid.filling, grid.filling_off = within(film, grid.filling_past + g * rate), 0.0
+    fill_openings(film, grid.filling)
+
+
+@compiled()
+def follow_filling(film: np.record, grid: np.record, flows: Array, g: float, allowed: float) -> bool:
+    """Correct the filling of openings that are off their equation by more than a flow in 1/s; flows (FLOWS,) of cells
+    that balance. Returns whether the openings have changed."""
+    off = within(film, grid.filling_past + g * flows[FILLING]) - grid.filling
+    if abs(off) * film.line <= RESPONSE * allowed:
+        return False
+    if grid.filling_off != 0.0:
+        grid.per_filling = max((grid.filling_off - off) / (grid.filling - grid.filling_before), PLAIN)
+    grid.filling_off, grid.filling_before = off, grid.filling
+    grid.filling = within(film, grid.filling + off / grid.per_filling)
+    fill_openings(film, grid.filling)
+    return True
