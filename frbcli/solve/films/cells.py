@@ -85,6 +85,27 @@ def store_stage(film: np.record, ring: Array, cells: Array, work: Any, f: int, g
         store_gas_rates(film, cells, states, work.gas_paths[f], work.stage_gas[s, f], flows)
 
 
+@compiled(inline=True)
+def _turned_back(
+    cosine: float, sine: float, f_x: float, f_y: float, slopes: Array
+) -> tuple[float, float, float, float, float, float, float, float, float, float]:
+    """The response of a film in whose grid's directions a force and its slopes (4,), B, are: with Q^T B Q."""
+    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
+    a, b, p, q = cosine * xx - sine * yx, cosine * xy - sine * yy, sine * xx + cosine * yx, sine * xy + cosine * yy
+    return (
+        cosine * f_x - sine * f_y,
+        sine * f_x + cosine * f_y,
+        0.0,
+        0.0,
+        0.0,
+        0.0,
+        a * cosine - b * sine,
+        a * sine + b * cosine,
+        p * cosine - q * sine,
+        p * sine + q * cosine,
+    )
+
+
 @compiled()
 def cell_response(
     films: VolumeFilms, work: Any, f: int, motion: FilmMotion, g: float, s: int, iteration: int
@@ -148,21 +169,7 @@ def cell_response(
         for i in range(m):
             for j in range(0 if rests(states, i) else k):
                 fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
-    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
-    # back from the grid's directions: Q^T B Q
-    a, b, p, q = cosine * xx - sine * yx, cosine * xy - sine * yy, sine * xx + cosine * yx, sine * xy + cosine * yy
-    return (
-        cosine * f_x - sine * f_y,
-        sine * f_x + cosine * f_y,
-        0.0,
-        0.0,
-        0.0,
-        0.0,
-        a * cosine - b * sine,
-        a * sine + b * cosine,
-        p * cosine - q * sine,
-        p * sine + q * cosine,
-    )
+    return _turned_back(cosine, sine, f_x, f_y, slopes)
 
 
 @compiled(inline=True)
