@@ -51,6 +51,7 @@ _COMMON: dict[str, dict[str, float]] = {
     TEMPERATURE_DIFFERENCE: {"K": 1.0},
 }
 _CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
+_COLD = 100.0  # K, below which nobody writes degC
 
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
 LONGEST_UNIT = 100  # characters; longer ones are not searched
@@ -118,7 +119,9 @@ def quantity(given: object, unit: str, example: str = "") -> float:
 
 
 def display(value: float, unit: str) -> str:
-    """An SI value as engineers write it: display(35e-6, "m") is "35 um"."""
+    """An SI value as engineers write it: display(35e-6, "m") is "35 um", display(343.15, "K") is "70 degC"."""
+    if unit == "K" and value >= _COLD:
+        return f"{value - _CELSIUS['degC']:.6g} degC"
     choices = _DISPLAY.get(unit, ((unit, 1.0, 0.0),))
     fitting = [(name, one) for name, one, from_ in choices if abs(value) * (1 + 1e-9) >= from_]
     name, one = fitting[-1] if value else next((each for each in choices if each[1] == 1.0), choices[-1])[:2]

@@ -158,6 +158,8 @@ def test_a_value_and_its_bound_never_print_alike(kind: Quantity, given: float, p
         (math.pi / 12, ANGLE, "15 deg"),
         (-0.25, NUMBER, "-0.25"),
         (0.0, "m", "0 m"),
+        (343.15, "K", "70 degC"),
+        (0.5, "K", "0.5 K"),
         (9.81, "m/s^2", "9.81 m/s^2"),
     ],
 )

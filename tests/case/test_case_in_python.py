@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import copy
 import pickle
+from inspect import isabstract
 from pathlib import Path
 from typing import Any
 
@@ -152,7 +153,7 @@ def records() -> list[type[Model]]:
     return found
 
 
-@pytest.mark.parametrize("record", records(), ids=lambda record: record.__name__)
+@pytest.mark.parametrize("record", [one for one in records() if not isabstract(one)], ids=lambda one: one.__name__)
 def test_no_record_is_changed_in_another_way(record: type[Model]) -> None:
     some = record.__new__(record)
     name = next(iter(record.model_fields), "anything")

@@ -138,5 +138,5 @@ def test_many_speeds_without_a_resting_position_are_told_in_short(capsys: pytest
     slow = ["--set", "film.theory=short", "--set", "speed.to=1e-8 Hz"]
     assert frb(["stability", "jeffcott", "--no-picture", *slow]) == 3
     said = "".join(capsys.readouterr())
-    assert "No resting position at 60 of 60 speeds" in said
+    assert "No modes at 60 of 60 speeds" in said
     assert said.count("Ask for a higher speed") == 1

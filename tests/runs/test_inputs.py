@@ -180,7 +180,7 @@ def test_an_input_is_a_table_of_the_case(tmp_path: Path) -> None:
     assert warm_machine(case, 40.0).films[0].temperature == warm_machine(warmest, 40.0).films[0].temperature
     decisions = make_plan(case.with_settings("speed.duration=1 s")).decisions
     decision = next(each for each in decisions if each.choice == "input")
-    assert decision.value == "thermal.supply_temperature: 293.15 K to 338.15 K"
+    assert decision.value == "thermal.supply_temperature: 20 degC to 65 degC"
     assert "3 rows of cold.csv" in decision.reason
 
 

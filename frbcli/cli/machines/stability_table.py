@@ -22,11 +22,11 @@ if TYPE_CHECKING:
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 MODES_TOLD = 2  # in the one line of a single film
-NONE = "none"  # no resting position
+NONE = "none"  # no resting position, or no coefficients there
 
 
 def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None:
-    """The table, and the speeds without a resting position. every_speed: show all speeds."""
+    """The table, and the speeds without modes, with the reason at the first of them. every_speed: show all speeds."""
     several = max((len(point.films) for point in found.points), default=0) > 1
     films = max(1, *(len(point.films) for point in found.points))
     most = min(MOST_SPEEDS, max(1, MOST_LINES // films))
@@ -49,9 +49,9 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
     if len(missing) > 1:
         speeds = [point.speed_Hz for point in missing]
         span = f"from {min(speeds):.4g} to {max(speeds):.4g} Hz"
-        terminal.result(f"No resting position at {len(missing)} of {len(points)} speeds {span}. The first of them:")
+        terminal.result(f"No modes at {len(missing)} of {len(points)} speeds {span}. The first of them:")
     for point in missing[:1]:
-        terminal.result(point.problem)
+        terminal.sentence(point.problem)
 
 
 def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
