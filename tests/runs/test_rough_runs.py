@@ -216,12 +216,11 @@ def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Pat
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize(("speed", "free"), [(1.0, 2e-4), (4.0, 0.05)])
-def test_a_ring_that_friction_holds_or_brakes_rests_as_at_the_end_of_a_run(
-    speed: float, free: float, tmp_path: Path
-) -> None:
-    """At 1 Hz it sticks to its shell, at 4 Hz it is dragged around on it: the ring of the run, which is light, follows
-    its torques within milliseconds, and the journals would sink or rise."""
+@pytest.mark.parametrize("speed", [1.0, 4.0])
+def test_a_ring_that_friction_holds_rests_as_in_a_run(speed: float, tmp_path: Path) -> None:
+    """It sticks to its shell and creeps there, as Coulomb's law near rest has it. With it creep its feed holes, by
+    2e-4 rad in the run: the rest, which has them at its angle 0, is that of the beginning to 1e-6, and of the end to
+    what so small an angle changes."""
     course = (f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=0.2 s")
     case = load_case("floating-ring", [*ROUGH, *STARTS, "film.cavitation=half-sommerfeld", *course])
     system = make_system(case, make_plan(case))
@@ -231,12 +230,12 @@ def test_a_ring_that_friction_holds_or_brakes_rests_as_at_the_end_of_a_run(
     assert run["asperity_share_outer"][-1] > 0.0
     for name, expected in zip(("inner", "outer"), eccentricities, strict=True):
         assert run[f"eccentricity_{name}"][-1] == pytest.approx(expected, abs=2e-5)
-    assert run["ring_speed_Hz"][-1] == pytest.approx(
-        rest.ring_speeds[0] / (2.0 * np.pi), rel=2e-3, abs=2e-6 * speed
-    )
+    ring = run["ring_speed_Hz"] / (rest.ring_speeds[0] / (2.0 * np.pi)) - 1.0
+    assert np.abs(ring[run["time_s"] < 0.02]).max() < 1e-6
+    assert np.abs(ring).max() < 1e-4
     films = resting_position(replace(system, asperities=None), 60.0 * np.pi)
     assert rest.ring_speeds[0] / speed < films.ring_speeds[0] / 30.0
-    assert rest.ring_speeds[0] < 2.0 * np.pi * speed * free
+    assert rest.ring_speeds[0] < 2.0 * np.pi * speed * 2e-4
 
 
 def test_a_ring_whose_summits_do_not_touch_rests_as_between_smooth_surfaces() -> None:

@@ -28,10 +28,12 @@ from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.film.section_faults import is_unfed
 from frbcli.film.state import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
+NARROWEST = 1e-3  # over the clearance: of the gap in which oil is sheared
 AROUND = 360  # angles at which the gap of lobes is looked at
 
 
@@ -107,6 +109,17 @@ class CellFilms(Films):
     def sheared(self) -> Array:
         """See Films.sheared."""
         return np.asarray(self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
+
+    def harmonic_gaps(self, places: Array) -> Array:
+        """See Films.harmonic_gaps: over the cells in which oil is sheared, with the openings where they stand, as the
+        time loop has it. Narrow gaps lie between openings, or in them, and rough surfaces shear the oil otherwise."""
+        h = np.maximum(self.gaps(places / np.array(self.clearances)[:, None])[:, :, 0], NARROWEST)
+        areas = self.data.cells[:, SHEARED].sum(axis=2)
+        sheared = areas / h
+        for i, film in enumerate(self.data.films):
+            if film.roughness > 0.0:
+                sheared[i] *= [stress_factor(float(each), float(film.roughness)) for each in h[i]]
+        return np.asarray(areas.sum(axis=1) / sheared.sum(axis=1))
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         """See Films.force."""
