@@ -1,6 +1,7 @@
 """The machine linearised at rest: its matrices on films of eight coefficients each, and its state matrix.
 
-A ring with a pin leans on it, so that small motions see a spring and a damper, without play.
+A ring with a pin leans on it, so that small motions see a spring and a damper, without play. A ring between rough
+surfaces turns or creeps at rest, and its speed follows the motion: friction falls steeply with it where it sticks.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 
 from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.coefficients import FilmsAtRest
-from frbcli.equilibrium.ring_speed import SUM, by_total, ring_torques, torque_by_rates
+from frbcli.equilibrium.ring_speed import SUM, by_total, ring_torques, rubbed_rings, torque_by_rates
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.machine.system import System
 
@@ -20,26 +21,35 @@ Array = NDArray[np.float64]
 
 
 def rotor_at_rest(system: System, omega: float, ring_speeds: Array, at_rest: FilmsAtRest) -> LinearRotor:
-    """The machine at omega rad/s without its films. Its rings turn with ring_speeds (rings,) in rad/s, but those with a
-    pin: their angles stay, on the spring and the damper of the pin, and see the torques of the films."""
-    rotor = without_spins(system.rotor, ring_speeds, system.pinned)
-    rings = np.flatnonzero(system.pinned)
+    """The machine at omega rad/s without its films. Its rings turn with ring_speeds (rings,) in rad/s, but for two
+    kinds whose angles are degrees of freedom and see the torques of their films: those with a pin stay, on its spring
+    and its damper, and those between rough surfaces turn as friction has it."""
+    follow = np.full(system.ring_count, system.rough_rings) | system.pinned
+    rotor = without_spins(system.rotor, ring_speeds, follow)
+    rings = np.flatnonzero(follow)
     if not len(rings):
         return rotor
-    places, films = at_rest.position.journals, at_rest.forces
-    _, by_speeds, by_places = ring_torques(system, np.append(omega, ring_speeds), places, films)
+    places, bodies = at_rest.position.journals, np.append(omega, at_rest.position.ring_speeds)
+    rubbed = rubbed_rings(system, bodies, places, at_rest.forces)
+    _, by_speeds, by_places = ring_torques(system, bodies, places, rubbed.films)
+    by_speeds, by_places = by_speeds + rubbed.torques_by_speed, by_places + rubbed.torques
+    by_rates = torque_by_rates(system, places, rubbed.films) + rubbed.torques_by_rate
     journals = rotor.journals.reshape(-1, rotor.size)
     angles = np.arange(rotor.size - len(rings), rotor.size)
     stiffness, damping = rotor.stiffness.copy(), rotor.damping.copy()
     stiffness[angles] -= by_places[rings] @ journals
-    damping[angles] -= torque_by_rates(system, places, films)[rings] @ journals
-    stiffness[angles, angles] += system.pins[rings, STIFFNESS]
-    damping[angles, angles] += system.pins[rings, DAMPING]
+    damping[angles] -= by_rates[rings] @ journals
     damping[np.ix_(angles, angles)] -= by_speeds[np.ix_(rings, rings)]
-    for i, (many, force) in enumerate(zip(rotor.multiplicity, films, strict=True)):
+    held = np.flatnonzero(system.pinned[rings])
+    if len(held):
+        pins = system.pins[rings[held]]
+        stiffness[angles[held], angles[held]] += pins[:, STIFFNESS]
+        damping[angles[held], angles[held]] += pins[:, DAMPING]
+    for i, (many, force) in enumerate(zip(rotor.multiplicity, rubbed.films, strict=True)):
         turned = np.outer(by_total(force, places[i]), system.turning[i, SUM, 1 + rings])
-        damping[:, angles] -= many * rotor.journals[i].T @ turned
-    return replace(rotor, stiffness=stiffness, damping=damping)
+        damping[:, angles] -= many * rotor.journals[i].T @ (turned + rubbed.forces_by_speed[i][:, rings])
+    turning = tuple(angles[~system.pinned[rings]].tolist())
+    return replace(rotor, stiffness=stiffness, damping=damping, turning=turning)
 
 
 def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Array, Array, Array]:
@@ -53,8 +63,10 @@ def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arra
 
 
 def state_matrix(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Array:
-    """(2 n, 2 n) of the states (q, q'), as `linearised`."""
-    return first_order(*linearised(rotor, omega, stiffness, damping))
+    """(2 n, 2 n) of the states (q, q'), as `linearised`, q without the angles of rings on which nothing depends."""
+    whole = first_order(*linearised(rotor, omega, stiffness, damping))
+    kept = np.delete(np.arange(len(whole)), rotor.turning)
+    return whole[np.ix_(kept, kept)]
 
 
 def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:

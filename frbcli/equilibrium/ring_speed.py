@@ -1,6 +1,7 @@
 """How fast a floating ring turns, by the torques (4.17) on it: of films full of oil, with everything at rest.
 
-Between rough surfaces the friction of the summits pulls, too: a ring may stick to its rotor, or to its shell.
+Between rough surfaces the friction of the summits pulls, too: a ring may stick to its rotor, or to its shell. How fast
+it turns then follows small motions, as it does of a ring with a pin: both are part of the linearised machine.
 
 A ring with a pin does not turn: the torques hold it at the angle at which the spring of the pin balances them.
 
@@ -9,12 +10,15 @@ Couette's terms pull towards the rotor and towards the housing, Poiseuille's is 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_angle
 from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.roughness.rub_slopes import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, VALUE
 from frbcli.rotor.held import HeldRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.system import System, film_drag
@@ -164,3 +168,50 @@ def torque_by_rates(system: System, places: Array, films: tuple[FilmForce, ...])
         touched = (system.bodies[i] == np.arange(system.ring_count)[:, None]).any(axis=1)
         found[:, c * i : c * (i + 1)] = 0.5 * np.outer(touched, across(place) @ film.by_velocity)
     return found
+
+
+@dataclass(frozen=True)
+class RubbedRings:
+    """How the summits between rough surfaces follow a machine about its rest. films: the films without them; torques,
+    torques_by_rate: (rings, c films) on the rings, derivatives by the places of the journals and by their velocities;
+    torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed: (films, c, rings) of the forces."""
+
+    films: tuple[FilmForce, ...]
+    torques: Array
+    torques_by_rate: Array
+    torques_by_speed: Array
+    forces_by_speed: Array
+
+
+def rubbed_rings(system: System, bodies: Array, places: Array, films: tuple[FilmForce, ...]) -> RubbedRings:
+    """Of a machine whose films and summits at rest at places (films, c) have the forces `films`; bodies: see
+    ring_torques."""
+    rings, (count, c) = system.ring_count, places.shape
+    torques, by_rate, by_speed = np.zeros((rings, count * c)), np.zeros((rings, count * c)), np.zeros((rings, rings))
+    forces, alone = np.zeros((count, c, rings)), []
+    for i, (place, film) in enumerate(zip(places, films, strict=True)):
+        total, slip = system.turning[i, SUM], system.turning[i, SLIP]
+        shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
+        motion = np.concatenate([place[:2], np.zeros(2), shares @ bodies])
+        (found,) = system.rubbing(i).slopes(motion[None])
+        own, both = slice(c * i, c * i + 2), slice(F_X, F_Y + 1)
+        forces[i, :2] = found[both, BY_SLIP:] @ shares[:, 1:]
+        summits = FilmForce(*(np.zeros((c,) * size) for size in (1, 2, 2)))
+        summits.force[:2] = found[both, VALUE]
+        summits.by_displacement[:2, :2] = found[both, BY_X:BY_V_X]
+        summits.by_velocity[:2, :2] = found[both, BY_V_X:BY_SLIP]
+        alone.append(
+            FilmForce(
+                film.force - summits.force,
+                film.by_displacement - summits.by_displacement,
+                film.by_velocity - summits.by_velocity,
+                film.field,
+            )
+        )
+        for side, ring in enumerate(system.bodies[i].tolist()):
+            if ring >= 0:
+                torque = found[ON_JOURNAL + side]
+                torques[ring, own] += torque[BY_X:BY_V_X]
+                by_rate[ring, own] += torque[BY_V_X:BY_SLIP]
+                by_speed[ring] += torque[BY_SLIP:] @ shares[:, 1:]
+    return RubbedRings(tuple(alone), torques, by_rate, by_speed, forces)

@@ -37,6 +37,8 @@ class LinearRotor:
     cones: of bodies that turn by themselves and tilt, cartridges: each with the degree of freedom of its angle, and (2,
     n) its slopes in x and y times the root of its polar inertia: its gyroscopic moments pull with -(C^T J C) q' times
     its speed, J = [[0, 1], [-1, 0]].
+    turning: degrees of freedom of rings that turn while it moves in small: on their angles nothing depends, on their
+    speeds the films.
     """
 
     mass: Array
@@ -52,6 +54,7 @@ class LinearRotor:
     over_speed: LinearPart | None = None
     loads: tuple[Load, ...] = ()
     cones: tuple[tuple[int, Array], ...] = ()
+    turning: tuple[int, ...] = ()
 
     @property
     def size(self) -> int:
@@ -107,16 +110,16 @@ def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tupl
     return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
-def without_spins(rotor: LinearRotor, speeds: Array, pinned: NDArray[np.bool_] | None = None) -> LinearRotor:
+def without_spins(rotor: LinearRotor, speeds: Array, following: NDArray[np.bool_] | None = None) -> LinearRotor:
     """The machine without its last degrees of freedom, the angles of its rings, which keep their speeds (rings,) in
-    rad/s. pinned: (rings,) whose angles stay, behind all others; none by default."""
+    rad/s. following: (rings,) whose angles stay, behind all others; none by default."""
     count = len(speeds)
     if count == 0:
         return rotor
     n, damping = rotor.size - count, rotor.damping
     if rotor.cones:
         damping = damping + rotor.precession(np.concatenate([np.zeros(n), speeds]))
-    staying = np.zeros(0, dtype=np.int64) if pinned is None else np.flatnonzero(pinned)
+    staying = np.zeros(0, dtype=np.int64) if following is None else np.flatnonzero(following)
     kept = np.concatenate([np.arange(n), n + staying])
     square = np.ix_(kept, kept)
     return replace(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,10 +12,12 @@ from films import ROUGH
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.parts.machine import film_loads
 from frbcli.film.roughness.asperities import rub
 from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -60,3 +63,30 @@ def test_resting_curve_is_that_of_the_sheet() -> None:
         np.testing.assert_allclose(each.u, state.displacement, rtol=1e-5)
     assert states[0].mixed is not None
     assert states[0].mixed.share > 0.05
+
+
+@pytest.mark.nightly  # half a minute, with compilation
+def test_a_cycle_whose_ring_hits_its_shell_is_that_of_a_long_run(tmp_path: Path) -> None:
+    """The ring rolls through its shell with the whirl: in a period its summits carry between nothing and nine tenths of
+    the load, and friction swings its speed by 1 %."""
+    groove = 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}'
+    films = (
+        *ROUGH, "contact.roughness=2.2 um", groove, "film.cavitation=half-sommerfeld", "accuracy.mesh=[3, 16]",
+        "rotor.unbalance=0", "bearing.outer.viscosity=2 mPa*s",
+    )  # fmt: skip
+    found = limit_cycles(load_case("floating-ring", [*films, "speed.from=129.5 Hz", "speed.to=130.5 Hz"]), [130.0])
+    (cycle,) = (point for point in found.branches[0].points if point.speed_Hz == pytest.approx(130.0, rel=1e-9))
+    course = 'speed={points=[["0 s", "130 Hz"], ["1.2 s", "130 Hz"]]}', "start.displacement=[0.3, -0.3]"
+    steps = "output.step=5e-5 s", "accuracy.tolerance=1e-8"
+    run = runup(load_case("floating-ring", [*films, *course, *steps]), tmp_path / "run.h5")
+    late = run["time_s"] > 1.1
+    for name, largest in zip(("inner", "outer"), cycle.eccentricity_max, strict=True):
+        assert run[f"eccentricity_{name}"][late].max() == pytest.approx(largest, rel=1e-3)
+    x = run["journal_x_m"][late] - run["journal_x_m"][late].mean()
+    up = np.flatnonzero((x[:-1] < 0.0) & (x[1:] >= 0.0))
+    crossings = up - x[up] / (x[up + 1] - x[up])
+    assert 1.0 / (5e-5 * np.diff(crossings).mean()) == pytest.approx(cycle.frequency_Hz, rel=1e-3)
+    share, ring = run["asperity_share_outer"][late], run["ring_speed_Hz"][late]
+    assert share.min() < 0.01
+    assert share.max() > 0.8
+    assert 0.005 < np.ptp(ring) / ring.mean() < 0.02

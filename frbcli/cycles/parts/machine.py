@@ -26,7 +26,8 @@ from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.roughness.asperities import RUB_COLUMNS, Asperities, rub_samples
+from frbcli.film.roughness.asperities import Asperities
+from frbcli.film.roughness.rub_slopes import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, ON_SHELL, VALUE, rub_slopes
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
@@ -63,8 +64,8 @@ class Machine:
     Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
     rotor as transfer takes it, see rotor_parts.py; scales: (F,) viscosity of each film over that which it was made
     with; temperatures: (F,) K of the films, empty without heat; orders: how often in a revolution what drives the rotor
-    swings, 1 of the unbalance, and then of the forces that change with its angle; asperities: of rough surfaces, whose
-    shells do not turn; cones: of cartridges, see Cone.
+    swings, 1 of the unbalance, and then of the forces that change with its angle; asperities: of rough surfaces;
+    cones: of cartridges, see Cone.
     """
 
     rotor: LinearRotor
@@ -248,17 +249,27 @@ def _add_moments(machine: Machine, cone: Cone, u: Array, v: Array, loads: Loads)
 
 
 def _add_summits(machine: Machine, asperities: Asperities, u: Array, v: Array, speeds: Array, loads: Loads) -> None:
-    """Force and friction of the summits of rough surfaces."""
+    """Force and friction of the summits of rough surfaces, which turn rings, or hold them."""
+    first = 2 * machine.film_count
     for f in range(machine.film_count):
-        own, shares = slice(2 * f, 2 * f + 2), machine.turning[f, 1]
-        d, rate = (np.ascontiguousarray(each[:, own]) for each in (u, v))
-        found = np.empty((len(u), RUB_COLUMNS))
-        rub_samples(asperities, f, float(machine.clearances[f]), d, rate, speeds @ shares, found)
-        loads.values[:, own] += found[:, FORCE:BY_D]
-        loads.by_u[:, own, own] += found[:, BY_D:BY_V].reshape(-1, 2, 2)
-        loads.by_v[:, own, own] += found[:, BY_V:BY_OMEGA].reshape(-1, 2, 2)
-        loads.by_speed[:, own] += shares[0] * found[:, BY_OMEGA:-1]
-        loads.drive[:] -= found[:, -1]
+        own, c = slice(2 * f, 2 * f + 2), float(machine.clearances[f])
+        total, slip = machine.turning[f]
+        shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
+        found = rub_slopes(asperities, f, c, np.column_stack([c * u[:, own], c * v[:, own], speeds @ shares.T]))
+        by_bodies = found[:, :, BY_SLIP:] @ shares
+        rows: list[tuple[slice, slice, float]] = [(own, slice(F_X, F_Y + 1), 1.0)]
+        for body, pulled in zip(machine.bodies[f].tolist(), (ON_JOURNAL, ON_SHELL), strict=True):
+            if body >= 0:
+                ring, held = first + body, float(machine.held[body] * machine.pace)
+                rows.append((slice(ring, ring + 1), slice(pulled, pulled + 1), 1.0 / held))
+        for row, side, scale in rows:
+            loads.values[:, row] += scale * found[:, side, VALUE]
+            loads.by_u[:, row, own] += scale * c * found[:, side, BY_X:BY_V_X]
+            loads.by_v[:, row, own] += scale * c * found[:, side, BY_V_X:BY_SLIP]
+            loads.by_u[:, row, first:] += scale * machine.pace * by_bodies[:, side, 1:]
+            loads.by_speed[:, row] += scale * by_bodies[:, side, 0]
+        if machine.bodies[f, 0] == ROTOR:
+            loads.drive[:] -= found[:, ON_JOURNAL, VALUE]
 
 
 def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> None:

@@ -17,7 +17,6 @@ from frbcli.film.roughness.summits import LAST, elastic_summits, touching_summit
 
 POINTS = 40  # of the trapezoidal rule over half of the arc
 HALVINGS = 60  # of the bracket of an eccentricity
-RUB_COLUMNS = 13  # of rub_samples; all but the last one as film_samples has them
 SLOW = 1e-3  # m/s: friction is fully developed at some times this sliding speed, and below it holds the surfaces
 
 
@@ -222,20 +221,12 @@ def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array,
 
 
 @compiled()
-def rub_samples(
-    asperities: Asperities, f: int, clearance: float, d: Array, v: Array, slips: Array, found: Array
-) -> None:
-    """found (n, RUB_COLUMNS) <- of film f in a shell that does not turn, at displacements d over the clearance and
-    their rates v in 1/s (n, 2), slips (n,) in rad/s: force in N, derivatives by d, by v and by the slip, and torque on
-    the journal in N m."""
-    for i in range(d.shape[0]):
-        e_x, e_y = clearance * d[i, 0], clearance * d[i, 1]
-        own = rub(asperities, f, clearance, e_x, e_y, clearance * v[i, 0], clearance * v[i, 1], slips[i], 0.0)
-        found[i, 0], found[i, 1] = own.f_x, own.f_y
-        found[i, 2], found[i, 3] = clearance * own.k_xx, clearance * own.k_xy
-        found[i, 4], found[i, 5] = clearance * own.k_yx, clearance * own.k_yy
-        found[i, 6], found[i, 7] = clearance * own.d_xx, clearance * own.d_xy
-        found[i, 8], found[i, 9] = clearance * own.d_yx, clearance * own.d_yy
-        size = max(math.sqrt(e_x * e_x + e_y * e_y), 1e-300)
-        found[i, 10], found[i, 11] = own.drift * e_y / size, -own.drift * e_x / size
-        found[i, 12] = own.torque
+def touch_along(asperities: Asperities, f: int, clearance: float, eccentricities: Array, found: Array) -> None:
+    """found (k, 4) <- the integrals of film f as touch has them, at eccentricities (k,) in m; 0 where no summits
+    meet."""
+    for k in range(eccentricities.shape[0]):
+        found[k] = 0.0
+        if meets(asperities, clearance, eccentricities[k]):
+            own = touch(asperities, f, clearance, eccentricities[k])
+            found[k, 0], found[k, 1] = own.normal, own.radial
+            found[k, 2], found[k, 3] = own.normal_slope, own.radial_slope

@@ -12,6 +12,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity, touch
+from frbcli.film.roughness.rub_slopes import COLUMNS, FOUND, rub_slopes
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,12 @@ class Rubbing:
         e_x, e_y = place[:2].tolist()
         found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
         return found.torque, found.shell_torque, e_x * found.f_y - e_y * found.f_x
+
+    def slopes(self, motions: Array) -> Array:
+        """(k, FOUND, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
+        if self.surfaces is None:
+            return np.zeros((len(motions), FOUND, COLUMNS))
+        return rub_slopes(self.surfaces, self.film, self.clearance, motions)
 
     def standing(self, load: float) -> float:
         """Eccentricity in m of a journal that stands still on its summits under a load in N; 0 between smooth

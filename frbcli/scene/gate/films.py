@@ -23,6 +23,7 @@ from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.keys import bearing_key, film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
+from frbcli.scene.speeds import keeps_oil
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
@@ -221,10 +222,11 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
 
 
 def rough_ring_faults(case: Case) -> Iterator[Fault]:
-    """Rings that stick and slip in small motions and cycles, about which their speeds are taken as constant."""
-    if case.contact.rough and turning_rings(case):
-        problem = "lets a ring stick and slip: its speed follows motions about a rest, for which it is constant here."
-        yield Fault("contact.model", "asperities", None, problem, f"{SMOOTH}, or take a run-up.")
+    """Rings whose speeds follow small motions on rough surfaces, in films whose oil would have to follow them."""
+    if case.contact.rough and turning_rings(case) and keeps_oil(case):
+        problem = "lets the speed of a ring follow small motions, and films that keep oil are linearised for one speed."
+        remedy = f"{SMOOTH}, or take a law without memory, or a run-up."
+        yield Fault("contact.model", "asperities", None, problem, remedy)
 
 
 def rough_rest_faults(case: Case) -> Iterator[Fault]:

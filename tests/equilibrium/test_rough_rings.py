@@ -1,0 +1,151 @@
+"""Small motions of machines whose rings turn between rough surfaces: the speeds of the rings follow them."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from films import ROUGH
+from marches import march, start
+
+import frbcli
+from frbcli.cycles.method.equilibria import at_rest
+from frbcli.cycles.parts.linearised import state_space
+from frbcli.cycles.parts.machine import film_loads, make_machine
+from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
+from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
+from frbcli.equilibrium.resting import RestingPosition, resting_position
+from frbcli.film.roughness.asperities import make_asperities, rub
+from frbcli.film.roughness.rub_slopes import BY_V_X, BY_X, COLUMNS, VALUE
+from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.rotor.speed_profile import speed_profile
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.solve.stage.rough_contact import RoughContact
+from frbcli.solve.state import Control
+
+GROOVE = 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}'
+FILMS = (*ROUGH, GROOVE, "film.cavitation=half-sommerfeld", "accuracy.mesh=[3, 16]", "rotor.unbalance=0")
+SURFACES = make_asperities(0.4e-6, 20e-6, 5e9, 115e9, None, 0.12, np.array([20e-3]), np.array([16e-3]))
+CLEARANCE = 50e-6
+# Sticking and sliding summits: displacement, velocity, slip and speed of the shell
+MOTIONS = np.array([[-1e-7, -49.2e-6, 3e-5, -2e-5, 2e-3, -1e-2], [1.1e-5, -47.9e-6, 3e-3, -2e-4, 2e-2, 0.4]])
+STEPS = np.array([1e-11, 1e-11, 1e-8, 1e-8, 1e-6, 1e-6])
+
+
+@pytest.fixture(scope="module")
+def system() -> System:
+    case = frbcli.load_case("floating-ring", FILMS)
+    return make_system(case, make_plan(case))
+
+
+def coefficients(films: FilmsAtRest) -> tuple[np.ndarray, np.ndarray]:
+    stiffness, damping = (
+        -np.array([getattr(film, name) for film in films.forces]) for name in ("by_displacement", "by_velocity")
+    )
+    return stiffness, damping
+
+
+def rest_of(system: System, speed: float, stuck: bool) -> RestingPosition:
+    """At 4 Hz and above a ring rests on its shell, where it sticks, or beside it, where it turns: the start decides."""
+    start = resting_position(system, 2.0 * math.pi).displacements if stuck else None
+    return resting_position(system, 2.0 * math.pi * speed, start)
+
+
+def test_summits_have_the_slopes_of_their_forces_and_torques() -> None:
+    """As rub has the same, and as differences have what it has not."""
+    rubbing = Rubbing(SURFACES, 0, CLEARANCE)
+    found = rubbing.slopes(MOTIONS)
+    for each, motion in zip(found, MOTIONS, strict=True):
+        own = rub(SURFACES, 0, CLEARANCE, *motion.tolist())
+        np.testing.assert_allclose(each[:, VALUE], [own.f_x, own.f_y, own.torque, own.shell_torque], rtol=1e-13)
+        np.testing.assert_allclose(each[:2, BY_X:BY_V_X].ravel(), own[2:6], rtol=1e-13)
+    for column, step in enumerate(STEPS):
+        moved = np.zeros(6)
+        moved[column] = step
+        change = (rubbing.slopes(MOTIONS + moved) - rubbing.slopes(MOTIONS - moved))[:, :, VALUE] / (2.0 * step)
+        slopes = found[:, :, 1 + column]
+        np.testing.assert_allclose(change, slopes, rtol=1e-4, atol=1e-6 * np.abs(slopes).max())
+
+
+def test_summits_that_do_not_meet_do_nothing() -> None:
+    apart = np.array([[0.0] * 6, [1e-5, 2e-5, 1e-3, 1e-3, 1.0, 2.0]])
+    np.testing.assert_array_equal(Rubbing(SURFACES, 0, CLEARANCE).slopes(apart), np.zeros((2, 4, COLUMNS)))
+
+
+@pytest.mark.parametrize(("speed", "stuck"), [(4.0, False), (30.0, True)])
+def test_loads_of_cycles_have_exact_derivatives_by_the_motions_of_rings(
+    system: System, speed: float, stuck: bool
+) -> None:
+    """Also where friction is not fully developed: at rest, and beside it with a ring that slips by 1e-3 m/s."""
+    omega = 2.0 * math.pi * speed
+    machine = make_machine(system, omega)
+    u = at_rest(machine, rest_of(system, speed, stuck))[None]
+    u[0, -1] += 0.05 / omega
+    v = np.array([[0.3, -0.2, 0.01, 0.02, 0.0]])
+    found = film_loads(machine, u, v, omega)
+    for name, base, slopes, steps in (("u", u, found.by_u, (1e-8,) * 4 + (1e-8,)), ("v", v, found.by_v, (1e-6,) * 4)):
+        for column, step in enumerate(steps):
+            moved = np.zeros_like(base)
+            moved[0, column] = step
+            ahead, behind = (
+                film_loads(machine, *((base + side * moved, v) if name == "u" else (u, base + side * moved)), omega)
+                for side in (1.0, -1.0)
+            )
+            change = (ahead.values - behind.values)[0] / (2.0 * step)
+            np.testing.assert_allclose(change, slopes[0, :, column], rtol=2e-4, atol=1e-5 * np.abs(change).max())
+
+
+@pytest.mark.parametrize(("speed", "stuck"), [(4.0, False), (30.0, True), (30.0, False)])
+def test_the_machine_at_rest_has_the_eigenvalues_of_that_of_cycles(
+    system: System, speed: float, stuck: bool
+) -> None:
+    """Both are linearised in ways of their own: with coefficients and torques at rest here, by the loads of films and
+    summits there. A ring that sticks has a rate of some 1e8 1/s."""
+    omega = 2.0 * math.pi * speed
+    rest = rest_of(system, speed, stuck)
+    films = films_at_rest(system, omega, rest)
+    matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
+    machine = make_machine(system, omega)
+    u = at_rest(machine, rest)
+    loads = film_loads(machine, u[None], np.zeros((1, machine.size)), omega)
+    other = np.linalg.eigvals(state_space(machine).matrix(omega, loads.by_u[0], loads.by_v[0]))
+    own = np.linalg.eigvals(matrix)
+    assert len(own) == len(other) == 2 * (system.rotor.size - 1) + 1
+    size = np.abs(own).max()
+    assert size > 1e8 or not stuck
+    for value in own:
+        assert np.abs(other - value).min() < 1e-6 * abs(value) + 1e-14 * size
+
+
+@pytest.mark.nightly  # a quarter of a minute of compilation
+@pytest.mark.parametrize(
+    ("speed", "stuck", "time"), [(4.0, False, 1.0), (30.0, False, 0.1), (60.0, True, 0.1), (120.0, True, 0.1)]
+)
+def test_small_motions_grow_as_their_eigenvalue_has_it(
+    system: System, speed: float, stuck: bool, time: float
+) -> None:
+    """In the time loop, from beside rest on, along the eigenvector that grows fastest: at 4 Hz a ring on its way from
+    its shell, or back to it, at 120 Hz the whirl of a rotor in a ring that sticks."""
+    omega = 2.0 * math.pi * speed
+    rest, n = rest_of(system, speed, stuck), system.rotor.size
+    films = films_at_rest(system, omega, rest)
+    matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
+    values, vectors = np.linalg.eig(matrix)
+    asked = (values.imag > 1e-6 * np.abs(values)) | (values.real > 0.0)
+    own = int(np.argmax(np.where(asked, values.real, -np.inf)))
+    read, begun = np.linalg.inv(vectors)[own], vectors[:, own].real / np.abs(vectors[: n - 1, own]).max()
+    q, v = rest.displacements.copy(), rest.velocities(system)
+    q[: n - 1] += 1e-9 * begun[: n - 1]
+    v += 1e-9 * begun[n - 1 :]
+    assert system.asperities is not None
+    profile, rough = speed_profile((0.0, time), (omega, omega)), RoughContact(system.asperities, np.zeros((2, 2)))
+    control = Control(1e-11, 24.0, time / 40.0, time / 40.0, 0.9999, 1e-9, rough=rough)
+    after = march(system, profile, control, start(system, profile, q, v))
+    moved = np.hstack([after.q[:, : n - 1] - rest.displacements[: n - 1], after.v - rest.velocities(system)]) @ read
+    growth, turn = (
+        np.polyfit(after.times, each, 1)[0] for each in (np.log(np.abs(moved)), np.unwrap(np.angle(moved)))
+    )
+    assert growth == pytest.approx(values[own].real, rel=2e-3, abs=2e-3)
+    assert turn == pytest.approx(values[own].imag, rel=1e-4, abs=1e-9)
