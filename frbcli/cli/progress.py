@@ -23,7 +23,7 @@ REFRESH_Hz = 8
 TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
 # What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
 ANNOUNCED_s, LONG_s = 1.0, 5.0
-COMPUTING = "Computing."
+COMPUTING, READING, WRITING = "Computing.", "Reading.", "Writing."
 CLOCK_AFTER_s = 1.0  # without a change the time is shown
 LONGEST_LEFT_s = 1e9  # longest time that is shown
 COMPILING_EVERY_s = 10.0  # between two lines of the compilation where there is no terminal

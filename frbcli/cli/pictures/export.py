@@ -9,6 +9,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
+from frbcli.cli.progress import WRITING, display
 
 
 @click.command()
@@ -35,12 +36,13 @@ def command(run_file: Path, table_format: str, output: Path | None, terminal: Te
     target = output or beside(run_file, f".{table_format}")
     if not to_stdout:
         check_outputs((target, TABLES[table_format]))
-    run = read_run(run_file)
     if to_stdout:
-        write_csv(run, sys.stdout)  # ends where its reader does, as `head`
+        write_csv(read_run(run_file), sys.stdout)  # ends where its reader does, as `head`
         sys.stdout.flush()
         return
-    export_run(run, target, table_format)
+    with display(terminal, WRITING):
+        run = read_run(run_file)
+        export_run(run, target, table_format)
     terminal.result(f"{len(run)} samples of {len(run.signals)} signals: {target}")
     terminal.emit(
         {

@@ -13,6 +13,7 @@ from frbcli.cli.files import INPUT, beside, check_outputs
 from frbcli.cli.looks import Span, look_options
 from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
+from frbcli.cli.progress import READING, display
 from frbcli.cli.studies.measured import measured_options, run_of, show_columns
 from frbcli.columns import table_of
 
@@ -92,7 +93,8 @@ def command(
         raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_outputs(picture=target)
-    run = run_of(run_file, measurement, relative=orders is None and not view.linear)
+    with display(terminal, READING):
+        run = run_of(run_file, measurement, relative=orders is None and not view.linear)
     axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
         told = _spectra(terminal, run, signal, axis, view, target)
@@ -110,7 +112,8 @@ def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, 
     """Draw spectra, and return their part of the JSON document."""
     from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
 
-    found = run_spectra(run, signal, view.window, view.direction)
+    with display(terminal):
+        found = run_spectra(run, signal, view.window, view.direction)
     scale = LevelScale(view.linear, view.levels, view.lines)
     draw_wanted(
         terminal,
@@ -129,7 +132,8 @@ def _orders(
     from frbcli.analysis.orders.order_tracking import order_tracks
     from frbcli.plot.spectra.orders import orders_figure
 
-    tracks = order_tracks(run, orders, signal)
+    with display(terminal):
+        tracks = order_tracks(run, orders, signal)
     draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
     rows = [_largest(track, view.direction) for track in tracks]
     for row in rows:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from frbcli.cli.common import Terminal
 from frbcli.cli.files import beside
 from frbcli.cli.outputs import OutputOptions
+from frbcli.cli.progress import display
 from frbcli.cli.studies.measured import run_of
 from frbcli.columns import documents, table_of
 
@@ -27,7 +28,8 @@ def beside_measured(
     from frbcli.studies.against import DEVIATIONS, against_measured
 
     places = outputs.check(beside(run_file, "-measured.png"))
-    found = against_measured(read_run(run_file), run_of(file, measurement), signal)
+    with display(terminal):
+        found = against_measured(read_run(run_file), run_of(file, measurement), signal)
     _tell(terminal, found)
     terminal.emit(
         {

@@ -12,7 +12,7 @@ from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, OUTPUT, here
 from frbcli.cli.options import Names, signal_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import READING, computing, display
 from frbcli.cli.studies.measured import measured_options, run_of
 
 if TYPE_CHECKING:
@@ -55,16 +55,17 @@ def command(
     from frbcli.case.reading.listing import values as listed
     from frbcli.results.files.kinds import NEW
     from frbcli.studies.fit import fit
-    from frbcli.units import display
+    from frbcli.units import display as with_unit
 
     places = outputs.check(here(case.name, "-fit.png"), (save, NEW))
     limits = _bounds(case, bounds)
-    measured = run_of(file, measurement)
+    with display(terminal, READING):
+        measured = run_of(file, measurement)
     units = {value.key: value.unit for value in listed(case)}
     with computing(terminal, case) as shown:
 
         def watch(number: int, tried: Mapping[str, float]) -> None:
-            told = (f"{key} {display(float(f'{value:.5g}'), units.get(key, ''))}" for key, value in tried.items())
+            told = (f"{key} {with_unit(float(f'{value:.5g}'), units.get(key, ''))}" for key, value in tried.items())
             shown.redraw(f"run {number}: {', '.join(told)}")
 
         found = fit(case, measured, vary, limits, signal, watch)
