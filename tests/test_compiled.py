@@ -30,6 +30,7 @@ from frbcli.compiled import compiled
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import compile_s
 from frbcli.solve import time_loop
+from frbcli.studies.accuracy import by_theory
 
 KERNEL = """
 from frbcli.compiled import compiled
@@ -298,6 +299,12 @@ def test_kernels_that_are_on_disk_make_the_announced_time_the_most(
 def test_a_comparison_compiles_for_all_of_its_films() -> None:
     tables, cells = load_case("jeffcott"), load_case("jeffcott", ["film.cavitation=elrod"])
     assert compile_s([tables, cells, cells]) == compile_s([tables]) + compile_s([cells])
+
+
+def test_a_ladder_with_short_bearings_compiles_a_second_time_loop() -> None:
+    tables, cells = load_case("jeffcott"), load_case("jeffcott-two-phase")
+    assert compile_s([tables, *by_theory(tables)]) == 2.0 * compile_s([tables])
+    assert compile_s([cells, *by_theory(cells)]) == compile_s([cells])
 
 
 @pytest.mark.nightly

@@ -158,6 +158,16 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
         yield rung
 
 
+def by_theory(case: Case, theories: Sequence[str] = ()) -> list[Case]:
+    """A case by each theory of its ladder that can be modelled: theories have kernels of their own."""
+    found = []
+    for theory in theories or _theories(case):
+        with suppress(InputError):
+            found.append(_with(case, f"film.theory={theory}"))
+            make_plan(found[-1])
+    return found
+
+
 def _mesh(own: Rung, theory: str, factor: float) -> tuple[int, int] | None:
     """The plan's mesh made finer or coarser by a factor; None for theories without a mesh."""
     if theory != FINITE:

@@ -36,10 +36,10 @@ def command(
     terminal: Terminal,
 ) -> int:
     """Run CASE up on a ladder of theories, meshes and tolerances against a fine reference: error over cost."""
-    from frbcli.studies.accuracy import accuracy
+    from frbcli.studies.accuracy import accuracy, by_theory
 
     places = outputs.check(here(case.name, "-accuracy.png"))
-    with computing(terminal, case) as shown:
+    with computing(terminal, case, by_theory(case, theory)) as shown:
         tell = shown.of_runs()
         found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
     _report(found, terminal)

@@ -15,6 +15,8 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.reduction import DENSE, MOST
 from frbcli.scene.clearance_steps import step_times
 from frbcli.scene.films import film_places, full_films, rings, turning_rings
+from frbcli.scene.forms.form import FilmForm
+from frbcli.scene.forms.tables import TABLE
 from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
@@ -34,8 +36,15 @@ HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ri
 
 
 def compile_s(cases: Iterable[Case]) -> float:
-    """CPU time of the compilation at the first start, for each kind of films that the cases have."""
-    return sum(spent for spent, _ in {_compilation(case) for case in cases})
+    """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
+    a time loop of their own beside that of tabulated films."""
+    return sum(spent for *_, spent in {(*_kind(case), _compilation(case)[0]) for case in cases})
+
+
+def _kind(case: Case) -> tuple[FilmForm, bool]:
+    """What decides the types of the films in a time loop."""
+    form = form_of(case)
+    return form, form is TABLE and case.film.theory == "short"
 
 
 def compile_B(case: Case) -> float:
