@@ -207,7 +207,7 @@ def test_levels_of_a_ring_bearing_refer_to_both_clearances(ringed: Run, run: Run
 
 
 def test_the_summary_of_a_ring_names_its_whirls(ringed: Run) -> None:
-    moments = (("onset", "inner", 0.5), ("lock-in", "inner", 0.8), ("onset", "outer", 2.2))
+    moments = (("onset", "inner", 0.5), ("lock-in", "inner", 0.8), ("lock-in", "outer", 2.0), ("onset", "outer", 2.2))
     told = [
         {"kind": kind, "film": film, "t_s": t, "speed_Hz": 100.0 * t, "frequency_ratio": 0.5}
         for kind, film, t in moments
