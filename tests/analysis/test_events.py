@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import asdict, dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from ring_whirls import RingWhirl, ring_run
 from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
@@ -15,8 +16,6 @@ from frbcli.analysis import signals as signals_of_a_run
 from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
 from frbcli.analysis.orders import subsynchronous
 from frbcli.analysis.orders.order_tracking import order_track
-from frbcli.analysis.orders.subsynchronous import whirl_names
-from frbcli.analysis.uncertainty import BETWEEN
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import StaticMachines
@@ -113,7 +112,6 @@ def _ramp(folder: Path, rate: float, unbalance: float) -> Run:
     """A run of the Jeffcott rotor through its critical speed into its whirl."""
     settings = ("speed.from=100 Hz", "speed.to=185 Hz", f"speed.duration={85.0 / rate} s", "output.step=0.2 ms")
     return runup(load_case("jeffcott", [*settings, f"rotor.unbalance={unbalance} g*mm"]), folder / "run.h5")
-
 
 SHORT = {(24.0, 10), (24.0, 50), (5.0, 15), (5.0, 40)}  # ramp in Hz/s, unbalance in g mm
 
@@ -267,7 +265,6 @@ def test_events_do_not_depend_on_the_pieces_that_a_run_is_read_in(monkeypatch: p
 
 
 # ------------------------------------------------------------------- critical speeds and what is none
-
 STARVED = Rotor(critical_Hz=86.0, damping=0.05, whirl_s=None)
 
 
@@ -394,187 +391,3 @@ def test_two_hundred_thousand_samples_take_less_than_half_a_second() -> None:
     start = time.perf_counter()
     find_events(run)
     assert time.perf_counter() - start < 0.5
-
-
-# --------------------------------------------------------------------------------------------------- floating rings
-
-ROOM = 90e-6
-
-
-@dataclass(frozen=True)
-class RingWhirl:
-    """A whirl with the frequency of its film until it locks into lock_Hz, from begin_s to end_s."""
-
-    side: str
-    begin_s: float
-    end_s: float
-    lock_Hz: float
-    amplitude: float = 0.3
-
-
-def ring_run(*whirls: RingWhirl, name: str = "", noise: float = 0.0) -> Run:
-    """A run-up to 900 Hz in 3 s on a floating ring that turns with a quarter of the rotor's speed."""
-    time_s = np.arange(0.0, 3.0, 5e-5)
-    speed = 300.0 * time_s
-    ring = 0.25 * speed
-    motion = 0.2 * np.exp(-3.0 * time_s) + 0.01 * np.exp(1j * np.pi * speed * time_s)
-    for whirl in whirls:
-        free = 0.5 * (ring if whirl.side == "outer" else speed + ring)
-        turned = 2j * np.pi * np.cumsum(np.minimum(free, whirl.lock_Hz)) * 5e-5
-        there = expit(100.0 * (time_s - whirl.begin_s)) * expit(100.0 * (whirl.end_s - time_s))
-        motion = motion + whirl.amplitude * there * np.exp(turned)
-    if noise:
-        motion = motion + noise * np.random.default_rng(0).normal(size=(2, len(time_s))).T.copy().view(complex)[:, 0]
-    end = f"_{name}" if name else ""
-    columns = {"time_s": time_s, "speed_Hz": speed, f"ring_speed{end}_Hz": ring}
-    for kind, share in (("journal", 1.0), ("ring", 0.6)):
-        columns |= {f"{kind}{end}_x_m": share * ROOM * motion.real, f"{kind}{end}_y_m": share * ROOM * motion.imag}
-    clearances = {f"clearance_m{end}_inner": 40e-6, f"clearance_m{end}_outer": 50e-6}
-    return replace(as_run(columns), references=clearances)
-
-
-def kinds(events: tuple[Event, ...]) -> list[tuple[str, str | None]]:
-    return [(event.kind, event.film) for event in events if event.kind != "critical-speed"]
-
-
-@pytest.mark.parametrize("noise", [0.0, 0.05])
-def test_inner_whirl_locks_into_a_mode_and_the_outer_one_follows(noise: float) -> None:
-    run = ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), RingWhirl("outer", 2.3, 9.0, 1e3), noise=noise)
-    events = [event for event in find_events(run) if event.kind != "critical-speed"]
-    assert kinds(tuple(events)) == [("onset", "inner"), ("lock-in", "inner"), ("offset", "inner"), ("onset", "outer")]
-    onset, lock_in, offset, outer = events
-    assert onset.t_s == pytest.approx(0.5 - np.log(0.3 / 0.025) / 100.0, abs=0.03)
-    assert onset.frequency_Hz == pytest.approx(0.625 * onset.speed_Hz, rel=0.05)  # seen is rather what grows after it
-    assert lock_in.t_s == pytest.approx(150.0 / 0.95 / 187.5, abs=0.02)  # 5 % below the line of the free whirl
-    assert lock_in.frequency_Hz == pytest.approx(150.0, rel=0.02)
-    assert offset.t_s == pytest.approx(2.0 + np.log(0.3 / 0.0125) / 100.0, abs=0.04)
-    assert outer.frequency_Hz == pytest.approx(0.125 * outer.speed_Hz, rel=0.03)
-    assert outer.frequency_ratio == pytest.approx(0.125, rel=0.03)
-    assert whirl_names([asdict(event) for event in events]) == ["Sub_i"] * 3 + ["Sub_o"]
-
-
-@pytest.mark.parametrize("rings", [True, False])
-def test_an_event_moves_with_the_motion_also_between_two_steps_of_the_search(rings: bool) -> None:
-    """The same motion a part of a step later: windows of rings are 10 ms apart. What is read moves as much, to 3 % of a
-    step, and the frequency of the onset with the speed, to a fiftieth of a line of the windows."""
-
-    def moved(by_s: float) -> dict[str, Event]:
-        if rings:
-            run = ring_run(RingWhirl("inner", 0.5 + by_s, 2.0 + by_s, 1e3))
-        else:
-            run = make_run(Rotor(critical_Hz=None, whirl_s=6.5 + by_s))
-        return {event.kind: event for event in find_events(run)}
-
-    first, ramp, step_s = moved(0.0), *((300.0, 0.01) if rings else (30.0, 1.0 / (8 * 194.0)))
-    for later_s in (0.1 * step_s, 0.3 * step_s, 0.5 * step_s, 0.9 * step_s):
-        for kind, event in moved(later_s).items():
-            assert event.t_s - first[kind].t_s == pytest.approx(later_s, abs=BETWEEN * step_s)
-        onset = first["onset"]
-        frequency = onset.frequency_ratio * ramp * later_s
-        assert moved(later_s)["onset"].frequency_Hz - onset.frequency_Hz == pytest.approx(frequency, abs=0.2)
-
-
-def test_three_whirls_of_a_turbocharger_have_their_names() -> None:
-    """Conical, then cylindrical, then the outer film; the second goes on beside the third."""
-    run = ring_run(
-        RingWhirl("inner", 0.3, 1.0, 100.0),
-        RingWhirl("inner", 1.0, 9.0, 260.0),
-        RingWhirl("outer", 2.5, 9.0, 1e3, 0.1),
-        name="turbine",
-    )
-    events = find_events(run)
-    named = {
-        (event.kind, name): event
-        for event, name in zip(events, whirl_names([asdict(event) for event in events]), strict=True) if name
-    }  # fmt: skip
-    assert set(named) == {("onset", "Sub 1"), ("lock-in", "Sub 1"), ("offset", "Sub 1"), ("onset", "Sub 2"),
-                          ("lock-in", "Sub 2"), ("onset", "Sub 3")}  # fmt: skip
-    assert {event.film for event in events if event.film} == {"turbine_inner", "turbine_outer"}
-    assert named["offset", "Sub 1"].t_s == pytest.approx(1.0, abs=0.05)
-    assert named["onset", "Sub 2"].t_s == pytest.approx(1.0, abs=0.06)
-    assert named["onset", "Sub 2"].frequency_Hz == pytest.approx(187.5, rel=0.05)
-    assert named["onset", "Sub 3"].t_s == pytest.approx(2.5, abs=0.05)
-
-
-@pytest.mark.parametrize("faster", [1.0, 4.0, 16.0])
-def test_whirls_are_found_in_a_run_of_any_length(faster: float) -> None:
-    """All speeds and frequencies so many times as high: r T^2 is the same, and so are the events."""
-    slow = ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), RingWhirl("outer", 2.3, 9.0, 1e3))
-    columns = {name: slow[name] for name in slow.signals}
-    columns["time_s"] = columns["time_s"] / faster
-    for name in ("speed_Hz", "ring_speed_Hz"):
-        columns[name] = columns[name] * faster
-    events = find_events(replace(as_run(columns), references=slow.references))
-    expected = [event for event in find_events(slow) if event.kind != "critical-speed"]
-    found = [event for event in events if event.kind != "critical-speed"]
-    assert kinds(tuple(found)) == kinds(tuple(expected))
-    for event, other in zip(found, expected, strict=True):
-        assert faster * event.t_s == pytest.approx(other.t_s, abs=0.011)  # a window further, at most
-        assert event.frequency_Hz == pytest.approx(faster * other.frequency_Hz, rel=0.02)
-
-
-def test_combinations_of_two_whirls_are_no_whirls() -> None:
-    two = ring_run(RingWhirl("inner", 0.3, 9.0, 100.0), RingWhirl("inner", 1.2, 9.0, 1e3, 0.5))
-    difference = two["journal_x_m"] + 1j * two["journal_y_m"]
-    made = 0.1 * difference * np.abs(difference / ROOM) ** 2  # contains 2 f_1 - f_2 and 2 f_2 - f_1
-    columns = {name: two[name] for name in two.signals}
-    columns |= {"journal_x_m": (difference + made).real, "journal_y_m": (difference + made).imag}
-    events = find_events(replace(as_run(columns), references=two.references))
-    assert [kind for kind in kinds(events) if kind[0] == "onset"] == [("onset", "inner")] * 2
-
-
-def test_the_fall_of_the_start_is_no_whirl_that_grows_out_of_it() -> None:
-    """It whirls with the films, fades to less than a whirl, and is never lost before one grows: the onset is that of
-    the growth, as of a run that begins at rest."""
-    faint, grown = RingWhirl("inner", -9.0, 9.0, 1e3, 0.017), RingWhirl("inner", 0.8, 9.0, 1e3)
-    fall = RingWhirl("inner", -9.0, 0.25, 1e3, 0.06)
-    (onset, *_), (of_rest, *_) = (find_events(ring_run(*whirls)) for whirls in ((faint, grown, fall), (faint, grown)))
-    assert (onset.kind, of_rest.kind) == ("onset", "onset")
-    assert 0.7 < onset.t_s == pytest.approx(of_rest.t_s, abs=1e-3)
-
-
-def test_a_whirl_of_the_start_that_grows_begins_there_although_it_fades_and_returns() -> None:
-    """Behind its end a faint motion goes on, out of which it grows once more."""
-    faint, again = RingWhirl("inner", -9.0, 9.0, 1e3, 0.017), RingWhirl("inner", 2.0, 9.0, 1e3)
-    onset, *_ = find_events(ring_run(faint, again, RingWhirl("inner", 0.15, 1.2, 1e3, 0.5)))
-    assert onset.kind == "onset"
-    assert onset.t_s < 0.3
-
-
-def test_rings_without_whirl_have_no_events() -> None:
-    assert kinds(find_events(ring_run())) == []
-    assert kinds(find_events(ring_run(noise=0.05))) == []
-    assert kinds(find_events(ring_run(RingWhirl("inner", 1.0, 1.02, 1e3)))) == []  # a burst
-
-
-def test_the_film_that_touches_is_the_one_that_ends_a_run() -> None:
-    run = ring_run()
-    columns = {name: run[name] for name in run.signals}
-    columns["eccentricity_inner"] = np.full(len(run), 0.4)
-    columns["eccentricity_outer"] = np.linspace(0.1, 0.99, len(run))
-    events = find_events(replace(as_run(columns, "contact"), references=run.references))
-    assert kinds(events) == [("contact", "outer")]
-
-
-def test_a_bump_without_a_change_of_phase_is_no_critical_speed() -> None:
-    """A film that runs dry lets the unbalance move the journal more for a while; nothing resonates."""
-    quiet = Rotor(critical_Hz=None, whirl_s=None)
-    columns = signals(quiet)
-    turn = 2 * np.pi * np.cumsum(columns["speed_Hz"]) * quiet.step_s
-    size = 0.01 * (1.0 + 2.0 * np.exp(-(((columns["time_s"] - 4.0) / 0.5) ** 2)))
-    for name in ("journal", "disk"):
-        columns[f"{name}_x_m"] = columns[f"{name}_x_m"] + size * CLEARANCE * np.cos(turn)
-        columns[f"{name}_y_m"] = columns[f"{name}_y_m"] + size * CLEARANCE * np.sin(turn)
-    assert find_events(as_run(columns)) == ()
-
-
-def test_a_rotor_that_turns_the_other_way_round_has_the_same_events() -> None:
-    columns = signals(Rotor())
-    mirrored = {name: -values if name.endswith("_y_m") or name == "speed_Hz" else values
-                for name, values in columns.items()}  # fmt: skip
-    expected, found_here = find_events(as_run(columns)), find_events(as_run(mirrored))
-    assert [event.kind for event in found_here] == [event.kind for event in expected] == ["critical-speed", "onset"]
-    for event, one in zip(found_here, expected, strict=True):
-        assert event.t_s == one.t_s
-        assert event.speed_Hz == -one.speed_Hz
-        assert event.frequency_ratio == pytest.approx(one.frequency_ratio)

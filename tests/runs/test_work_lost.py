@@ -23,7 +23,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.files.lock import locked
-from frbcli.results.store import Run, read_run
+from frbcli.results.store import read_run
 from frbcli.runs.march import March
 from frbcli.runs.record.interrupt import deaf
 from frbcli.runs.run import rundown, runup
@@ -58,8 +58,6 @@ def interrupted(tmp_path: Path) -> Path:
 
 
 # --- run files ---
-
-
 @pytest.mark.parametrize("again", [runup, rundown])
 def test_an_interrupted_run_is_not_replaced_unasked(again: Any, interrupted: Path) -> None:
     before = interrupted.read_bytes()
@@ -98,8 +96,6 @@ def test_an_interrupted_run_without_samples_is_worth_nothing(monkeypatch: pytest
 
 
 # --- rows ---
-
-
 def after_calls(monkeypatch: pytest.MonkeyPatch, owner: Any, name: str, calls: int, error: BaseException) -> None:
     """Have a function work for some calls and then raise."""
     done, original = [0], getattr(owner, name)
@@ -229,8 +225,6 @@ def test_an_interrupted_verification_is_no_second_run(
 
 
 # --- from outside ---
-
-
 def process(code: str, *words: str, **options: Any) -> subprocess.Popen[str]:
     """frb in a process of its own, in which some code is run first."""
     environment = os.environ | {"PYTHONPATH": str(ROOT)} | options.pop("variables", {})
@@ -276,7 +270,6 @@ def test_ctrl_c_leaves_the_hard_cases_that_are_done() -> None:
     assert (found["status"], len(found["hard"])) == ("interrupted", 1)
     assert "Interrupted: the other cases were not run." in err
     assert "Traceback" not in err
-
 
 COMPILING = """
 import time, numba
@@ -407,166 +400,7 @@ def test_a_window_system_is_nobody_s_business(backend: str) -> None:
     assert Path("run-summary.png").is_file()
 
 
-# --- places ---
-
-
-WAYS = {
-    "runup": (["runup", *QUICK], "run.h5", "run-summary.png"),
-    "rundown": (["rundown", *QUICK], "run.h5", "run-summary.png"),
-    "compare": (["compare", *QUICK, *MODELS], "a.png", "a.png"),
-    "stability": (["stability", *QUICK], "a.png", "a.png"),
-    "accuracy": (["accuracy", "jeffcott", "--until", "10 ms"], "a.png", "a.png"),
-    "rotation": (["rotation", "bearing-axial-groove"], "a.png", "a.png"),
-    "law": (["plot", "jeffcott", "--what", "law"], "a.png", "a.png"),
-    "waterfall": (["waterfall", "whole.h5"], "a.png", "a.png"),
-    "plot": (["plot", "whole.h5"], "a.png", "a.png"),
-    "export": (["export", "whole.h5"], "a.csv", "a.csv"),
-    "sweep": (["sweep", *QUICK, "--set", "rotor.unbalance=1 g*mm,2 g*mm"], "study", "study/sweep.png"),
-    "table": (["sweep", *QUICK, "--set", "rotor.unbalance=1 g*mm,2 g*mm"], "study", "study/sweep.csv"),
-}
-
-
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> bytes:
-    """A run file."""
-    return runup(load_case("jeffcott", SETTINGS), tmp_path_factory.mktemp("whole") / "run.h5").path.read_bytes()
-
-
-@pytest.fixture
-def nothing_runs(whole: bytes, monkeypatch: pytest.MonkeyPatch) -> None:
-    """To compute anything from now on is a failure; there is a run in whole.h5."""
-    Path("whole.h5").write_bytes(whole)
-
-    def fail(*_: object) -> None:
-        raise AssertionError("computed")
-
-    monkeypatch.setattr(March, "__init__", fail)
-    monkeypatch.setattr("frbcli.linear.stability.stability", fail)
-    monkeypatch.setattr("frbcli.bearing_tests.kinematic._test", fail)
-
-
-@pytest.mark.usefixtures("nothing_runs")
-@pytest.mark.parametrize("way", WAYS)
-def test_a_place_that_is_a_directory_is_refused_before_the_work(
-    way: str, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words, output, place = WAYS[way]
-    Path(place).mkdir(parents=True)
-    assert frb([*words, "-o", output]) == 2
-    assert "is not a file" in capsys.readouterr().err
-
-
-@pytest.mark.usefixtures("nothing_runs")
-@pytest.mark.parametrize("way", [way for way in WAYS if "sweep" not in WAYS[way][0]])
-def test_a_name_that_is_too_long_is_refused_before_the_work(way: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words, output, _ = WAYS[way]
-    assert frb([*words, "-o", f"{'n' * 252}{Path(output).suffix}"]) == 2
-    assert "File name too long" in capsys.readouterr().err
-    assert os.listdir() == ["whole.h5"]
-
-
-@pytest.mark.usefixtures("nothing_runs")
-@pytest.mark.parametrize("length", [251, 247])  # with .part, with -summary.png in place of .h5
-def test_what_is_put_behind_the_name_of_a_run_counts(length: int, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "-o", f"{'n' * (length - 3)}.h5"]) == 2
-    assert "File name too long" in capsys.readouterr().err
-    assert os.listdir() == ["whole.h5"]
-
-
-@pytest.mark.usefixtures("nothing_runs")
-@pytest.mark.parametrize("content", [None, "of the user"])
-def test_what_is_in_place_of_the_lock_of_a_run_is_named(
-    content: str | None, capsys: pytest.CaptureFixture[str]
-) -> None:
-    lock = Path("run.h5.lock")
-    lock.mkdir() if content is None else lock.write_text(content)
-    for words in (["runup", *QUICK, "-o", "run.h5"], ["rundown", *QUICK, "-o", "run.h5", "--no-picture"]):
-        assert frb(words) == 2
-        assert "run.h5.lock" in capsys.readouterr().err
-    assert lock.is_dir() if content is None else lock.read_text() == content
-
-
-# --- pictures ---
-
-
-FULL = Path("/dev/full")
-
-
-@pytest.mark.parametrize("way", ["runup", "compare", "stability", "accuracy", "rotation", "sweep"])
-def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words, output, place = WAYS[way]
-    Path(place).parent.mkdir(exist_ok=True)
-    Path(place).symlink_to(FULL)
-    options = {"sweep": ["--stability", "--jobs", "1"], "stability": ["--speed", "30 Hz"],
-               "accuracy": ["--theory", "short"],
-               "rotation": ["--set", "accuracy.mesh=[4, 16]", "--cavitation", "half-sommerfeld"]}  # fmt: skip
-    assert frb([*words, "-o", output, *options.get(way, [])]) == 0
-    said = capsys.readouterr()
-    remarks = [line for line in said.err.splitlines() if not line.startswith(("1/2", "2/2"))]
-    assert remarks == [
-        f"No picture {place}: cannot be written: No space left on device. Choose another place with -o."
-    ]
-    assert said.out != ""
-
-
-@pytest.mark.parametrize(
-    "words", [["waterfall", "run.h5", "--window", "10 ms"], ["plot", "run.h5"], ["export", "run.h5"]], ids=" ".join
-)
-def test_a_file_that_a_command_is_for_is_an_error(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    runup(load_case("jeffcott", SETTINGS), "run.h5")
-    Path("a.png").symlink_to(FULL)
-    assert frb([*words, "-o", "a.png"]) == 2
-    assert "No space left on device" in capsys.readouterr().err
-    assert Path("a.png").is_symlink()
-
-
-def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def broken(_: Run) -> None:
-        raise RuntimeError("no font\nat all")
-
-    monkeypatch.setattr("frbcli.plot.run.summary.summary_figure", broken)
-    assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 0
-    said = capsys.readouterr()
-    assert json.loads(said.out)["status"] == "finished"
-    assert said.err.endswith("No picture run-summary.png: RuntimeError: no font at all\n")
-    assert read_run("run.h5").status == "finished"
-
-
-def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pytest.MonkeyPatch) -> None:
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-
-    runup(load_case("jeffcott", SETTINGS), "run.h5")
-    Path("run-summary.png").write_text("older")
-
-    def broken(*_: object, **__: object) -> None:
-        raise ValueError("no")
-
-    monkeypatch.setattr(FigureCanvasAgg, "print_png", broken)
-    assert frb(["plot", "run.h5", "--what", "summary"]) == 2
-    assert Path("run-summary.png").read_text() == "older"
-
-
-@pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
-def test_letters_that_a_font_lacks_are_one_remark(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["stability", *QUICK, "--speed", "30 Hz", "--set", "title=漢字 漢", "-o", f"a{suffix}"]
-    assert frb(words) == 0
-    said = capsys.readouterr()
-    assert f"Campbell diagram: a{suffix}" in said.out
-    expected = "" if suffix == ".svg" else f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n"
-    assert said.err in (expected, f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n")
-
-
-def test_a_dollar_in_a_title_is_one(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["stability", *QUICK, "--speed", "30 Hz", "--set", r"title=$\nonsense$ for 5 $", "-o", "a.svg"]
-    assert frb(words) == 0
-    assert capsys.readouterr().err == ""
-    assert r"$\nonsense$ for 5 $" in Path("a.svg").read_text()
-
-
 # --- signals ---
-
 SWALLOWING = """
 import sys, types, time, signal
 from pathlib import Path

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numba import typeof
 from test_heat import RING, ring_case, single
 
 from frbcli.case.reading.load import load_case
@@ -29,26 +28,6 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
 from frbcli.studies.compare import compare
-from frbcli.thermal.exchange import (
-    BOOKS,
-    CARRIED,
-    CLEARANCE,
-    DISSIPATED,
-    ETA,
-    FILM_ROWS,
-    FLOW,
-    GIVEN,
-    IN_FILMS,
-    POWER,
-    SHARE,
-    HeatArrays,
-    arrays_of,
-    heat_step,
-    viscosity_at,
-    write_clearances,
-    write_rates,
-)
-from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
 
 HOUSING = "thermal.housing=60 degC"
 HOT_HOUSING = "thermal.housing=100 degC"
@@ -57,78 +36,6 @@ STILL = ["rotor.unbalance=0", "start.position=resting"]
 
 def at_speed(speed: float, duration: float) -> list[str]:
     return [f"speed.from={speed}", f"speed.to={speed}", f"speed.duration={duration}"]
-
-
-def kernel_arrays(model: HeatModel) -> HeatArrays:
-    return arrays_of(model, np.ones(2), np.ones(2), np.ones(2), by_formula=False)
-
-
-# --- kernels and their plain forms -----------------------------------------------------------------------------------
-
-
-def test_kernels_of_the_balance_are_their_plain_forms() -> None:
-    case = ring_case("thermal.clearance=follows", "thermal.centrifugal_growth=follows", "thermal.housing=60 degC",
-                     "thermal.shaft={ capacity = 40, conductance = 2, temperature = '200 degC' }")  # fmt: skip
-    heat = heat_of(case)
-    model = heat.model._replace(inlet=np.array([1, -1]))
-    rng = np.random.default_rng(4)
-    t = heat.start + 60.0 * rng.random(len(heat.start))
-    power, flow, speeds = np.array([300.0, 80.0]), np.array([8e-7, 2e-6]), np.array([4000.0, 800.0])
-    now, gain, state = np.zeros((FILM_ROWS, 2)), np.empty(len(t)), np.concatenate([np.zeros(BOOKS), speeds, t])
-    now[POWER], now[FLOW] = power, flow
-    capacity, links, films, numbers, growth = kernel_arrays(model)
-    write_clearances(films, growth, len(speeds), state, now)
-    clearances = now[CLEARANCE]
-    assert clearances == pytest.approx(clearances_at(model, t, speeds), rel=1e-12)
-    carried, given = write_rates(capacity, links, films, numbers, now, t, gain)
-    assert gain == pytest.approx(rates(model, t, power, flow, clearances), rel=1e-9, abs=1e-9)
-    assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
-    assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
-    assert [viscosity_at(numbers, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
-
-
-def test_any_number_of_links_has_one_type() -> None:
-    """For another order of the array of the links the time loop would be compiled once more."""
-    walls = (), (HOUSING,), (HOUSING, "thermal.shaft=50 degC")
-    models = [heat_of(single(*given)).model for given in walls]
-    ones = [[np.ones(len(model.reference))] * 3 for model in models]
-    types = {str(typeof(arrays_of(model, *one, by_formula=False))) for model, one in zip(models, ones, strict=True)}
-    assert len({len(model.links) for model in models}) == 3
-    assert len(types) == 1
-
-
-def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:
-    heat = heat_of(ring_case("thermal.housing=60 degC"))
-    model, count = heat.model, len(heat.start)
-    now = np.zeros((FILM_ROWS, 2))
-    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
-    t, gain, books = heat.start.copy(), np.zeros(count), np.zeros(BOOKS)
-    step = 1e-7
-    heat_step(*kernel_arrays(model)[:4], now, step, t, gain, books)
-    expected = step * rates(model, heat.start, now[POWER], now[FLOW], now[CLEARANCE]) / model.capacity
-    assert t - heat.start == pytest.approx(expected, rel=1e-6, abs=1e-12)
-    for _ in range(200):
-        heat_step(*kernel_arrays(model)[:4], now, 1e-2, t, gain, books)  # longer than the films' time constants
-    free = np.isfinite(model.capacity)
-    kept = float(model.capacity[free] @ (t - heat.start)[free])
-    assert books[DISSIPATED] == pytest.approx(380.0 * (2.0 + step), rel=1e-12)
-    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
-
-
-def test_a_long_step_of_heat_ends_in_balance_and_loses_nothing() -> None:
-    """Steps a thousand times as long as nodes of little capacity take."""
-    node = "{ capacity = 1e-15, conductance = 2, temperature = 330 }"
-    heat = heat_of(ring_case(f"thermal.shaft={node}", f"thermal.housing={node}"))
-    model, count = heat.model._replace(inlet=np.array([1, -1])), len(heat.start)
-    now = np.zeros((FILM_ROWS, 2))
-    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
-    t, gain, books = heat.start.copy(), np.zeros(count), np.zeros(BOOKS)
-    for _ in range(30):
-        heat_step(*kernel_arrays(model)[:4], now, 10.0, t, gain, books)
-    free = np.isfinite(model.capacity)
-    assert rates(model, t, now[POWER], now[FLOW], now[CLEARANCE])[free] == pytest.approx(0.0, abs=1e-9 * 380.0)
-    kept = float(model.capacity[free] @ (t - heat.start)[free])
-    assert books[DISSIPATED] == pytest.approx(books[CARRIED] + books[GIVEN] + kept, rel=1e-10)
 
 
 @pytest.mark.parametrize("wall", ["shaft", "housing"])
@@ -149,29 +56,7 @@ def test_walls_that_store_next_to_nothing_run_as_those_that_store_little(wall: s
         assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
 
 
-def test_films_in_balance_gain_nothing() -> None:
-    """Power proportional to the viscosity, flow to its inverse; the inner film is fed through the outer one."""
-    heat = heat_of(ring_case("thermal.housing=60 degC", "thermal.films=quasi-steady"))
-    model = heat.model._replace(inlet=np.array([1, -1]))
-    assert model.balanced
-    now = np.zeros((FILM_ROWS, 2))
-    now[POWER], now[FLOW], now[CLEARANCE], now[SHARE] = (300.0, 80.0), (8e-7, 2e-6), model.reference, 1.0
-    now[ETA] = viscosities_at(model, heat.start)
-    t, gain, books = heat.start.copy(), np.zeros(len(heat.start)), np.zeros(BOOKS)
-    heat_step(*kernel_arrays(model)[:4], now, 1e-12, t, gain, books)
-    thicker = viscosities_at(model, t) / now[ETA]
-    handed_on = now[FLOW] / (1.0, thicker[1])  # what the inner film has let out
-    for film, flow in ((0, now[FLOW] / thicker), (1, handed_on)):
-        left = rates(model, t, now[POWER] * thicker, flow, now[CLEARANCE])
-        assert left[film] == pytest.approx(0.0, abs=1e-6)
-    assert t[0] > heat.start[0] + 5.0
-    assert t[2:] == pytest.approx(heat.start[2:], abs=1e-6)
-    assert books[IN_FILMS] == 0.0
-
-
 # --- where a run settles ---------------------------------------------------------------------------------------------
-
-
 @pytest.mark.parametrize(
     ("settings", "duration"),
     [
@@ -225,7 +110,6 @@ def _outer(warm: object) -> np.ndarray:
     system = warm.system  # type: ignore[attr-defined]
     return np.asarray(warm.resting.journals[1] / system.clearances[1])  # type: ignore[attr-defined]
 
-
 SIGNALS = 'output.signals=["force", "film-thickness", "power", "torque", "oil-flow"]'
 
 
@@ -260,8 +144,6 @@ def test_chosen_signals_are_those_of_the_warm_films(settings: list[str], tmp_pat
 
 
 # --- the balance of a run --------------------------------------------------------------------------------------------
-
-
 @pytest.fixture(scope="module")
 def ring_run(tmp_path_factory: pytest.TempPathFactory) -> Run:
     case = ring_case("rotor.gravity=9.81", "speed.to=300 Hz", "speed.duration=0.5 s", "thermal.housing=60 degC",
@@ -283,7 +165,6 @@ def test_heat_of_a_run_up_balances_by_its_signals(ring_run: Run) -> None:
     assert whole == pytest.approx(oil + housing + kept, rel=1e-3)
     assert ring_run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
     assert ring_run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
-
 
 COUPLED = [
     "bearing.channels=coupled", "film.cavitation=two-phase", "film.two-phase.steepness=0.9", "accuracy.mesh=[5,32]",
@@ -383,8 +264,6 @@ def test_without_heat_a_run_tells_none(tmp_path: Path) -> None:
 
 
 # --- trends ----------------------------------------------------------------------------------------------------------
-
-
 def test_cold_start_meets_thicker_oil_than_a_warm_one(tmp_path: Path) -> None:
     cold, warm = (
         runup(ring_case(f"thermal.supply_temperature={t} degC", "speed.to=200 Hz", "speed.duration=0.2 s"),
@@ -406,8 +285,6 @@ def test_blocked_ring_loses_more_than_a_free_one() -> None:
 
 
 # --- how it ends, and how it is told ---------------------------------------------------------------------------------
-
-
 def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "ring.toml"
     file.write_text(RING)

@@ -26,13 +26,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bearing_models import CHOSEN, HALF, MU, C, L, R, damper_case, spring
 from films import rectangular
 from numba import njit
 from paths import DOCS
 from scipy.optimize import brentq
 
 import frbcli
-from frbcli.case.reading.listing import values
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
@@ -46,82 +46,13 @@ from frbcli.film.rectangles.film_force import film_force
 from frbcli.plot.signals import model as described
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 PAGE = DOCS / "adding-a-model.md"
-R, L, C, MU = 0.05, 0.03, 1e-4, 0.01
 JOURNAL = rectangular(L, 2 * R, C, MU, 1e5, 1e5)
-DAMPER = f"""
-bearing = {{ kind = "single-film", width = "{L} m", diameter = "{2 * R} m", clearance = "{C} m", ends = "oil-bath" }}
-oil = {{ viscosity = "{MU} Pa*s", density = "850 kg/m^3" }}
-"""
-
-
-@njit(error_model="numpy")
-def integrals(eps, s, w_r, w_t, full):  # type: ignore[no-untyped-def]
-    """Of cos^2, sin cos, sin^2 over (1 + eps cos Theta)^3, where the pressure is positive or over the whole turn, by
-    Sommerfeld's angle; times s^5."""
-    start, turn = 0.0, 2.0 * math.pi
-    reach = math.sqrt(w_r * w_r + (s * w_t) ** 2)
-    if not full and reach > 0.0:
-        limit = math.acos(w_r * eps / reach)
-        start, turn = math.atan2(s * w_t, w_r) + limit, turn - 2.0 * limit
-    end = start + turn
-    sines, cosines = math.sin(end) - math.sin(start), math.cos(end) - math.cos(start)
-    doubled = math.sin(end) * math.cos(end) - math.sin(start) * math.cos(start)
-    squares = 0.5 * (math.sin(end) ** 2 - math.sin(start) ** 2)
-    return (
-        (0.5 + eps * eps) * turn + 0.5 * doubled - 2.0 * eps * sines,
-        s * (squares + eps * cosines),
-        0.5 * s * s * (turn - doubled),
-    )
-
-
-@njit(error_model="numpy")
-def short_force(d_x, d_y, v_x, v_y, omega, bearing, full):  # type: ignore[no-untyped-def]
-    c, e = bearing.clearance, math.sqrt(d_x * d_x + d_y * d_y)
-    n_x, n_y = (d_x / e, d_y / e) if e > 0.0 else (1.0, 0.0)
-    w_x, w_y = v_x + 0.5 * omega * d_y, v_y - 0.5 * omega * d_x  # seen from a frame that turns with half the speed
-    w_r, w_t, eps = n_x * w_x + n_y * w_y, n_x * w_y - n_y * w_x, e / c
-    s = math.sqrt(1.0 - eps * eps)
-    rr, rt, tt = integrals(eps, s, w_r, w_t, full)
-    k = -0.5 * bearing.viscosity * bearing.sections * bearing.diameter * bearing.section_width**3 / (c**3 * s**5)
-    f_r, f_t = k * (rr * w_r + rt * w_t), k * (rt * w_r + tt * w_t)
-    return n_x * f_r - n_y * f_t, n_y * f_r + n_x * f_t
-
-
-@njit
-def half(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]
-    return short_force(d_x, d_y, v_x, v_y, omega, bearing, False)
-
-
-@njit
-def chosen(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    """A damper: with a key for the film, and nothing of the speed."""
-    f_x, f_y = short_force(d_x, d_y, v_x, v_y, 0.0, bearing, bearing.film == 1)
-    return f_x - bearing.spring * d_x, f_y - bearing.spring * d_y
-
-
-def spring(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, bearing: Any) -> Any:  # noqa: ARG001
-    """A linear bearing, plain Python."""
-    return -1e6 * d_x + 2e5 * d_y - 100.0 * v_x, -2e5 * d_x - 1e6 * d_y - 100.0 * v_y
 
 
 def spring_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, bearing: Any) -> Any:  # noqa: ARG001
     return -1e6, 2e5, -2e5, -1e6, -100.0, 0.0, 0.0, -100.0
-
-
-HALF = BearingModel("short-pi", "short, pi film", half)
-CHOSEN = BearingModel(
-    "damper",
-    "squeeze film damper",
-    chosen,
-    keys=(
-        frbcli.BearingKey("film", "pi", choices=("pi", "full")),
-        frbcli.BearingKey("spring", 0.0, "of the squirrel cage", "1e6 N/m", unit="N/m", least=0.0),
-    ),
-    meaning="A damper.",
-)
 
 
 @pytest.fixture(autouse=True)
@@ -148,13 +79,7 @@ def orbit(eps: float, whirl: float, full: bool) -> tuple[float, float]:
     return (0.0, -2.0 * half_turn) if full else (-2.0 * size * eps**2 / s2**2, -half_turn)
 
 
-def damper_case(*settings: str, text: str = "") -> frbcli.Case:
-    return frbcli.load_case_text(DAMPER + text, ("film.theory=damper", *settings), name="damper")
-
-
 # --- the squeeze film damper ---
-
-
 @pytest.mark.parametrize("full", [False, True])
 @pytest.mark.parametrize("eps", [0.05, 0.4, 0.8])
 def test_a_circular_orbit_has_the_known_forces(eps: float, full: bool) -> None:
@@ -237,8 +162,6 @@ gravity = "0 m/s^2"
 
 
 # --- the journal bearing that the program has, too ---
-
-
 STATES = [(0.02, 0.01, 30.0, -20.0, 300.0), (0.3, -0.2, 40.0, 10.0, 500.0), (-0.6, 0.7, -90.0, 50.0, 900.0)]
 
 
@@ -322,69 +245,6 @@ def test_a_film_of_the_program_is_compiled_without_bearing_models() -> None:
         fresh(film, *STATES[0])
         assert all(("model_force" in code) is asked for code in fresh.inspect_llvm().values())
 
-
-# --- in a case ---
-
-
-def test_keys_and_plan_of_a_model_are_those_of_a_case(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    motion = "motion={ eccentricity = 0.5, whirl_speed = '60 Hz' }"
-    case = damper_case("film.damper.spring=3000 N/mm", motion)
-    assert case.film.damper.spring == 3e6
-    keys = {value.key: value for value in values(case)}
-    assert keys["film.damper.spring"].unit == "N/m"
-    assert keys["film.theory"].value == "damper"
-    assert frbcli.load_case_text(case.source_text, name="damper") == case
-    decisions = {decision.choice: decision for decision in kinematic_plan(case).decisions}
-    assert "added from Python" in decisions["theory"].reason
-    path = tmp_path / "damper.toml"
-    path.write_text(case.source_text, encoding="utf-8")
-    assert frb(["check", str(path), "--all"]) == 0
-    told = " ".join(capsys.readouterr().out.split())
-    assert "squeeze film damper" in told
-    assert "3e+06 N/m" in told
-    assert frb(["rotation", str(path), "-o", str(tmp_path / "rotation.png")]) == 0
-    assert frb(["rotation", str(path), "--cavitation", "elrod"]) == 2
-    assert "has no effect on film.theory = damper" in capsys.readouterr().err
-    whirl = "motion={ eccentricity = 0.5, frequency = '60 Hz' }"
-    assert frb(["whirl", str(path), "--set", whirl, "-o", str(tmp_path / "whirl.png"), "--json"]) == 0
-    assert (tmp_path / "whirl.png").exists()
-    assert '"theory": "damper"' in capsys.readouterr().out
-
-
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (["film.theory=dampr"], 'Did you mean "damper"?'),
-        (["film.theory=other"], "short-pi, damper. One of your own is added in this process .*frbcli.add_bearing"),
-        (["film.damper.spring=-1 N/m"], "film.damper.spring"),
-        (["film.damper.spring=1 N"], "film.damper.spring"),
-        (["film.damper.sprung=1"], 'Did you mean "spring"'),
-        (["film.damper.film=half"], "There are: pi, full"),
-        (["film.short-pi.length=1"], "film.short-pi: is not known here"),
-    ],
-)
-def test_a_wrong_key_of_a_model_is_told(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError, match=told):
-        damper_case("motion={ eccentricity = 0.5, whirl_speed = '60 Hz' }", *settings)
-
-
-@pytest.mark.parametrize(
-    ("settings", "told"),
-    [
-        (["film.cavitation=elrod"], "film.cavitation = elrod: has no effect with film.theory = short-pi"),
-        (["film.solution=cells"], "film.solution = cells: has no effect"),
-        (["film.coupling=monolithic"], "Write dynamic-static or auto"),
-        (["film.grid=half-speed"], "film.grid = half-speed: has no effect"),
-        (["bearing.lobes={ count = 3, preload = 0.5 }"], "lobes = 3 lobes: is a shape"),
-        (["bearing.supply={ kind = 'pocket', position = '0 deg', opening_angle = '20 deg', width = '5 mm', "
-          "pressure = '2 bar' }"], "is a supply that a bearing model cannot represent"),
-    ],
-)  # fmt: skip
-def test_what_a_model_is_not_told_of_is_refused(settings: list[str], told: str) -> None:
-    with pytest.raises(InputError, match=told):
-        frbcli.make_plan(frbcli.load_case("rigid", ["film.theory=short-pi", *settings]))
-
-
 RINGED = ("film.cavitation=half-sommerfeld", "bearing.inner.supply={ kind = 'none' }",
           "bearing.outer.supply={ kind = 'none' }", "speed.from=100 Hz", "speed.to=101 Hz",
           "speed.duration=4 ms", "output.step=1e-4 s")  # fmt: skip
@@ -414,93 +274,7 @@ def test_a_ring_turns_between_bearing_models_as_between_films_of_the_program(tmp
         np.testing.assert_allclose(own[name], built_in[name], atol=1e-6)
 
 
-def test_a_case_that_was_read_before_its_model_is_told_to_be_read_again() -> None:
-    case = frbcli.load_case("rigid", ["film.theory=damper"])
-    with_more = (*CHOSEN.keys, frbcli.BearingKey("gain", 1.0))
-    frbcli.add_bearing(BearingModel("damper", "damper", chosen, keys=with_more))
-    with pytest.raises(InputError, match="the case was read before the model was added"):
-        frbcli.make_plan(case)
-
-
-# --- models that are none ---
-
-
-@njit
-def nowhere(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    size = math.sqrt(d_x * d_x + d_y * d_y)
-    return -1e6 * d_x / size, -1e6 * d_y / size
-
-
-@njit
-def throws(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    if d_x > 0.0:
-        raise ValueError("not here")
-    return -d_x, -d_y
-
-
-def three(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return d_x, d_y, 0.0
-
-
-def few(d_x, d_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return d_x, d_y
-
-
-def text(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return open(d_x), d_y
-
-
-def no_field(d_x, d_y, v_x, v_y, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return bearing.length * d_x, d_y
-
-
-def wrong_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, bearing: Any) -> Any:  # noqa: ARG001
-    return -1e6, -2e5, -2e5, -1e6, -100.0, 0.0, 0.0, -100.0
-
-
-@pytest.mark.parametrize(
-    ("model", "told"),
-    [
-        (BearingModel("mine", "mine", three), "force: returns .*, not 2 numbers. Return"),
-        (BearingModel("mine", "mine", spring, three), "derivatives: returns .*, not 8 numbers"),
-        (BearingModel("mine", "mine", few), "force: cannot be compiled by numba: .*function takes 4 arguments"),
-        (BearingModel("mine", "mine", text), "force: cannot be compiled by numba: .*open"),
-        (BearingModel("mine", "mine", no_field), "force: cannot be compiled by numba: .*length"),
-        (BearingModel("mine", "mine", 3.0), "force: is no function"),  # type: ignore[arg-type]
-        (BearingModel("short", "mine", spring), "name: is that of a key or model of the program"),
-        (BearingModel("two-phase", "mine", spring), "name: is that of a key or model of the program"),
-        (BearingModel("My Bearing", "mine", spring), "name: has other characters than small letters"),
-        (BearingModel("mine", "mine", spring, keys=(frbcli.BearingKey("width", 1.0),)),
-         "keys.width: is already the name of another field"),
-        ("mine", "is not a BearingModel"),
-    ],
-)
-def test_what_is_no_model_is_refused(model: BearingModel, told: str) -> None:
-    with pytest.raises(InputError, match=told) as refused:
-        frbcli.add_bearing(model)
-    assert len(refused.value.faults) == 1
-    assert "mine" not in {one.name for one in table.models()}
-
-
-@pytest.mark.parametrize(
-    ("model", "told"),
-    [
-        (BearingModel("mine", "mine", nowhere), r"has no finite force at d = \(0, 0\) m"),
-        (BearingModel("mine", "mine", throws), r"has no finite force at d = \(.*\) m"),
-        (BearingModel("mine", "mine", spring, wrong_slopes), r"tells dF_x / dd_y = -200000 at .* are 200000"),
-    ],
-)
-@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
-def test_forces_that_are_none_are_told_before_anything_runs(model: BearingModel, told: str, tmp_path: Path) -> None:
-    frbcli.add_bearing(model)
-    with pytest.raises(InputError, match=told):
-        frbcli.runup(frbcli.load_case("rigid", ["film.theory=mine"]), tmp_path / "run.h5")
-    assert not (tmp_path / "run.h5").exists()
-
-
 # --- the record of a run ---
-
-
 def interrupt_after(calls: int) -> Callable[[Any], None]:
     left = iter(range(calls - 1, -1, -1))
 
@@ -509,7 +283,6 @@ def interrupt_after(calls: int) -> Callable[[Any], None]:
             signal.raise_signal(signal.SIGINT)
 
     return observe
-
 
 RUN = ("film.theory=short-pi", "speed.to=60 Hz", "speed.duration=0.3 s", "rotor.unbalance=2 g*mm")
 
@@ -558,8 +331,6 @@ def test_models_are_compared_with_those_of_the_program(tmp_path: Path) -> None:
 
 
 # --- the page, and what a model costs ---
-
-
 def test_the_bearing_of_the_page_is_a_squeeze_film_damper(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     section = PAGE.read_text(encoding="utf-8").partition("## A bearing of your own")[2]
@@ -596,8 +367,6 @@ def test_a_run_with_a_model_takes_about_twice_the_time_of_the_film_of_the_progra
 
 
 # --- its sheet and its ladder ---
-
-
 def test_the_sheet_of_a_model_is_that_of_the_program(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     built_in, own = (frbcli.load_case("rigid", (f"film.theory={name}", "speed.to=120 Hz")) for name in
                      ("short", "short-pi"))  # fmt: skip
