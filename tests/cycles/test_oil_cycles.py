@@ -89,6 +89,22 @@ def test_slow_motions_that_the_space_misses_are_learned_of() -> None:
     assert found.space.states.shape[1] > 2
 
 
+def test_a_fixed_point_is_the_one_that_was_met_where_noise_begins() -> None:
+    """x -> A x with noise of 1e-6, and of 3e-5 when the iteration asks whether corrections still become smaller."""
+    matrix, calls = np.diag([0.9, 0.5, 0.0]), 0
+
+    def mapped(x: np.ndarray, _: np.ndarray) -> np.ndarray:
+        nonlocal calls
+        calls += 1
+        return matrix @ x + (1e-6 if calls < 12 else 3e-5) * math.cos(calls) * np.array([0.0, 0.0, 1.0])
+
+    space = SlowSpace(np.eye(3)[:, :2], matrix[:, :2], np.zeros((3, 0)))
+    found = fixed_point(mapped, np.full(3, 0.1), np.zeros(0), space, Conditions(np.zeros((0, 3)), np.zeros((0, 0))))
+    assert found is not None
+    assert np.abs(found.x).max() < 3e-6
+    assert calls >= 12
+
+
 def after_transients(flow: PeriodMap, wet: Wet, period: float, omega: float, periods: int) -> tuple[np.ndarray, float]:
     """(F,) largest eccentricities, mean over the last third of so many periods without a break, with the steps that
     shooting takes, and the frequency there in Hz. The cells pass all places in some ten periods."""

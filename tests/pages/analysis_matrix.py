@@ -58,6 +58,9 @@ THRUST = (
     'taper_angle="50 deg", taper="20 um"}]'
 )
 COLLAR = THRUST.replace("[{", '[{position="30 mm", ')
+INNER_GROOVES = tuple(
+    f'bearing.{i}.inner.supply={{kind="circumferential-groove", pressure="3 bar"}}' for i in range(2)
+)
 OVER_SPEED = ", ".join([
     'speed=["0 Hz", "300 Hz"]',
     *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
@@ -131,6 +134,9 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, "film.tilt=follows")),
     "floating rings that tilt": ("turbocharger-car", ("film.tilt=follows",)),
+    "floating rings that tilt, grooves in place of feed holes, Elrod": (
+        "turbocharger-car", ("film.tilt=follows", "film.cavitation=elrod", *INNER_GROOVES)
+    ),
     "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", ("film.tilt=follows",)),
     "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
     "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),

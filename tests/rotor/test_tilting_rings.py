@@ -11,6 +11,9 @@ from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_s
 
 import frbcli
 from frbcli.case.schema import Case
+from frbcli.cycles.shooting.period_map import period_map, wet_at
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium.linearised import first_order, linearised
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import ring_torques
@@ -26,6 +29,8 @@ from frbcli.rotor.speed_profile import speed_profile
 from frbcli.runs.record.film_signals import tilt_signals
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.analysis import SPEED_CYCLES
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -320,7 +325,54 @@ def test_a_ring_follows_a_shell_that_is_not_in_line() -> None:
     assert np.abs(moved).max() < 1e-4 * system.clearances[0]
 
 
+# ------------------------------------------------------------------------------------------------------ limit cycles
+
+
+HEAVY = '{mass = "5 g", inertia = "5 kg*mm^2", tilt_inertia = "3 kg*mm^2"}'  # keeps its speed, as in stability
+
+
+def grooved(body: str, *more: str) -> Case:
+    """The shaft with its disk beside the middle, in two rings or in a cartridge; no opening turns."""
+    inner = INNER.replace(BORES, GROOVE)
+    films = f"ring = {HEAVY}, inner = {inner}, outer = {OUTER}"
+    one = (f'bearing={{kind = "cartridge", positions = ["7 mm", "13 mm"], {films}}}',) if body == "cartridge" else ()
+    return ringed("disk.0.position=12 mm", *one, *more, ring=HEAVY, inner=inner)
+
+
+def test_tilts_stand_beside_lengths_in_the_state_of_a_cycle() -> None:
+    """One of each displacement moves a journal by a clearance at least: tilts are in rad."""
+    flow = period_map(grooved("rings"))
+    moves = np.abs(flow.journals[..., : len(flow.lengths)] * flow.lengths).max(axis=(0, 1)) / flow.scale
+    assert moves.min() == pytest.approx(1.0)
+    assert (flow.lengths > 100.0 * flow.scale).sum() == 4  # both tilts of both rings
+    still = wet_at(flow, np.zeros(flow.system.rotor.size), np.zeros(flow.system.rotor.size), OMEGA)
+    x = flow.packed(still, OMEGA) + np.random.default_rng(1).normal(size=flow.slow)
+    assert flow.packed(flow.unpacked(x, still, OMEGA), OMEGA) == pytest.approx(x, abs=1e-14)
+
+
+@pytest.mark.parametrize("body", ["rings", "cartridge"])
+@pytest.mark.nightly  # 10 s each, and a time loop that no other file has
+def test_small_motions_of_rings_that_tilt_grow_in_cycles_as_in_the_linearised_machine(body: str) -> None:
+    case = grooved(body, "film.cavitation=reynolds")
+    rest = settled(Shooting(period_map(case), OMEGA), OMEGA)
+    assert rest is not None
+    s = stability_points(case, [SPEED])[1][0].eigenvalues
+    slow = s[(np.abs(s.imag) > 0.05 * OMEGA) & (s.real > -0.2 * OMEGA)]
+    assert len(slow) >= 6
+    assert (slow.real > 0.0).any()
+    for value in slow:
+        assert np.abs(rest.eigenvalues - value).min() < 2e-3 * abs(value)
+
+
 # -------------------------------------------------------------------------------------------------------------- case
+
+
+def test_limit_cycles_have_rings_that_tilt_in_films_that_keep_oil() -> None:
+    """Where no opening turns with a ring."""
+    for law in ("reynolds", "elrod", "two-phase"):
+        for body in ("rings", "cartridge"):
+            assert not faults(grooved(body, f"film.cavitation={law}"), SPEED_CYCLES)
+        assert "film.cavitation" in [fault.key for fault in faults(ringed(f"film.cavitation={law}"), SPEED_CYCLES)]
 
 
 def test_what_rings_that_tilt_do_not_have_is_refused() -> None:

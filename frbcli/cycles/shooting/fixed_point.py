@@ -102,16 +102,19 @@ def fixed_point(
     raise Unreachable."""
     guess_x, guess_p, sizes = x, p, [np.inf]
     image = mapped(x, p)
+    nearest = FixedPoint(x, p, image, space)
     for _ in range(ITERATIONS):
         dx, dp = correction(space, conditions, image - x, x - guess_x, p - guess_p)
         size = float(np.linalg.norm(dx) + np.linalg.norm(dp))
         # Corrections go to and fro while motions are learned of. Those that become no smaller are the noise of the
-        # cells if they are small.
+        # cells if the smallest is small.
         stays = len(sizes) > PATIENCE and size > 0.5 * min(sizes[:-PATIENCE])
-        if size > STRAY or (stays and size > NOISE):
+        if size < min(sizes):
+            nearest = FixedPoint(x, p, image, space)
+        if size < close or (stays and min(*sizes, size) < NOISE):
+            return nearest
+        if size > STRAY or stays:
             return None
-        if size < close or stays:
-            return FixedPoint(x, p, image, space)
         x, p, before = x + dx, p + dp, image
         image = mapped(x, p)
         space = taught(space, dx, image - before - space.by_parameters @ dp)

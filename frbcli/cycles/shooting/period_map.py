@@ -112,8 +112,15 @@ class PeriodMap:
 
     @property
     def scale(self) -> float:
-        """Clearance in m, the unit of displacements in the state."""
+        """Clearance in m."""
         return float(self.clearances[0])
+
+    @property
+    def lengths(self) -> Array:
+        """Units of the displacements in the state: the clearance, or where that moves journals by less, as tilts and
+        some modes of a shaft do, what moves one by a clearance."""
+        moves = np.abs(self.journals[..., self._kept]).max(axis=(0, 1))
+        return np.asarray(self.scale / np.where(moves > 0.0, np.minimum(moves, 1.0), 1.0))
 
     @property
     def places(self) -> tuple[float, ...]:
@@ -134,14 +141,15 @@ class PeriodMap:
         """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
         kept = self._kept
         content = (wet.content / self.units)[self.held] / math.sqrt(np.count_nonzero(self.held))
-        return np.concatenate([wet.q[kept] / self.scale, self._slow(wet.v, omega), wet.filling[self.limited], content])
+        moved = wet.q[kept] / self.lengths
+        return np.concatenate([moved, self._slow(wet.v, omega), wet.filling[self.limited], content])
 
     def unpacked(self, x: Array, near: Wet, omega: float) -> Wet:
         """The machine of a state; near: whose guesses and given cells it takes."""
         n, kept = len(near.q), self._kept
         m = len(kept)
         q, content, filling = np.zeros(n), near.content / self.units, near.filling.copy()
-        q[kept] = x[:m] * self.scale
+        q[kept] = x[:m] * self.lengths
         v = x[m : m + n] / self._slow(np.ones(n), omega)
         filling[self.limited] = x[m + n : self.slow]
         content[self.held] = x[self.slow :] * math.sqrt(np.count_nonzero(self.held))
@@ -183,7 +191,7 @@ class PeriodMap:
 
     def motion_of(self, wet: Wet, omega: float) -> Array:
         """Rate of the state's displacements and velocities in 1/s, zero for its oil."""
-        moved = np.concatenate([wet.v[self._kept] / self.scale, self._slow(wet.a, omega)])
+        moved = np.concatenate([wet.v[self._kept] / self.lengths, self._slow(wet.a, omega)])
         return np.concatenate([moved, np.zeros(self.slow - len(moved) + np.count_nonzero(self.held))])
 
     def passage(self, wet: Wet, time: float, omega: float, steps: int, samples: int = SAMPLES) -> Passage:
@@ -213,9 +221,9 @@ class PeriodMap:
         return np.arange(self.system.rotor.size - self.system.ring_count)
 
     def _slow(self, v: Array, omega: float) -> Array:
-        """Velocities over half of the speed; of displacements over the clearance, too."""
+        """Velocities over half of the speed; of displacements over their units, too."""
         told = 2.0 * v / omega
-        told[self._kept] /= self.scale
+        told[self._kept] /= self.lengths
         return np.asarray(told)
 
     def _gaps(self, q: Array, bodies: Array) -> Array:

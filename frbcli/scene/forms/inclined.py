@@ -10,14 +10,24 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.forms.tilted import LOOPS, RUNS, TiltedForm, film_faults, law_faults, misalignment_faults, run_faults
+from frbcli.scene.forms.tilted import (
+    LOOPS,
+    RUNS,
+    TiltedForm,
+    film_faults,
+    law_faults,
+    memory_faults,
+    misalignment_faults,
+    run_faults,
+)
 from frbcli.scene.gate.analysis import FILMS, RANGE, SHEETS, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text, misaligned
 
-AT_REST = (FILMS, STABILITY, RANGE, SPEED_CYCLES, *SHEETS)
+LINEARISED = (FILMS, STABILITY, RANGE, *SHEETS)
+AT_REST = (*LINEARISED, SPEED_CYCLES)
 WITHOUT = "Leave bearing.misalignment out."
 
 
@@ -47,6 +57,7 @@ class InclinedForm(TiltedForm):
         Rule(_shaft_faults, (*AT_REST, *RUNS)),
         Rule(_ring_faults, (*AT_REST, *RUNS)),
         Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
+        Rule(lambda case: memory_faults(case, WITHOUT), LINEARISED),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
         Rule(lambda case: run_faults(case, WITHOUT), LOOPS),
         Rule(misalignment_faults, (*AT_REST, *RUNS)),

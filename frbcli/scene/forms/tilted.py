@@ -39,8 +39,8 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES), (RUN, COMPARISON, LADDER)
-LOOPS = (RUN, SPEED_CYCLES)
+LINEARISED, RUNS = (FILMS, STABILITY, RANGE, BEARING), (RUN, COMPARISON, LADDER)
+FOLLOWED, LOOPS = (*LINEARISED, SPEED_CYCLES), (RUN, SPEED_CYCLES)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
@@ -66,13 +66,6 @@ def _machine_faults(case: Case) -> Iterator[Fault]:
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
 
 
-def _ring_faults(case: Case) -> Faults:
-    """Cycles of rings that tilt."""
-    if any(isinstance(bearing, FloatingRingBearing) for bearing in case.bearings):
-        problem = "lets rings tilt, whose limit cycles are not computed."
-        yield Fault(KEY, ASKED, None, problem, f"{WITHOUT[:-1]} here, or call `frb runup`.")
-
-
 def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     """Films that do not follow a tilt. without: the remedy that leaves the tilt out."""
     if case.film.theory not in ("auto", "finite"):
@@ -86,13 +79,18 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
         yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
 
 
-def law_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+def memory_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     """Laws that are not linearised in a film that tilts. without: see film_faults."""
     for key, name in dict(cavitation_keys(case)).items():
         if law_named(name).keeps_oil:
             problem = "keeps its oil, whose motion in a film that tilts is not linearised."
             yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
-        elif law_named(name).follow is not Law.follow:
+
+
+def law_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+    """Laws that go by the eccentricity of the journal. without: see film_faults."""
+    for key, name in dict(cavitation_keys(case)).items():
+        if not law_named(name).keeps_oil and law_named(name).follow is not Law.follow:
             problem = "changes with the eccentricity, which in a film that tilts differs along the axis."
             yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
 
@@ -142,9 +140,9 @@ class TiltedForm(CellForm):
         Rule(_analysis_faults, OTHERS),
         Rule(_machine_faults, (*FOLLOWED, *RUNS)),
         Rule(film_faults, (*FOLLOWED, *RUNS)),
+        Rule(memory_faults, LINEARISED),
         Rule(law_faults, FOLLOWED),
         Rule(run_faults, LOOPS),
-        Rule(_ring_faults, (SPEED_CYCLES,)),
         Rule(misalignment_faults, (*FOLLOWED, *RUNS)),
     )
 
