@@ -25,6 +25,7 @@ TWO_DIGITS = 2.0  # an uncertainty that begins with 1 has two digits
 MINUS_ZERO = re.compile(r"^-(?=0(?:\.0*)?[^\d.]*$)")  # of round-off below zero, such as -0.0 or -0°
 LARGEST_PLAIN = 1e6  # below it, numbers with a number of digits have no powers of ten
 ROUND_OFF = 1e-9  # of a number that is rounded up
+NOTHING = 1e-12  # of the largest entry of a matrix: an entry that is zero but for round-off
 SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
 
 
@@ -60,7 +61,7 @@ class Shown:
         elif value is None:
             cells = ("-",) * len(self.head)
         else:
-            cells = self.form(value) if callable(self.form) else map(self._cell, np.ravel(value).tolist())
+            cells = self.form(value) if callable(self.form) else map(self._cell, _without_round_off(value))
         return tuple(MINUS_ZERO.sub("", cell) for cell in cells)
 
     def _cell(self, value: Any) -> str:
@@ -76,6 +77,13 @@ class Shown:
         if self.form.endswith("g") and "e+" in text and abs(float(text)) < LARGEST_PLAIN:
             return f"{float(text):.0f}"
         return text.replace("e-0", "e-") if self.form.endswith("e") else text
+
+
+def _without_round_off(value: Any) -> list[float]:
+    """The entries of an array, 0 those that are nothing beside the largest."""
+    entries = np.ravel(value).astype(float)
+    least = NOTHING * float(np.abs(entries).max(initial=0.0))
+    return [0.0 if abs(entry) < least else float(entry) for entry in entries]
 
 
 @dataclass(frozen=True)

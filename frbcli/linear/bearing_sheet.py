@@ -24,6 +24,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.bearing_model.table import label_of
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.contact_gap import closes_freely_until
 from frbcli.html import Tabular
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
@@ -39,6 +40,7 @@ SPEEDS = 20
 MIXED_SPEEDS, MIXED_RANGE = 28, 3000.0  # of rough surfaces: from boundary friction on
 ECCENTRICITIES = tuple(0.05 * i for i in range(1, 20))
 SPEED, ECCENTRICITY = "speed", "eccentricity"
+UNRESOLVED = 0.1  # error of coefficients from which on the gap that an elastic shell keeps is too narrow
 
 
 @dataclass(frozen=True, repr=False)
@@ -67,6 +69,16 @@ class BearingSheet(Tabular):
     def of(self, film: str) -> tuple[FilmState, ...]:
         """The states of one film that were found."""
         return tuple(point for point in self.points if point.film == film and not point.problem)
+
+    @property
+    def pressed(self) -> tuple[FilmState, ...]:
+        """Films pressed into an elastic shell that keeps a gap too narrow for the meshes: their coefficients have large
+        errors."""
+        contact = self.case.contact
+        if contact.policy != "elastic" or contact.rough:
+            return ()
+        begins = closes_freely_until(contact.eccentricity)
+        return tuple(each for each in self.points if each.error > UNRESOLVED and each.eccentricity > begins)
 
     def table(self) -> Table:
         """One row per film and state."""

@@ -27,6 +27,12 @@ EXPLANATION = (
 )
 SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
 
+PRESSED = (
+    "{} is pressed into its shell, which keeps a gap of {:.2g} um. Damping in so narrow a gap comes from an arc "
+    "shorter than an element: hence its error, and real surfaces are rougher than this gap. Let them touch earlier: "
+    "contact.eccentricity is {:g}, and 0.99 leaves errors of a few per cent."
+)
+
 
 @click.command()
 @case_argument
@@ -149,6 +155,10 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
         terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
     if any(law_named(law).keeps_oil for law in found.laws):
         terminal.sentence(SETTLED)
+    if found.pressed:
+        state = max(found.pressed, key=lambda each: each.error)
+        film = f"The film {state.film}" if state.film else "The film"
+        terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, found.case.contact.eccentricity))
     problems = [point for point in found.points if point.problem]
     if problems:
         terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,8 +16,10 @@ from frbcli.plot.style import COLOURS, legend_above, new_figure, plain_numbers, 
 
 Reading = Callable[[FilmState], float]
 DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)), (0, (5, 1, 1, 1)))  # of the films of a machine
+MARKERS = ("o", "s", "^", "D")  # likewise, of a sheet of one point, through which no line goes
 ZERO_CELSIUS = 273.15
 AXES = ("xx", "xy", "yx", "yy")
+UNLIKE = 30.0  # ratio of the largest coefficients of two films from which on no even scale shows both
 
 
 def bearing_figure(sheet: BearingSheet) -> Figure:
@@ -57,7 +60,7 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
             for panel in panels[1]:
                 panel.set_yscale("symlog")
         if len(sheet.films) > 1:
-            handles = [panels[0, 0].plot([], [], color="black", linestyle=dash)[0] for dash in _dashes(sheet)]
+            handles = [panels[0, 0].plot([], [], color="black", **style)[0] for style in _styles(sheet)]
             figure.legend(handles, sheet.films, loc="outside lower center", ncols=len(handles))
     return figure
 
@@ -83,22 +86,31 @@ def draw_coefficient(axes: Axes, sheet: BearingSheet, quantity: str) -> None:
     unit, scale, letter = {"stiffness": ("N/µm", 1e-6, "k"), "damping": ("N s/mm", 1e-3, "c")}[quantity]
     entries = [(f"{letter}{name}", _entry(quantity, i, scale)) for i, name in enumerate(AXES)]
     _curves(axes, sheet, f"{quantity} in {unit}", entries)
+    found = [[float(np.abs(getattr(state, quantity)).max()) for state in sheet.of(film)] for film in sheet.films]
+    sizes = [max(each) for each in found if any(each)]
+    if sizes and max(sizes) > UNLIKE * min(sizes):
+        axes.set_yscale("symlog", linthresh=scale * min(sizes))
 
 
-def _dashes(sheet: BearingSheet) -> list[object]:
-    return [DASHES[number % len(DASHES)] for number in range(len(sheet.films))]
+def _styles(sheet: BearingSheet) -> list[dict[str, Any]]:
+    """How the curve of each film is drawn, but for its colour."""
+    alone = all(len(sheet.of(film)) == 1 for film in sheet.films)
+    return [
+        {"linestyle": DASHES[number % len(DASHES)]} | ({"marker": MARKERS[number % len(MARKERS)]} if alone else {})
+        for number in range(len(sheet.films))
+    ]
 
 
 def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[str, Reading]]) -> None:
     """Readings over the abscissa of the sheet, without those that are not known of any state."""
     found = [state for film in sheet.films for state in sheet.of(film)]
     readings = [each for each in readings if not found or not all(math.isnan(each[1](state)) for state in found)]
-    for number, (film, dash) in enumerate(zip(sheet.films, _dashes(sheet), strict=True)):
+    for number, (film, style) in enumerate(zip(sheet.films, _styles(sheet), strict=True)):
         states = sheet.of(film)
         x = [state.eccentricity if sheet.over == ECCENTRICITY else state.speed_Hz for state in states]
         for colour, (name, reading) in zip(COLOURS, readings, strict=False):
             shown = name if number == 0 and name else None
-            axes.plot(x, [reading(state) for state in states], color=colour, linestyle=dash, label=shown)
+            axes.plot(x, [reading(state) for state in states], color=colour, label=shown, **style)
     axes.set_ylabel(readings[0][0] or label if len(readings) == 1 else label)
     if len(readings) > 1:
         legend_above(axes)
