@@ -25,6 +25,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.stage.rough_contact import RoughContact
 from frbcli.solve.state import Control
 
+LIFTING = pytest.param(4.0, False, marks=pytest.mark.nightly)  # a ring that slides is sought for seconds
 GROOVE = 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}'
 FILMS = (*ROUGH, GROOVE, "film.cavitation=half-sommerfeld", "accuracy.mesh=[3, 16]", "rotor.unbalance=0")
 SURFACES = make_asperities(0.4e-6, 20e-6, 5e9, 115e9, None, 0.12, np.array([20e-3]), np.array([16e-3]))
@@ -74,7 +75,7 @@ def test_summits_that_do_not_meet_do_nothing() -> None:
     np.testing.assert_array_equal(Rubbing(SURFACES, 0, CLEARANCE).slopes(apart), np.zeros((2, 4, COLUMNS)))
 
 
-@pytest.mark.parametrize(("speed", "stuck"), [(4.0, False), (30.0, True)])
+@pytest.mark.parametrize(("speed", "stuck"), [LIFTING, (30.0, True)])
 def test_loads_of_cycles_have_exact_derivatives_by_the_motions_of_rings(
     system: System, speed: float, stuck: bool
 ) -> None:
@@ -97,7 +98,7 @@ def test_loads_of_cycles_have_exact_derivatives_by_the_motions_of_rings(
             np.testing.assert_allclose(change, slopes[0, :, column], rtol=2e-4, atol=1e-5 * np.abs(change).max())
 
 
-@pytest.mark.parametrize(("speed", "stuck"), [(4.0, False), (30.0, True), (30.0, False)])
+@pytest.mark.parametrize(("speed", "stuck"), [LIFTING, (30.0, True), (30.0, False)])
 def test_the_machine_at_rest_has_the_eigenvalues_of_that_of_cycles(
     system: System, speed: float, stuck: bool
 ) -> None:
@@ -149,3 +150,17 @@ def test_small_motions_grow_as_their_eigenvalue_has_it(
     )
     assert growth == pytest.approx(values[own].real, rel=2e-3, abs=2e-3)
     assert turn == pytest.approx(values[own].imag, rel=1e-4, abs=1e-9)
+
+
+@pytest.mark.nightly  # some seconds, for three meshes of two machines
+def test_a_ring_against_a_stiff_pin_moves_as_one_that_does_not_turn() -> None:
+    """On its rough shell, which friction and pin share; what a pin of 1e9 N/m changes of the whirl."""
+    full = "oil.cavitation_pressure=0.5 bar"
+    pin = "bearing.pin={radius=0.016, play=1e-4, stiffness=1e9, damping=500}"
+    pinned, blocked = (
+        frbcli.stability(frbcli.load_case("floating-ring", [*FILMS, full, held]), [100.0]).points[0]
+        for held in (pin, "bearing.ring.spin=blocked")
+    )
+    assert len(pinned.eigenvalues) == len(blocked.eigenvalues) + 2
+    assert pinned.critical == pytest.approx(blocked.critical, rel=1e-6)
+    assert pinned.growth > 10.0

@@ -99,6 +99,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "floating ring with a pin, on its elastic shell": (
         "floating-ring", ("film.cavitation=half-sommerfeld", PIN, SHELL)
     ),
+    "floating ring with a pin, on rough surfaces": ("floating-ring", (PIN, "film.cavitation=half-sommerfeld", ROUGH)),
     "floating ring with a pin, without weight": (
         "floating-ring", ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2")
     ),
