@@ -115,7 +115,7 @@ def _panels(run: Run, kept: KeptFilm, rows: int) -> tuple[Figure, Axes, Any]:
                                 ticks=MaxNLocator(TICKS))  # fmt: skip
         bar.set_label(label, fontsize=8.0)
         bar.outline.set_visible(False)
-        maps[-1, column].set_xlabel("φ in °; z from 0 to 1 along the section", fontsize=8.0)
+        maps[-1, column].set_xlabel("φ in °, white: smallest gap; z from 0 to 1 along the section", fontsize=8.0)
     return figure, parts[0].subplots(), maps
 
 
