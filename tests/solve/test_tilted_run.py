@@ -23,6 +23,7 @@ from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING, SOLVES, STEPS, Control, make_output
 from frbcli.solve.tableau import METHODS
@@ -191,11 +192,21 @@ def test_a_run_tells_the_given_tilt(tmp_path: Path) -> None:
 
 
 def test_plan_counts_cells_over_the_whole_width() -> None:
-    """A film that follows the tilt has as many cells on each half of its width as one that does not."""
-    flat, follows = (make_plan(rigid_shaft(*more, "film.solution=cells")) for more in ((), ("film.tilt=follows",)))
-    assert flat.cells is not None
-    assert follows.cells == (flat.cells[0], 2 * flat.cells[1])
-    assert follows.tolerance == flat.tolerance
+    """A film that follows the tilt has as many cells on each half of its width as are asked for, and else ten over the
+    whole of it for six on each half of one that does not."""
+    for target in (5e-3, 3e-3):
+        setting = f"accuracy.target={target!r}"
+        case = rigid_shaft("film.tilt=follows", setting)
+        flat, follows = make_plan(rigid_shaft("film.solution=cells", setting)), make_plan(case)
+        assert flat.cells is not None
+        assert follows.cells is not None
+        assert follows.tolerance == flat.tolerance
+        assert follows.film_error <= target
+        assert follows.cells[1] < 2 * flat.cells[1]
+        worst = worst_film(case, follows.eccentricity)
+        assert follows.film_error == worst.of((follows.cells[0], 0.6 * follows.cells[1]))
+    given = make_plan(rigid_shaft("film.tilt=follows", "accuracy.mesh=[6, 48]"))
+    assert given.cells == (48, 12)
 
 
 SHELL = 'bearing.misalignment=["0.5 mrad", "0 mrad"]'

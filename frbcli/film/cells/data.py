@@ -155,7 +155,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     section, scales, law = film.section, film.scales, film.law
     own.aspect, own.force_scale = section.aspect, section.force_scale
     own.scales.reference, own.scales.cavitation, own.scales.ambient = scales
-    slopes = end_slopes(film.grid.z, section.seals)
+    slopes = end_slopes(film.grid.height, section.seals)
     for end, edge, slope in zip((own.near, own.far), (section.near, section.far), slopes, strict=True):
         end.kind, end.rise, end.bend = ENDS[edge], *slope
     own.far.pressure = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0

@@ -40,7 +40,8 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
     if cells is None:
         return None
     worst = worst_film(march.case, march.plan.eccentricity)
-    own, others = (worst.of(march.plan.form.of_half(found)) for found in (cells_of(march.plan), cells))
+    share = march.plan.form.as_exact
+    own, others = (worst.of((around, share * along)) for around, along in (cells_of(march.plan), cells))
     tolerance = march.plan.tolerance * _looser(march.case, others / own)
     try:
         other = march.again(replace(march.plan, cells=cells, tolerance=tolerance))

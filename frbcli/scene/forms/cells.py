@@ -12,7 +12,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
 from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
-from frbcli.scene.planning.cell_choice import USUAL, cells_time, coarser_cells, compared_states, worst_film
+from frbcli.scene.planning.cell_choice import ALONG, USUAL, cells_time, coarser_cells, compared_states, worst_film
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -41,6 +41,7 @@ class CellForm(FilmForm):
     fine_when_static: ClassVar[bool] = True
     told_by_eccentricity: ClassVar[bool] = True
     turns_cells: ClassVar[bool] = True
+    lengths: ClassVar[tuple[int, ...]] = ALONG  # cells along to choose from
     compiling: ClassVar[tuple[float, float]] = COMPILING
 
     def solve_us(self, case: Case, plan: Plan) -> float:

@@ -61,6 +61,7 @@ class FilmForm:
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     inclines: ClassVar[bool] = False  # whether its gaps may have a tilt, in machines at rest
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
+    as_exact: ClassVar[float] = 1.0  # share of its cells along that are as exact in a film whose errors are tabulated
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
     same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
     modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film

@@ -30,7 +30,7 @@ from frbcli.scene.gate.analysis import (
 )
 from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
-from frbcli.scene.planning.cell_choice import FAST_TILTED, cells_time
+from frbcli.scene.planning.cell_choice import ALONG_TILTED, FAST_TILTED, cells_time
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text
 
@@ -130,11 +130,17 @@ def misalignment_faults(case: Case) -> Iterator[Fault]:
 
 @dataclass(frozen=True)
 class TiltedForm(CellForm):
-    """Finite volumes over the whole width, finer at the ends."""
+    """Finite volumes over the whole width, finer at the ends.
+
+    For these ten cells of the whole width are as exact as six of each half of a film without tilt (film/cells/mesh/
+    tilted.py).
+    """
 
     inclines: ClassVar[bool] = True
     fine_when_static: ClassVar[bool] = False
     follows_supply: ClassVar[bool] = False
+    lengths: ClassVar[tuple[int, ...]] = ALONG_TILTED
+    as_exact: ClassVar[float] = 0.6
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ((96, 24), (48, 12), (64, 16))
     rules: ClassVar[tuple[Rule, ...]] = (
         Rule(_analysis_faults, OTHERS),

@@ -26,6 +26,7 @@ FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
 COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction
 FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
 FAST_TILTED = (*ALONG, 12, 16)  # of films that follow a tilt
+ALONG_TILTED = (8, 10, 12, 16)  # over the whole width
 CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
 MOST_STATES, FEWEST_STATES = 8, 2
 KNEE = 1.5  # error over the least one that can be had, where the target is out of reach: less costs twice as much
@@ -49,11 +50,11 @@ class CellError:
         """This error for a journal that goes up to an eccentricity."""
         return replace(self, around=self.around * float(gap_ratio(MEASURED_AT, eccentricity) ** self.growth))
 
-    def of(self, cells: tuple[int, int]) -> float:
+    def of(self, cells: tuple[int, float]) -> float:
         """Error of the eccentricities with cells (around, along)."""
         return float(self.around * (USUAL[0] / cells[0]) ** self.order) + self._along(cells[1])
 
-    def _along(self, k: int) -> float:
+    def _along(self, k: float) -> float:
         known = sorted(self.along)
         if not known[0] <= k <= known[-1]:
             end = known[0] if k < known[0] else known[-1]
@@ -97,7 +98,7 @@ class WorstFilm:
 
     films: tuple[CellError, ...]
 
-    def of(self, cells: tuple[int, int]) -> float:
+    def of(self, cells: tuple[int, float]) -> float:
         """Expected error of the eccentricities with cells (around, along): that of the worst film."""
         return max(film.of(cells) for film in self.films)
 
@@ -118,11 +119,18 @@ def gap_ratio(expected: float, reached: float) -> float:
     return max(1.0, (1.0 - expected) / max(1.0 - reached, CLOSEST))
 
 
-def fewest_cells(worst: WorstFilm, allowed: float, most: float) -> tuple[int, int]:
+def fewest_cells(
+    worst: WorstFilm, allowed: float, most: float, lengths: tuple[int, ...] = ALONG, share: float = 1.0
+) -> tuple[int, int]:
     """The cheapest cells (around, along) with no more than the allowed error. If there are none: the most exact, or
-    where their error is above `most`, so that the target is out of reach, the cheapest with little more than it."""
-    choices = sorted(((m, k) for m in AROUND if m >= worst.least for k in ALONG), key=lambda cells: cells_time(*cells))
-    errors = {cells: worst.of(cells) for cells in choices}
+    where their error is above `most`, so that the target is out of reach, the cheapest with little more than it.
+
+    lengths: of the columns to choose from, which all have a fast elimination; share: of their cells that a film without
+    tilt has which is as exact."""
+    around = [m for m in AROUND if m >= worst.least]
+    choices = [(m, k) for m in around for k in lengths]
+    choices.sort(key=lambda cells: cells_time(cells[0], cells[1], lengths))
+    errors = {(m, k): worst.of((m, share * k)) for m, k in choices}
     best = min(errors.values())
     if best > allowed:
         allowed = best if best <= most else KNEE * best

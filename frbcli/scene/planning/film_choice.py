@@ -14,7 +14,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
-from frbcli.scene.forms.cells import CELLS
+from frbcli.scene.forms.cells import CELLS, CellForm
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.models import GIVEN, WHY
@@ -106,8 +106,8 @@ def _volumes(case: Case, target: float) -> FilmChoice:
     eccentricity = expected_eccentricity(case)
     worst = worst_film(case, eccentricity)
     form = TILTED if form_of(case).inclines else CELLS  # a run has no films of their own for a tilt that is given
-    cells, cells_why = _cells(case, worst, target)
-    error, cells = worst.of(cells), form.of_whole(cells)
+    cells, cells_why = _cells(case, form, worst, target)
+    error = worst.of((cells[0], form.as_exact * cells[1]))
     theory_why = "set in the case" if case.film.theory != "auto" else "finite-volume film"
     mesh_why = f"{cells_why}error of the eccentricities {error:.1g}"
     if form == TILTED:
@@ -212,9 +212,10 @@ def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
     return float(max(factor * slenderness**2, FIELDS_FLOOR if form == FIELDS else TABLE_FLOOR))
 
 
-def _cells(case: Case, worst: WorstFilm, target: float) -> tuple[tuple[int, int], str]:
-    """Cells (around, along), and what comes before their error in their reason."""
+def _cells(case: Case, form: CellForm, worst: WorstFilm, target: float) -> tuple[tuple[int, int], str]:
+    """Cells (around, along) of a form, and what comes before their error in their reason."""
     if case.accuracy.mesh is not None:
         cells, why = given_cells(case.accuracy.mesh, FEWEST)
-        return cells, f"{why}; "
-    return fewest_cells(worst, (RING_SHARE if turning_rings(case) else CELL_SHARE) * target, REACHED * target), ""
+        return form.of_whole(cells), f"{why}; "
+    allowed = (RING_SHARE if turning_rings(case) else CELL_SHARE) * target
+    return fewest_cells(worst, allowed, REACHED * target, form.lengths, form.as_exact), ""

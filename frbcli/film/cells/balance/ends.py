@@ -21,7 +21,7 @@ class EndSlope(NamedTuple):
 
 
 def end_slope(distances: Array, seal: float) -> EndSlope:
-    """The slope at an end from the distances (k,) of the middles of the cells, over the width.
+    """The slope at an end from the distances (k,) of the cells' unknowns, over the width.
 
     Behind a seal of this length, over the width, lies the pressure p_end: at the end of the film it is higher by the
     slope times that length.
@@ -34,10 +34,9 @@ def end_slope(distances: Array, seal: float) -> EndSlope:
     return EndSlope(rise / (1.0 + rise * seal), bend)
 
 
-def end_slopes(z: Array, seals: tuple[float, float] = NO_SEALS) -> tuple[EndSlope, EndSlope]:
-    """The slopes at z = 0 and z = 1 for the boundaries z (k + 1,) of the cells; seals: see Section."""
-    middle = 0.5 * (z[1:] + z[:-1])
-    return end_slope(middle, seals[0]), end_slope(1.0 - middle[::-1], seals[1])
+def end_slopes(height: Array, seals: tuple[float, float] = NO_SEALS) -> tuple[EndSlope, EndSlope]:
+    """The slopes at z = 0 and z = 1 for the places `height` (k,) of the cells' unknowns; seals: see Section."""
+    return end_slope(height, seals[0]), end_slope(1.0 - height[::-1], seals[1])
 
 
 def end_outflow(

@@ -89,7 +89,7 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
     through = rough_share(section, np.where(at_face, face, edge)) * np.where(at_face, through, edge**3)
     around = np.where(grid.around > 0.0, through * dz / np.maximum(grid.around, NO_DISTANCE), 0.0)
     along = np.where(grid.along > 0.0, cube[:, 1:-1] / np.maximum(grid.along, NO_DISTANCE), 0.0)
-    first, last = end_slopes(grid.z, section.seals)
+    first, last = end_slopes(grid.height, section.seals)
     near, far = cube[:, 0] * first.rise, cube[:, -1] * last.rise
     carried = 0.5 * motion.omega * face
     rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
@@ -125,7 +125,7 @@ class CellBalances:
         carried = c.carried * (loose + 0.5 * (packed + np.roll(packed, -1, axis=0)))
         around = c.around * (pressure - np.roll(pressure, -1, axis=0))
         along = c.along * (pressure[:, :-1] - pressure[:, 1:])
-        first, last = end_slopes(self.grid.z, self.section.seals)
+        first, last = end_slopes(self.grid.height, self.section.seals)
         groove = self.section.far_pressure / self.section.pressure_scale if self.section.far == "groove" else 0.0
         inwards = slice(None, None, -1)
         near = self._end(self.section.near, pressure, self.grid.fixed, c.near, 0.0, first)

@@ -69,7 +69,7 @@ def with_channels(data: VolumeFilms, films: Sequence[VolumeFilm], channels: Sequ
 
 def _cells(film: VolumeFilm, feed_hole: FeedHole) -> NDArray[np.bool_]:
     """(m, k) those under a feed hole."""
-    return hole_opening(film.section, feed_hole.hole, film.grid.phi, film.grid.z).inside
+    return hole_opening(film.section, feed_hole.hole, film.grid.phi, film.grid.z, film.grid.height).inside
 
 
 def _is_open(films: Sequence[VolumeFilm], feed_hole: FeedHole | None) -> bool:

@@ -38,18 +38,18 @@ class CellsAtBore(NamedTuple):
 
 
 def around_bores(
-    section: Section, phi: Array, z: Array, inside: Sequence[Mask], cover: Array, plain: Cells
+    section: Section, phi: Array, z: Array, height: Array, inside: Sequence[Mask], cover: Array, plain: Cells
 ) -> Cells:
     """The cells with the flows and areas around the bores by the local solutions.
 
-    phi (m + 1,), z (k + 1,): boundaries; inside: (m, k) the cells that stand for each hole of the section; cover:
-    (m, k) share of a cell that openings take; plain: the cells without.
+    phi (m + 1,), z (k + 1,): boundaries; height: (k,) of the unknowns; inside: (m, k) the cells that stand for each
+    hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without.
     """
     around, along, at, area, load = (values.copy() for values in plain)
     found: dict[bytes, BoreFit] = {}
     width = section.width / section.radius
     for number in range(len(section.holes)):
-        place = _place(section, phi, z, number, inside[number], cover)
+        place = _place(section, phi, z, height, number, inside[number], cover)
         if place is None:
             continue
         columns, rows, patch = place
@@ -79,12 +79,14 @@ def _over(length: Array, distance: Array) -> Array:
     return np.where(distance > 0.0, length / np.where(distance > 0.0, distance, 1.0), 0.0)
 
 
-def _place(section: Section, phi: Array, z: Array, number: int, inside: Mask, cover: Array) -> CellsAtBore | None:
+def _place(
+    section: Section, phi: Array, z: Array, height: Array, number: int, inside: Mask, cover: Array
+) -> CellsAtBore | None:
     """The cells around a hole; None where it is no bore, or has no room for them."""
     hole, width = section.holes[number], section.width / section.radius
     a, middle, room = hole.half_angle, hole.axial / section.width, 0.5 * _distance_to_next(section, number)
     dx, dy = np.diff(phi), np.diff(z) * width
-    x, y = wrapped(0.5 * (phi[1:] + phi[:-1]) - hole.position), (0.5 * (z[1:] + z[:-1]) - middle) * width
+    x, y = wrapped(0.5 * (phi[1:] + phi[:-1]) - hole.position), (height - middle) * width
     around_it = np.abs(x) < a + dx  # the longer sides of the cells count
     reach = a + min(REACH * max(dx[around_it].max(), dy.max()), room)
     near_x, near_y = np.abs(x) < reach, np.abs(y) < reach

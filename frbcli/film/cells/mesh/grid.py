@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cells.mesh.around_bores import Cells, around_bores
 from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
+from frbcli.film.cells.mesh.tilted import tilted_weights
 from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
 
@@ -22,8 +23,10 @@ CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angl
 class VolumeGrid:
     """Cells of one section. phi: (m + 1,) boundaries of a turn; z: (k + 1,) boundaries over [0, 1].
 
-    fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge pressure there; around: (m, k)
-    distance in rad over which oil flows through the face after each cell, along: (m, k - 1) the same over the width,
+    height: (k,) axial positions of the unknowns in [0, 1], the middles of the cells but in a run under a journal that
+    tilts, see tilted_cells; fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge
+    pressure there; around: (m, k) distance in rad over which oil flows through the face after each cell, along:
+    (m, k - 1) the same over the width,
     from middle to middle or to the edge of a groove or hole, 0 within one; at: (m, k) angle at which the flow around
     takes its gap, that of the face or of the middle of the way to the edge of a bore; area: (m, k) by which a cell
     counts in the balance, over R b, that of a given one whole; load: (m, k) share of a cell's area by which its
@@ -32,6 +35,7 @@ class VolumeGrid:
 
     phi: Array
     z: Array
+    height: Array
     fixed: NDArray[np.bool_]
     fixed_pressure: Array
     around: Array
@@ -50,11 +54,6 @@ class VolumeGrid:
     def centre(self) -> Array:
         """(m,) angles of the middles of the cells."""
         return 0.5 * (self.phi[1:] + self.phi[:-1])
-
-    @property
-    def height(self) -> Array:
-        """(k,) axial positions of the middles of the cells in [0, 1]."""
-        return 0.5 * (self.z[1:] + self.z[:-1])
 
     @property
     def size(self) -> Array:
@@ -102,24 +101,26 @@ def tilted_ends(along: int) -> Array:
     """(along + 1,) boundaries of cells over the width, finer at the ends, between equal ones and Chebyshev's.
 
     The error of forces and moments then falls with the square of the cells' size from the coarsest mesh on, so that it
-    can be told from half of the cells; on equal ones errors of different orders cancel each other there.
+    can be told from half of the cells; on equal ones errors of different orders cancel each other there, and so they do
+    on the few cells of a run (tilted.py).
     """
     equal = np.linspace(0.0, 1.0, along + 1)
     return np.asarray((1.0 - CHEBYSHEV) * equal + CHEBYSHEV * 0.5 * (1.0 - np.cos(np.pi * equal)))
 
 
-def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
+def volume_grid(section: Section, phi: Array, z: Array, height: Array | None = None) -> VolumeGrid:
     """Cells with the section's grooves and holes cut out of those whose middles they hold, their edges where they are.
 
+    height: (k,) see VolumeGrid, by default the middles of the cells.
     The flow between the middle of a cell and a groove or hole runs over the distance to its edge, wherever that lies
     between the faces: so it changes smoothly as the edge moves across the cells. Around a bore flows and areas are
     those of the local solutions (bores.py).
     """
     shape = len(phi) - 1, len(z) - 1
     fixed, fixed_pressure, cover = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
-    around, along = _distances(phi, z)
-    height = 0.5 * (z[1:] + z[:-1])
-    holes = [hole_opening(section, hole, phi, z) for hole in section.holes]
+    height = middles(z) if height is None else height
+    around, along = _distances(phi, height)
+    holes = [hole_opening(section, hole, phi, z, height) for hole in section.holes]
     openings = [(groove_opening(g, phi, z), _along_groove(section, g, height)) for g in section.grooves]
     openings += [(o, np.full(shape[1], h.pressure)) for o, h in zip(holes, section.holes, strict=True)]
     for opening, pressure in openings:
@@ -132,13 +133,20 @@ def volume_grid(section: Section, phi: Array, z: Array) -> VolumeGrid:
     cover, faces = np.minimum(cover, 1.0), np.repeat(phi[1:, None], shape[1], axis=1)
     size = np.diff(phi)[:, None] * np.diff(z)[None, :]
     plain = Cells(around, along, faces, size, np.ones(shape))
-    near = around_bores(section, phi, z, [opening.inside for opening in holes], cover, plain)
-    return VolumeGrid(phi, z, fixed, fixed_pressure, cover=cover, **near._asdict())
+    near = around_bores(section, phi, z, height, [opening.inside for opening in holes], cover, plain)
+    return VolumeGrid(phi, z, height, fixed, fixed_pressure, cover=cover, **near._asdict())
 
 
 def force_weights(section: Section, grid: VolumeGrid) -> Array:
     """(m, k) of the pressures of a section's cells in the integral over its width."""
-    return axial_weights(grid.z, section.far == "symmetry") + (grid.load - 1.0) * np.diff(grid.z)
+    middle = np.array_equal(grid.height, middles(grid.z))
+    weights = axial_weights(grid.z, section.far == "symmetry") if middle else tilted_weights(grid.z, grid.height)
+    return weights + (grid.load - 1.0) * np.diff(grid.z)
+
+
+def middles(faces: Array) -> Array:
+    """(n,) middles of cells with the boundaries (n + 1,)."""
+    return 0.5 * (faces[1:] + faces[:-1])
 
 
 def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array:
@@ -149,9 +157,9 @@ def _along_groove(section: Section, groove: AxialGroove, height: Array) -> Array
     return groove_pressure(section, groove, distance)
 
 
-def _distances(phi: Array, z: Array) -> tuple[Array, Array]:
-    """Between the middles of cells: (m, k) through the face after each, (m, k - 1) along."""
-    dphi, height = np.diff(phi), 0.5 * (z[1:] + z[:-1])
+def _distances(phi: Array, height: Array) -> tuple[Array, Array]:
+    """Between the unknowns of cells: (m, k) through the face after each, (m, k - 1) along."""
+    dphi = np.diff(phi)
     around = np.repeat(0.5 * (dphi + np.roll(dphi, -1))[:, None], len(height), axis=1)
     return around, np.repeat(np.diff(height)[None, :], len(dphi), axis=0)
 

@@ -35,11 +35,13 @@ def groove_opening(groove: AxialGroove, phi: Array, z: Array) -> Opening:
     return Opening(spread < 0.0, spread, np.full(shape, -np.inf), np.broadcast_to(cover[:, None], shape))
 
 
-def hole_opening(section: Section, hole: Hole, phi: Array, z: Array) -> Opening:
-    """A bore or pocket on cells with the boundaries phi (m + 1,) in rad and z (k + 1,) over [0, 1]."""
+def hole_opening(section: Section, hole: Hole, phi: Array, z: Array, height: Array) -> Opening:
+    """A bore or pocket on cells with the boundaries phi (m + 1,) in rad and z (k + 1,) over [0, 1].
+
+    height: (k,) axial positions of their unknowns."""
     middle, half = hole.axial / section.width, hole.half_width / section.width
     across = np.abs(wrapped(0.5 * (phi[1:] + phi[:-1]) - hole.position))[:, None]
-    along = np.abs(0.5 * (z[1:] + z[:-1]) - middle)[None, :]
+    along = np.abs(height - middle)[None, :]
     u, v = across / hole.half_angle, along / half
     if hole.round:
         inside = np.hypot(u, v) < 1.0

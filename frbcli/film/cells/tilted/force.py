@@ -18,7 +18,8 @@ from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import pushed
-from frbcli.film.cells.mesh.grid import tilted_ends, volume_grid
+from frbcli.film.cells.mesh.grid import volume_grid
+from frbcli.film.cells.mesh.tilted import tilted_cells
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
@@ -100,7 +101,7 @@ def tilted_film(
     edges = np.array([middle + side * half for middle, half in spans for side in (-1.0, 1.0)])
     ring = graded_ring(around, 0.0, 1.0, edges)
     for one, side, centre in sections:
-        grid = volume_grid(one, ring, tilted_ends(along // len(sections)))
+        grid = volume_grid(one, ring, *tilted_cells(along // len(sections)))
         width = side * one.width
         by_tilt = np.array([[0.0, centre], [-centre, 0.0], [0.0, width], [-width, 0.0]])
         plane = np.vstack([np.eye(2), np.zeros((2, 2))])
