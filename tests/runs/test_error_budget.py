@@ -204,6 +204,9 @@ def test_a_film_that_carries_little_counts_as_little() -> None:
     assert FilmErrors(times, errors, sizes).relative() == pytest.approx(1e-3)
     assert FilmErrors(times, errors, np.full(20, 1000.0)).relative() == pytest.approx(50e-3)
     assert FilmErrors(times, errors, np.zeros(20)).relative() is None
+    empty = np.where(times < 10.0, 1e-313, sizes)  # a film that is empty at first: no number is divided by that
+    assert FilmErrors(times, errors, empty).relative(9.0) is None
+    assert FilmErrors(times, errors, empty).relative() == pytest.approx(1e-3)
 
 
 def test_parts_that_a_run_has(tmp_path: Path) -> None:

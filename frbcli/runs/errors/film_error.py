@@ -17,7 +17,7 @@ from frbcli.scene.planning.planned import Plan
 from frbcli.solve.stage.contact import felt_motion
 from frbcli.solve.state import Array
 
-SMALL_FORCE, NO_FORCE = 0.1, 1e-9  # of the median one; of the largest one, where half of the states have none
+SMALL_FORCE, NO_FORCE = 0.1, 1e-9  # of the median one; of the largest one of a run, which counts as none
 QUANTILE = 0.9  # quantile of the errors, weighted with the force
 
 
@@ -35,7 +35,7 @@ class FilmErrors:
         States are weighted with their force."""
         kept = self.times <= until
         errors, sizes = self.errors[kept], self.sizes[kept]
-        if not len(errors) or sizes.max() == 0.0:
+        if not len(errors) or sizes.max() <= NO_FORCE * self.sizes.max():  # a film that runs dry has no force at first
             return None
         # At states with a very small force, as at the start, the error is relative to the usual force.
         scales = np.maximum(sizes, SMALL_FORCE * float(np.median(sizes)))
