@@ -9,8 +9,8 @@ import pytest
 
 from frbcli import bearing_sheet, load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
-from frbcli.film.cells.balance.feed import ALL, feed_at, supply_pressure
+from frbcli.errors import FilmUnsolved, InputError
+from frbcli.film.cells.balance.feed import ALL, feed_at, limited, supply_pressure
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import FilmLoads, loads
@@ -86,6 +86,19 @@ def test_what_is_given_comes_in_and_leaves(supply: str, law: str) -> None:
         assert feed_at(film, solution.filling).share < 1.0
     if law == "elrod":  # no oil comes in at the ends: all that leaves there was given
         assert outflow(film, MOTION.d, film.pressure(solution.state)) == pytest.approx(share * whole, rel=1e-10)
+
+
+def test_a_film_without_a_solution_at_empty_openings_is_found_between() -> None:
+    """As the two-phase film on 128 x 32 cells, of which a comparison then had nothing."""
+    film = film_of(case_of(GROOVE, 4e-7, "two-phase"))
+    solver = FilmSolver(film)
+
+    def solve(filling: float, near: VolumeSolution | None) -> VolumeSolution:
+        if filling == 0.0:
+            raise FilmUnsolved("it runs dry")
+        return solver.filled(filling, MOTION, None if near is None else near.w)
+
+    assert supplied(film, limited(film, solve)) == pytest.approx(4e-7, rel=1e-10)
 
 
 @each_supply

@@ -68,36 +68,37 @@ def limited(film: VolumeFilm, solve: Solve) -> VolumeSolution:
     """
     section, given = film.section, given_flow(film.section)
 
-    def over(found: VolumeSolution) -> float:
-        return found.flows.supply / given - 1.0
+    def tried(filling: float, near: VolumeSolution) -> tuple[VolumeSolution, float]:
+        try:
+            found = solve(filling, near)
+        except FilmUnsolved:  # it runs dry, and takes nothing
+            return near, -1.0
+        return found, found.flows.supply / given - 1.0
 
     solution = solve(ALL, None)
-    if (excess := over(solution)) <= 0.0:
+    if (excess := solution.flows.supply / given - 1.0) <= 0.0:
         return solution
     high, low, shortfall = ALL, 0.0, -1.0
     if section.far != "groove" or not film.law.empties:  # else nothing flows in at the pressure of the cavities
-        solution = solve(0.0, solution)
-        if (off := over(solution)) > 0.0:
+        solution, off = tried(0.0, solution)
+        if off > 0.0:
             high, excess, low = 0.0, off, _lowest(film)
         else:
             shortfall = off
-    return _between(solve, over, solution, (low, shortfall), (high, excess))
+    return _between(tried, solution, (low, shortfall), (high, excess))
 
 
 def _between(
-    solve: Solve, over: Callable[[VolumeSolution], float], solution: VolumeSolution,
+    tried: Callable[[float, VolumeSolution], tuple[VolumeSolution, float]], solution: VolumeSolution,
     low: tuple[float, float], high: tuple[float, float],
 ) -> VolumeSolution:  # fmt: skip
     """The solution that takes what is given, by Illinois' method (M. Dowell and P. Jarratt, BIT 11, 1971). low, high:
-    fillings, and by what share less or more is taken there. A film that runs dry takes nothing."""
+    fillings, and by what share less or more is taken there. tried: the film at a filling, from one near by, and that
+    share there."""
     (low_at, short), (high_at, excess), last, off = low, high, 0.0, math.inf
     for _ in range(MOST):
         filling = (low_at * excess - high_at * short) / (excess - short)
-        try:
-            solution = solve(filling, solution)
-            off = over(solution)
-        except FilmUnsolved:
-            off = -1.0
+        solution, off = tried(filling, solution)
         closed = high_at - low_at < SAME * max(1.0, abs(high_at))
         if abs(off) < (SETTLED if closed else ROUND_OFF):
             return solution
