@@ -118,7 +118,7 @@ def exported(tmp_path_factory: pytest.TempPathFactory) -> tuple[Run, Path]:
 
 
 def columns_of(point: str) -> list[str]:
-    axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m", "--unit", "m"]
+    axes = ["--x", f"{point}_x_m", "--y", f"{point}_y_m"]  # in m, as their names say
     return [*axes, "--time", "time_s", "--speed", "speed_Hz", "--clearance", "35 um"]
 
 
@@ -145,6 +145,13 @@ def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
     assert set(told) == {"disk": {"critical-speed"}, "journal": {"onset"}}[point]
     for kind, event in told.items():  # the run's own events at this point
         assert seen[kind] == pytest.approx(event["speed_Hz"], abs=1e-6)
+
+
+def test_a_unit_against_the_name_of_an_exported_column_is_refused(exported: tuple[Run, Path]) -> None:
+    given = Measurement("journal_x_m", CLEARANCE, time="time_s", speed="speed_Hz", unit_m=1e-6)
+    with pytest.raises(InputError, match='says that "journal_x_m" is in m, but --unit is 1e-06 m'):
+        measured_run(exported[1], given)
+    assert measured_run(exported[1], replace(given, unit_m=None)).signals["journal_x_m"].unit == "m"
 
 
 def test_a_measurement_of_one_direction_has_no_events_beside_a_run(

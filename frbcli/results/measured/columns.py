@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -18,6 +19,7 @@ from frbcli.results.records import LARGEST
 Values = NDArray[np.float64]
 
 LARGEST_FILE = 1024**3  # bytes
+EXPORTED = re.compile(r"time_(s)|speed_(Hz)|(?:journal|disk)(?:_\w+)?_[xy]_(m)")  # of `frb export`
 
 
 @dataclass(frozen=True)
@@ -71,7 +73,11 @@ class Columns:
 
     def unit(self, name: str) -> str | None:
         """The unit of a column, None where the file does not tell it."""
-        return self.units.get(self.named(name))
+        return self._unit(self.named(name))
+
+    def _unit(self, name: str) -> str | None:
+        own = EXPORTED.fullmatch(name)
+        return self.units.get(name) or (None if own is None else next(filter(None, own.groups())))
 
     def row(self, place: int) -> str:
         """The name of a row, counted from 0 here and from 1 in the name."""
@@ -82,7 +88,7 @@ class Columns:
         rows: list[dict[str, Any]] = []
         for name, values in self.values.items():
             shape = self.shapes.get(name) or self.shapes.get(name.rpartition(".")[0]) or (len(values),)
-            rows.append({"name": name, "shape": list(shape), "unit": self.units.get(name), "kind": "column"})
+            rows.append({"name": name, "shape": list(shape), "unit": self._unit(name), "kind": "column"})
         for name, value in self.numbers.items():
             rows.append({"name": name, "shape": [1, 1], "unit": None, "kind": f"number {value:.10g}"})
         for name, reason in self.doubtful.items():
