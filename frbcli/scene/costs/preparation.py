@@ -31,13 +31,16 @@ SAMPLES_HELD, COPIES = 16384, 3  # output times between two writes, and in how m
 # How often all samples are in memory: in the run, and in the file that it is about to write; or in the run and in a
 # second one, of which one signal at a time is joined.
 KEPT, KEPT_OF_BOTH = 2.1, 2.2
-RINGS, HEAT_s = 1.3, 6.0  # by what and by how much compiling takes longer where rings turn, and with heat
+RINGS, HEAT_s = 1.5, 12.0  # by what and by how much compiling takes longer where rings turn, and with heat
+AT_REST = 0.4  # of the kernels of a form, without rings and heat: what films at rest need
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 
-def compile_s(cases: Iterable[Case]) -> float:
+def compile_s(cases: Iterable[Case], at_rest: bool = False) -> float:
     """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
-    a time loop of their own beside that of tabulated films."""
+    a time loop of their own beside that of tabulated films. at_rest: without a time loop."""
+    if at_rest:
+        return AT_REST * sum({form: form.compiling[0] for form in map(form_of, cases)}.values())
     return sum(spent for *_, spent in {(*_kind(case), _compilation(case)[0]) for case in cases})
 
 
