@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from frbcli.case.schema import Case
 from frbcli.elements.base import BaseElement
 from frbcli.elements.coefficients import GivenCoefficients
+from frbcli.elements.collar.thrust import ThrustElement
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
 from frbcli.elements.force import ForceElement
@@ -14,7 +15,6 @@ from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.pin import PinElement
 from frbcli.elements.support import SupportElement
-from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
     GivenCoefficients, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.film.cells.balance.feed import opening_pressures
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of

@@ -7,8 +7,8 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.elements.pin import has_pins
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.errors import Fault
 from frbcli.scene.machine.elements import span_faults
 from frbcli.units import display

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 import frbcli
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.reading.load import load_case, load_case_text
-from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError

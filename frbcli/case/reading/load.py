@@ -9,6 +9,8 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from frbcli.case.course.speed_points import with_speed_points
+from frbcli.case.course.time_tables import with_input_files, with_time_tables
 from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.files.housing_modes import with_housing_file
 from frbcli.case.files.ross_rotor import with_rotor_file
@@ -22,8 +24,6 @@ from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.machine_table import machine_breaches
-from frbcli.case.surroundings.speed_points import with_speed_points
-from frbcli.case.surroundings.time_tables import with_input_files, with_time_tables
 from frbcli.errors import Fault, InputError
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault

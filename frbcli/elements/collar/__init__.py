@@ -1,1 +1,1 @@
-"""A collar between the pads of its thrust bearing: where it rests along the axis, and what holds it in tilt."""
+"""A collar between the pads of its thrust bearing: its rest along the axis, its motion, and what holds it in tilt."""

@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.time_tables import inputs_of
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.rotor.speed_profile import Array, speed_profile
 from frbcli.scene.costs.course import expected_course

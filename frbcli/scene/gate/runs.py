@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from frbcli.case.course.time_tables import WALLS
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.case.surroundings.time_tables import WALLS
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.coupling import coupling_of

@@ -8,9 +8,9 @@ from dataclasses import replace
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
+from frbcli.elements.collar.thrust import COLLAR
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Parts
-from frbcli.elements.thrust import COLLAR
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
 from frbcli.rotor.held import preset

@@ -10,7 +10,7 @@ from typing import ClassVar
 import numpy as np
 
 from frbcli.case.rotor import TurbochargerRotor
-from frbcli.elements.thrust import COLLAR
+from frbcli.elements.collar.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.body import Body

@@ -6,8 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from frbcli.case.course.time_tables import MOST_NUMBERS, TableKind, Unfit, read_table, read_tacho
 from frbcli.case.reading.tables import Breach
-from frbcli.case.surroundings.time_tables import MOST_NUMBERS, TableKind, Unfit, read_table, read_tacho
 from frbcli.units import SPEED, ValueFault, quantity
 
 if TYPE_CHECKING:
