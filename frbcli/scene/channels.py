@@ -12,6 +12,7 @@ from frbcli.case.supplies.supply import MIDDLE
 from frbcli.errors import Fault
 from frbcli.film.cells.channels.channel import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.scene.keys import bearing_key
 
 INLETS = "a groove around one end of the outer film, or an end in an oil bath"
 
@@ -19,6 +20,18 @@ INLETS = "a groove around one end of the outer film, or an end in an oil bath"
 def coupled(bearing: FloatingRingBearing) -> bool:
     """Whether the channels of a ring couple its films."""
     return bearing.channels == "coupled"
+
+
+def coupled_rings(case: Case) -> Iterator[tuple[str, FloatingRingBearing]]:
+    """The rings whose channels couple their films, each with the key that says so."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
+            yield f"{bearing_key(case, index)}.channels", bearing
+
+
+def coupling_faults(case: Case, problem: str, remedy: str) -> Iterator[Fault]:
+    """The faults of all channels that couple films, where these are not modelled."""
+    return (Fault(key, "coupled", None, problem, remedy) for key, _ in coupled_rings(case))
 
 
 def opens_to_groove(bearing: FloatingRingBearing) -> bool:
@@ -79,11 +92,10 @@ def coupled_channels(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[Channel
 
 def channel_faults(case: Case) -> Iterator[Fault]:
     """The faults of coupled channels."""
-    for bearing in case.bearings:
-        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
-            problem, remedy = _problem(bearing)
-            if problem:
-                yield Fault("bearing.channels", "coupled", None, problem, remedy)
+    for key, bearing in coupled_rings(case):
+        problem, remedy = _problem(bearing)
+        if problem:
+            yield Fault(key, "coupled", None, problem, remedy)
 
 
 def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:

@@ -162,3 +162,9 @@ def test_speeds_that_leave_no_range_are_refused_where_the_range_is_asked_for() -
         with pytest.raises(InputError, match="above zero"):
             getattr(frbcli, name)(case)
     assert frbcli.stability(case, [20.0]).points[0].rests
+
+
+def test_a_fault_of_channels_names_their_bearing_among_several() -> None:
+    groove = 'bearing.1.inner.supply={kind="circumferential-groove", pressure="3 bar"}'
+    found = faults(frbcli.load_case("turbocharger-car", ["bearing.1.channels=coupled", groove]))
+    assert [(fault.key, fault.value) for fault in found] == [("bearing.1.channels", "coupled")]

@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.channels import coupled
+from frbcli.scene.channels import coupling_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
@@ -57,11 +56,8 @@ def _machine_faults(case: Case) -> Iterator[Fault]:
     elif not shaft_of(case).tilts:
         problem = "moves in its plane: its journals do not tilt."
         yield Fault("rotor.kind", case.rotor.kind, None, problem, f'Take kind = "turbocharger". {WITHOUT}')
-    for key, given in zip(case.given_keys, case.given_bearings, strict=True):
-        ring = given.parts[0]
-        if isinstance(ring, FloatingRingBearing) and coupled(ring):
-            problem = "passes oil between the films of a ring, which those that tilt do not follow."
-            yield Fault(f"{key}.channels", "coupled", None, problem, f'Write channels = "pressure". {WITHOUT}')
+    problem = "passes oil between the films of a ring, which those that tilt do not follow."
+    yield from coupling_faults(case, problem, f'Write channels = "pressure". {WITHOUT}')
     for damper in DamperElement.of(case):
         yield Fault(damper.key, "", None, "lets a shell move, whose own tilt is not modelled.", WITHOUT)
 

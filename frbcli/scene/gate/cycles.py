@@ -7,13 +7,12 @@ from collections.abc import Iterator
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.channels import coupled
+from frbcli.scene.channels import coupled_rings
 from frbcli.scene.films import (
     HOUSING,
     FilmPlace,
     film_places,
     is_plain,
-    rings,
     turning_cartridges,
     turns_with_oil,
 )
@@ -136,7 +135,7 @@ def by_shooting(case: Case) -> bool:
 def turning_openings(case: Case) -> bool:
     """Whether films on cells are tabulated as the mean over the angle of their openings: their gaps are even along the
     axis, all solve a linear equation, and all openings turn."""
-    if form_of(case).inclines or not all_clipped(case) or any(coupled(bearing) for bearing in rings(case)):
+    if form_of(case).inclines or not all_clipped(case) or any(coupled_rings(case)):
         return False
     return all(
         is_plain(place.geometry) or (place.geometry.lobes is None and place.grid_body != HOUSING)

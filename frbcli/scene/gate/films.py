@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
-from frbcli.scene.channels import coupled
+from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS
@@ -20,7 +19,7 @@ from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.keys import bearing_key, film_keys
+from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
 from frbcli.scene.speeds import keeps_oil
@@ -124,10 +123,7 @@ def moved_gas_faults(case: Case) -> Iterator[Fault]:
     if coupling_of(case).in_turn:
         remedy = f'Write film.coupling = "monolithic", {peeken}.'
         yield Fault("film.coupling", case.film.coupling, None, problem, remedy)
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
-            key = f"{bearing_key(case, index)}.channels"
-            yield Fault(key, "coupled", None, problem, f'Write channels = "pressure" here, {peeken}.')
+    yield from coupling_faults(case, problem, f'Write channels = "pressure" here, {peeken}.')
 
 
 def sealed_faults(case: Case) -> Iterator[Fault]:

@@ -11,9 +11,9 @@ from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.channels import coupled
+from frbcli.scene.channels import coupling_faults
 from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain
-from frbcli.scene.keys import bearing_key, cavitation_keys
+from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.speeds import default_speeds, keeps_oil
 from frbcli.scene.tilt import as_text
 
@@ -36,11 +36,8 @@ def tilted_sheet_faults(case: Case) -> Iterator[Fault]:
 
 def coefficient_faults(case: Case) -> Iterator[Fault]:
     """Films that eight coefficients do not describe."""
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and coupled(bearing):
-            problem = "couples the two films of a ring: neither has coefficients of its own."
-            key = f"{bearing_key(case, index)}.channels"
-            yield Fault(key, "coupled", None, problem, 'Write channels = "pressure" here.')
+    problem = "couples the two films of a ring: neither has coefficients of its own."
+    yield from coupling_faults(case, problem, 'Write channels = "pressure" here.')
     if keeps_oil(case):
         yield from _memory_faults(case)
 
