@@ -172,6 +172,39 @@ def test_cones_of_a_rigid_rotor_in_rings_and_in_a_cartridge() -> None:
         assert max(np.abs(point.eigenvalues - value).min() / abs(value) for value in still) > 1e-2
 
 
+def test_a_cartridge_is_two_rings_that_tilt_whose_halves_are_joined() -> None:
+    """Two rings have four tilts more than a cartridge. Where all of these follow the places of both rings, as on one
+    stiff body, the matrices of the two rings in any films are those of the cartridge of twice their mass and polar
+    inertia, and of their inertias about its middle. Joined by springs they come near to it as these become stiff."""
+    arm, tilt, mass = 3e-3, 1.5e-6, 5e-3
+    films = f"inner = {INNER.replace(BORES, GROOVE)}, outer = {OUTER}"
+    body = f'{{mass = "10 g", inertia = "4 kg*mm^2", tilt_inertia = "{2.0 * (tilt + mass * arm**2)} kg*m^2"}}'
+    ring = f'{{mass = "5 g", inertia = "2 kg*mm^2", tilt_inertia = "{tilt} kg*m^2"}}'
+    one = f'bearing={{kind = "cartridge", positions = ["7 mm", "13 mm"], ring = {body}, {films}}}'
+    turn = 0.3 * OMEGA
+    cartridge, rings = (
+        without_spins(system_of(case).rotor, np.full(count, turn))
+        for case, count in ((ringed(one), 1), (ringed(ring=ring, inner=INNER.replace(BORES, GROOVE)), 2))
+    )
+    shaft, ends = np.eye(4), np.eye(4).reshape(2, 2, 4)  # of the cartridge: the places of its left and right end
+    slope = ACROSS.T @ (ends[1] - ends[0]) / (2.0 * arm)  # t_x = -dy/dz, t_y = dx/dz
+    joined = np.block([[shaft, np.zeros((4, 4))], [np.zeros((8, 4)), np.vstack([ends[0], slope, ends[1], slope])]])
+    assert rings.journals @ joined == pytest.approx(cartridge.journals, rel=1e-9, abs=1e-9)
+    random, size = np.random.default_rng(4), np.array([1.0, 1.0, arm, arm])
+    stiffness, damping = (scale * random.normal(size=(4, 4, 4)) * np.outer(size, size) for scale in (1e6, 100.0))
+    whole, apart = (linearised(each, OMEGA, stiffness, damping) for each in (cartridge, rings))
+    for found, parts in zip(whole, apart, strict=True):
+        together = joined.T @ parts @ joined
+        assert np.abs(found - together).max() < 1e-9 * np.abs(found).max()
+    relative = np.eye(12)[[6, 7, 10, 11]] - np.vstack([slope, slope]) @ np.eye(12)[[4, 5, 8, 9]]
+    expected, apart_by = np.linalg.eigvals(first_order(*whole)), []
+    for spring in (1e4, 1e5):
+        values = np.linalg.eigvals(first_order(*apart[:2], apart[2] + spring * relative.T @ relative))
+        apart_by.append(max(np.abs(values - value).min() / abs(value) for value in expected))
+    assert apart_by[1] < 1e-3
+    assert apart_by[0] == pytest.approx(10.0 * apart_by[1], rel=0.1)
+
+
 def test_forces_moments_and_torques_on_the_rings_balance() -> None:
     """A disk beside the bearings tilts the shaft, and it the rings."""
     case = ringed("disk.0.position=16 mm")
