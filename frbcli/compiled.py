@@ -44,6 +44,10 @@ Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
+# LLVM orders the instructions of a block twice. Its usual way of doing so for the first time takes time with the square
+# of their number, more than half of that for the machine code of a time loop, which begins with thousands of addresses.
+# In this way it takes a tenth, and the code is as fast.
+binding.set_option("frb", "-pre-RA-sched=list-burr")
 
 
 class _Part(JITCodeLibrary):
@@ -74,7 +78,8 @@ class _PartCompiler(Compiler):
         return compile_extra(func)
 
 
-# Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has
+# Of numba.extending.overload, for functions chosen by the types of their arguments: what `compiled` has. Those that are
+# put into their callers need it as well: numba compiles them by themselves, too, to know what they return.
 AS_KERNELS: Any = {
     "error_model": "numpy", "no_cpython_wrapper": True, "no_cfunc_wrapper": True, "_nrt": False,
     "pipeline_class": _PartCompiler,

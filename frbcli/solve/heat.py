@@ -16,7 +16,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from frbcli.compiled import Array, compiled
+from frbcli.compiled import AS_KERNELS, Array, compiled
 from frbcli.film.bearing_model.film import CLEARANCE as MODEL_CLEARANCE
 from frbcli.film.bearing_model.film import VISCOSITY as MODEL_VISCOSITY
 from frbcli.film.bearing_model.film import model_flow
@@ -123,7 +123,7 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
     raise NotImplementedError
 
 
-@overload(carry_heat, inline="always")
+@overload(carry_heat, jit_options=AS_KERNELS, inline="always")
 def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: RUNNING
@@ -137,7 +137,7 @@ def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearan
     )
 
 
-@overload(write_heat, inline="always")
+@overload(write_heat, jit_options=AS_KERNELS, inline="always")
 def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, out_heat, first, last: None
@@ -260,7 +260,7 @@ def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> No
     raise NotImplementedError
 
 
-@overload(leaving, inline="always")
+@overload(leaving, jit_options=AS_KERNELS, inline="always")
 def _leaving(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: ignore[no-untyped-def]
     if kind_of(films) == CELLS:
         return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
@@ -284,7 +284,7 @@ def _flow_of(ends: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, 
     raise NotImplementedError
 
 
-@overload(_flow_of, inline="always")
+@overload(_flow_of, jit_options=AS_KERNELS, inline="always")
 def _flow_of_one(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
     if isinstance(ends, types.UniTuple):
         return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload
 
-from frbcli.compiled import Array, Indices, compiled
+from frbcli.compiled import AS_KERNELS, Array, Indices, compiled
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.solve.films.kinds import by_kind
@@ -59,7 +59,7 @@ def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
     raise NotImplementedError
 
 
-@overload(set_inputs, inline="always")
+@overload(set_inputs, jit_options=AS_KERNELS, inline="always")
 def _set_inputs(inputs, films, heat, t):  # type: ignore[no-untyped-def]
     if getattr(inputs, "instance_class", None) is not Inputs:
         return lambda inputs, films, heat, t: None
@@ -80,7 +80,7 @@ def give_temperatures(inputs: Inputs, heat: LumpedHeat | NoHeat, t: float) -> No
     raise NotImplementedError
 
 
-@overload(give_temperatures, inline="always")
+@overload(give_temperatures, jit_options=AS_KERNELS, inline="always")
 def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda inputs, heat, t: None

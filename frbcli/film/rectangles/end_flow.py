@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from frbcli.compiled import compiled
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY, Section, groove_pressure
 from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.chain import (
@@ -203,7 +203,7 @@ def end_flow(flow: EndFlow, d_x: float, d_y: float, w_x: float, w_y: float, scal
     return _KINDS[type(flow)](flow, d_x, d_y, w_x, w_y, scale)
 
 
-@overload(end_flow, inline="always")
+@overload(end_flow, jit_options=AS_KERNELS, inline="always")
 def _end_flow(flow, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
     one = _KINDS[flow.instance_class]
     return lambda flow, d_x, d_y, w_x, w_y, scale: one(flow, d_x, d_y, w_x, w_y, scale)

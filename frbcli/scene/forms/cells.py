@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
 RESTING = 3.0  # factor for a resting position, found by Newton's method
-COMPILING = 41.0, 5e8  # at the first start: CPU time in s, memory in bytes
+COMPILING = 36.0, 5e8  # at the first start: CPU time in s, memory in bytes
 AGAIN = 0.5  # of the loop: the run on fewer cells
 FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
 # Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a

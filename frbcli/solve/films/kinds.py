@@ -44,7 +44,7 @@ def by_kind(
     """A question that kernels ask the films, its argument `films`, is compiled as the answer of their kind: that under
     the name of the kind, else `others`. inline: the answer is put into the functions that ask."""
     at = list(inspect.signature(question).parameters).index("films")
-    how: dict[str, Any] = {"inline": "always"} if inline else {"jit_options": AS_KERNELS}
+    how: dict[str, Any] = {"jit_options": AS_KERNELS} | ({"inline": "always"} if inline else {})
 
     def answer(*given: Any) -> Callable[..., Any]:
         return answers.get(kind_of(given[at]), others)

@@ -16,7 +16,7 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from frbcli.compiled import Array, compiled
+from frbcli.compiled import AS_KERNELS, Array, compiled
 from frbcli.solve.stage.equations import FREE, LATE, U_0, V
 from frbcli.solve.stage.loads import solve_columns
 from frbcli.solve.state import RotorData
@@ -68,7 +68,7 @@ def _have_cones(cones: Any) -> bool:
     return getattr(cones, "instance_class", None) is Cones
 
 
-@overload(prepare_cones, inline="always")
+@overload(prepare_cones, jit_options=AS_KERNELS, inline="always")
 def _prepare_cones(cones, rotor, g, speed):  # type: ignore[no-untyped-def]
     if not _have_cones(cones):
         return lambda cones, rotor, g, speed: None
@@ -77,7 +77,7 @@ def _prepare_cones(cones, rotor, g, speed):  # type: ignore[no-untyped-def]
     )
 
 
-@overload(turn_cones, inline="always")
+@overload(turn_cones, jit_options=AS_KERNELS, inline="always")
 def _turn_cones(cones, bodies, s, known, g, selection, at, stage_a, journal):  # type: ignore[no-untyped-def]
     if not _have_cones(cones):
         return lambda cones, bodies, s, known, g, selection, at, stage_a, journal: 0.0

@@ -16,7 +16,7 @@ import numpy as np
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from frbcli.compiled import Array, compiled
+from frbcli.compiled import AS_KERNELS, Array, compiled
 from frbcli.dense import solve_dense
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
 from frbcli.solve.stage.equations import FREE, U_0
@@ -79,7 +79,7 @@ def _have_loads(loads: Any) -> bool:
     return getattr(loads, "instance_class", None) is VaryingLoads
 
 
-@overload(prepare_loads, inline="always")
+@overload(prepare_loads, jit_options=AS_KERNELS, inline="always")
 def _prepare_loads(loads, rotor, g, speed):  # type: ignore[no-untyped-def]
     if not _have_loads(loads):
         return lambda loads, rotor, g, speed: None
@@ -88,7 +88,7 @@ def _prepare_loads(loads, rotor, g, speed):  # type: ignore[no-untyped-def]
     )
 
 
-@overload(add_loads, inline="always")
+@overload(add_loads, jit_options=AS_KERNELS, inline="always")
 def _add_loads(loads, t, angle, g, selection, at, journal):  # type: ignore[no-untyped-def]
     if not _have_loads(loads):
         return lambda loads, t, angle, g, selection, at, journal: None

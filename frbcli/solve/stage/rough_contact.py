@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload
 
-from frbcli.compiled import Array, compiled
+from frbcli.compiled import AS_KERNELS, Array, compiled
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, X_0, U
 from frbcli.solve.state import SLIP, SUM
@@ -80,28 +80,28 @@ def _press(rough: RoughContact, f: int, clearance: float, g: float, journal: Arr
     journal[BY_Y, y] += found.d_yy + g * found.k_yy
 
 
-@overload(set_sliding, inline="always")
+@overload(set_sliding, jit_options=AS_KERNELS, inline="always")
 def _set(rough, turning, bodies):  # type: ignore[no-untyped-def]
     if _rough(rough):
         return lambda rough, turning, bodies: _set_sliding(rough, turning, bodies)
     return lambda rough, turning, bodies: None
 
 
-@overload(press, inline="always")
+@overload(press, jit_options=AS_KERNELS, inline="always")
 def _presses(rough, f, clearance, g, journal):  # type: ignore[no-untyped-def]
     if _rough(rough):
         return lambda rough, f, clearance, g, journal: _press(rough, f, clearance, g, journal)
     return lambda rough, f, clearance, g, journal: None
 
 
-@overload(rubbing, inline="always")
+@overload(rubbing, jit_options=AS_KERNELS, inline="always")
 def _rubs(rough, f, clearance, g, journal):  # type: ignore[no-untyped-def]
     if _rough(rough):
         return lambda rough, f, clearance, g, journal: _rubbing(rough, f, clearance, g, journal)
     return lambda rough, f, clearance, g, journal: APART
 
 
-@overload(sharpness, inline="always")
+@overload(sharpness, jit_options=AS_KERNELS, inline="always")
 def _bends(rough, clearance):  # type: ignore[no-untyped-def]
     if _rough(rough):
         return lambda rough, clearance: clearance / rough.surfaces.roughness
