@@ -242,6 +242,14 @@ def test_arrays_that_kernels_make_have_one_who_counts_their_references() -> None
             assert counts[given] == {"makes_arrays=True" in decorator}, f"{name} calls {given}"
 
 
+def test_functions_chosen_by_types_become_no_machine_code_by_themselves() -> None:
+    """numba compiles them once more than they are used, to know what they return, also those put into their callers."""
+    files = Path(frbcli.__file__).parent.rglob("*.py")
+    chosen = [one for file in files for one in re.findall(r"(?m)^@overload\(.*", file.read_text(encoding="utf-8"))]
+    assert '@overload(carry_heat, jit_options=AS_KERNELS, inline="always")' in chosen
+    assert [one for one in chosen if "jit_options=AS_KERNELS" not in one] == []
+
+
 MORE = [pytest.param(name, marks=pytest.mark.nightly) for name in ("floating-ring", "rigid-two-phase")]
 
 
