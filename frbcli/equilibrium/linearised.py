@@ -1,7 +1,8 @@
 """The machine linearised at rest: its matrices on films of eight coefficients each, and its state matrix.
 
-A ring with a pin leans on it, so that small motions see a spring and a damper, without play. A ring between rough
-surfaces turns or creeps at rest, and its speed follows the motion: friction falls steeply with it where it sticks.
+The speeds of rings follow small motions, as the torques of films and summits have them: friction falls steeply with
+them where a ring sticks. Around films that keep oil, which is linearised for one speed, they stand. A ring with a pin
+leans on it, so that small motions see a spring and a damper, without play.
 """
 
 from __future__ import annotations
@@ -21,10 +22,10 @@ Array = NDArray[np.float64]
 
 
 def rotor_at_rest(system: System, omega: float, ring_speeds: Array, at_rest: FilmsAtRest) -> LinearRotor:
-    """The machine at omega rad/s without its films. Its rings turn with ring_speeds (rings,) in rad/s, but for two
-    kinds whose angles are degrees of freedom and see the torques of their films: those with a pin stay, on its spring
-    and its damper, and those between rough surfaces turn as friction has it."""
-    follow = np.full(system.ring_count, system.rough_rings) | system.pinned
+    """The machine at omega rad/s without its films. The angles of its rings are degrees of freedom and see the torques
+    of their films and summits; of rings with a pin its spring and its damper, too. Around films that keep oil rings
+    without a pin turn with ring_speeds (rings,) in rad/s."""
+    follow = np.full(system.ring_count, not system.remembers) | system.pinned
     rotor = without_spins(system.rotor, ring_speeds, follow)
     rings = np.flatnonzero(follow)
     if not len(rings):

@@ -45,8 +45,8 @@ class StabilityPoint:
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
     on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
     in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
-    their speeds stand while the rotor moves, but those between rough surfaces follow, and are states of their own; 0
-    against a pin. warm: the machine with its heat, of a case that has it; its temperatures stand, too. errors: (2 n,)
+    their speeds follow the motion and are states of their own, but around films that keep oil they stand; 0 against a
+    pin. warm: the machine with its heat, of a case that has it; its temperatures stand, too. errors: (2 n,)
     expected ones of the eigenvalues in 1/s, by the mesh of the films, empty where they were not asked for; others:
     stiffness and damping (films, 2, 2) on other meshes, with the share of the difference that is the error; axial: the
     collar under an axial load, None without one; rotor: the

@@ -1,8 +1,9 @@
-"""Small motions of machines whose rings turn between rough surfaces: the speeds of the rings follow them."""
+"""Small motions of machines whose rings turn, between rough surfaces, too: the speeds of the rings follow them."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -98,13 +99,17 @@ def test_loads_of_cycles_have_exact_derivatives_by_the_motions_of_rings(
             np.testing.assert_allclose(change, slopes[0, :, column], rtol=2e-4, atol=1e-5 * np.abs(change).max())
 
 
-@pytest.mark.parametrize(("speed", "stuck"), [LIFTING, (30.0, True), (30.0, False)])
+@pytest.mark.parametrize(
+    ("speed", "stuck", "rough"), [(30.0, True, True), (30.0, False, True), (16.0, False, False), (90.0, False, False)]
+)
 def test_the_machine_at_rest_has_the_eigenvalues_of_that_of_cycles(
-    system: System, speed: float, stuck: bool
+    system: System, speed: float, stuck: bool, rough: bool
 ) -> None:
     """Both are linearised in ways of their own: with coefficients and torques at rest here, by the loads of films and
     summits there. A ring that sticks has a rate of some 1e8 1/s."""
     omega = 2.0 * math.pi * speed
+    if not rough:
+        system = replace(system, asperities=None)
     rest = rest_of(system, speed, stuck)
     films = films_at_rest(system, omega, rest)
     matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
@@ -122,14 +127,21 @@ def test_the_machine_at_rest_has_the_eigenvalues_of_that_of_cycles(
 
 @pytest.mark.nightly  # a quarter of a minute of compilation
 @pytest.mark.parametrize(
-    ("speed", "stuck", "time"), [(4.0, False, 1.0), (30.0, False, 0.1), (60.0, True, 0.1), (120.0, True, 0.1)]
-)
+    ("speed", "stuck", "time", "rough"),
+    [
+        (4.0, False, 1.0, True), (30.0, False, 0.1, True), (60.0, True, 0.1, True), (120.0, True, 0.1, True),
+        (16.0, False, 0.1, False),
+    ],
+)  # fmt: skip
 def test_small_motions_grow_as_their_eigenvalue_has_it(
-    system: System, speed: float, stuck: bool, time: float
+    system: System, speed: float, stuck: bool, time: float, rough: bool
 ) -> None:
     """In the time loop, from beside rest on, along the eigenvector that grows fastest: at 4 Hz a ring on its way from
-    its shell, or back to it, at 120 Hz the whirl of a rotor in a ring that sticks."""
+    its shell, or back to it, at 120 Hz the whirl of a rotor in a ring that sticks, and at 16 Hz the slow motion
+    of a ring without summits, whose decay a constant speed of the ring would have as 12.6 1/s."""
     omega = 2.0 * math.pi * speed
+    if not rough:
+        system = replace(system, asperities=None)
     rest, n = rest_of(system, speed, stuck), system.rotor.size
     films = films_at_rest(system, omega, rest)
     matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
@@ -140,9 +152,10 @@ def test_small_motions_grow_as_their_eigenvalue_has_it(
     q, v = rest.displacements.copy(), rest.velocities(system)
     q[: n - 1] += 1e-9 * begun[: n - 1]
     v += 1e-9 * begun[n - 1 :]
-    assert system.asperities is not None
-    profile, rough = speed_profile((0.0, time), (omega, omega)), RoughContact(system.asperities, np.zeros((2, 2)))
-    control = Control(1e-11, 24.0, time / 40.0, time / 40.0, 0.9999, 1e-9, rough=rough)
+    profile = speed_profile((0.0, time), (omega, omega))
+    control = Control(1e-11, 24.0, time / 40.0, time / 40.0, 0.9999, 0.0)
+    if system.asperities is not None:
+        control = control._replace(contact_stiffness=1e-9, rough=RoughContact(system.asperities, np.zeros((2, 2))))
     after = march(system, profile, control, start(system, profile, q, v))
     moved = np.hstack([after.q[:, : n - 1] - rest.displacements[: n - 1], after.v - rest.velocities(system)]) @ read
     growth, turn = (

@@ -110,7 +110,7 @@ def test_resting_position_carries_the_load() -> None:
     torque = _ring_torque(system, places[None], np.array([200 * math.pi]), turning, np.array(forces)[None])
     assert torque == pytest.approx(0.0, abs=1e-7)
     assert len(point.films) == 2
-    assert len(point.eigenvalues) == 2 * 6  # x and y of journal, disk and ring; angles of rings stand
+    assert len(point.eigenvalues) == 2 * 6 + 1  # x and y of journal, disk and ring, and the speed of the ring
 
 
 # -------------------------------------------------------------------------------------------- momentum and energy
