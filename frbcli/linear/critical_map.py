@@ -23,7 +23,7 @@ from frbcli.columns import Column, Table, spread_table
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
-from frbcli.linear.modes import film_springs
+from frbcli.linear.modes import direct_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.scene.gate.gate import require
@@ -55,7 +55,8 @@ CRITICAL_SPEEDS = (
 class CriticalMap(Tabular):
     """stiffness: (k,) N/m of every bearing; forward, backward: (k, SHOWN) Hz, ascending, NaN where there are fewer;
     films: (speeds in Hz, stiffness in N/m of each bearing (n, b)) of the films of the case at rest, empty if they are
-    not known: where a curve of a film crosses one of the map, the rotor has a critical speed."""
+    not known, NaN for a bearing without direct stiffness: where a curve of a film crosses one of the map, the rotor has
+    a critical speed."""
 
     case: Case
     stiffness: Array
@@ -114,8 +115,8 @@ def critical_map(
         raise InputError(case.name or "case", (fault,))
     plane = _plane(case)
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
-    known = [(point.speed_Hz, film_springs(case, point.films)) for point in resting if point.rests]
-    films = [(speed, springs) for speed, springs in known if springs]
+    known = [(point.speed_Hz, direct_springs(case, point.films)) for point in resting if point.rests and point.films]
+    films = [(speed, springs) for speed, springs in known if not all(map(math.isnan, springs))]
     speeds, springs = np.array([speed for speed, _ in films]), np.array([found for _, found in films])
     return CriticalMap(case, given, forward, backward, speeds, springs.reshape(len(speeds), len(case.bearings)))
 

@@ -152,12 +152,17 @@ def natural_modes(
 def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
     series where a ring floats between two films. Cross stiffness is left out: it excites a whirl and carries no load.
-    Empty where a film has no direct stiffness, such as a full film in its centre, and without films."""
+    Empty where a bearing has none, see direct_springs, and without films."""
+    found = direct_springs(case, films)
+    return () if any(map(math.isnan, found)) else found
+
+
+def direct_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
+    """As film_springs; NaN for a bearing with a film without direct stiffness, such as a full film in its centre."""
     means = [0.5 * float(np.trace(film.stiffness)) for film in films]
     sizes = [float(np.abs(film.stiffness).max()) for film in films]
-    if any(mean <= NO_STIFFNESS * size for mean, size in zip(means, sizes, strict=True)):
-        return ()
-    return bearing_springs(case, means)
+    some = [mean if mean > NO_STIFFNESS * size else math.nan for mean, size in zip(means, sizes, strict=True)]
+    return bearing_springs(case, some)
 
 
 def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:

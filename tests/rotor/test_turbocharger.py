@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +19,7 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.coefficients import RestingFilm
 from frbcli.errors import InputError
-from frbcli.linear.modes import film_springs, natural_modes
+from frbcli.linear.modes import direct_springs, film_springs, natural_modes
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
 from frbcli.rotor.assembly import Link, assembled
@@ -318,6 +319,9 @@ def test_springs_of_films_at_rest(heavy: Case) -> None:
         RestingFilm(np.zeros(2), 0.0, np.array([[k, 9e9], [-9e9, 3 * k]]), np.eye(2)) for k in (1e6, 2e6, 4e6, 4e6)
     ]
     assert film_springs(heavy, films) == pytest.approx((1 / (1 / 2e6 + 1 / 4e6), 4e6))
+    centred = [replace(films[0], stiffness=np.array([[0.0, 9e9], [-9e9, 0.0]])), *films[1:]]
+    assert film_springs(heavy, centred) == ()
+    assert direct_springs(heavy, centred) == pytest.approx((np.nan, 4e6), nan_ok=True)
     with pytest.raises(InputError, match="as many as bearings"):
         natural_modes(heavy, [1e6, 1e6, 1e6])
     unequal = natural_modes(heavy, film_springs(heavy, films), [0.0])

@@ -34,6 +34,8 @@ def draw_critical_map(axes: Axes, found: CriticalMap) -> None:
         for number, curve in enumerate(values.T):
             axes.plot(found.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
     for number, springs in enumerate(found.film_stiffness.T if len(found.film_speeds_Hz) else ()):
+        if np.isnan(springs).all():
+            continue
         bearing = found.case.bearings[number].name
         label = ", ".join(word for word in ("stiffness of the films", bearing) if word)
         marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
