@@ -196,7 +196,7 @@ def speed_at(run: RunLike, t_s: float) -> float:
 
 
 def critical_speeds(run: RunLike) -> list[float] | None:
-    """Those of the linearised machine in Hz, ascending; None if the run does not know them."""
+    """Critical speeds of the linearised machine in Hz, ascending; None if the run does not know them."""
     if CRITICAL_SPEEDS not in run.references:
         return None
     numbers = range(1, int(run.references[CRITICAL_SPEEDS]) + 1)

@@ -263,7 +263,7 @@ def _number(event: Record, key: str) -> float:
 
 
 def _without_outliers(differences: Sequence[float]) -> Values:
-    """Those that are known, ascending, without at least the largest quarter."""
+    """Known values, ascending, without at least the largest quarter."""
     known = np.sort([value for value in differences if not np.isnan(value)])
     return known[: max(1, int(0.75 * len(known)))]
 

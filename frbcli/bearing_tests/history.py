@@ -319,7 +319,7 @@ def _moment(case: Case, film: _MovingFilm, moments: tuple[Moment, ...]) -> _Mome
 
 
 def _field(film: _MovingFilm, moment: _Moment) -> FilmField:
-    """In the lab."""
+    """The field in the frame of the lab."""
     first = moment.on_lands[0]
     field = film_field(film.lands[0].film, first.motion, first.solution)
     return replace(field, phi=field.phi + film.plan.turning * moment.time)

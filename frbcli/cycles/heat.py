@@ -208,7 +208,7 @@ class WarmFollower(Follower):
         return self._warm(y).machine
 
     def equations(self, place: Place) -> Equations:
-        """Those of the cycles about a place, with temperatures that follow."""
+        """Equations of the cycles about a place, with temperatures that follow."""
         reference, near = self.reference(place), self._warm(place.y).temperatures
 
         def at(y: Array) -> tuple[Array, Array]:
@@ -227,7 +227,7 @@ class WarmFollower(Follower):
         return np.column_stack([-packed(through(passing, harmonics_of(loads, h))) for loads in warm.pushed])
 
     def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
-        """Those of the motion while the temperatures stay, and of the temperatures while the motion follows."""
+        """Multipliers of the motion while the temperatures stay, and of the temperatures while the motion follows."""
         y = place.y
         warm = self._warm(y)
         found = multipliers(warm.machine, self.space_at(y), y, near, max(TRIVIAL, enough))

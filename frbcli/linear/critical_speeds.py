@@ -31,8 +31,8 @@ DAMPED = 1.0 / math.sqrt(2.0)  # damping ratio from which on unbalance causes no
 
 
 def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
-    """In Hz, ascending, of a case up to its highest speed and a little above; None where they are not known: for
-    floating rings, whose films whirl from low speeds on, and where no resting position is found."""
+    """Critical speeds of a case in Hz, ascending, up to its highest speed and a little above; None where they are not
+    known: for floating rings, whose films whirl from low speeds on, and where no resting position is found."""
     if rings(case):
         return None
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))

@@ -331,8 +331,8 @@ def _amplitude_error(motion: Amplitudes, others: Sequence[tuple[Amplitudes, floa
 def _peak_errors(
     speeds: Array, peaks: Sequence[float], others: Sequence[tuple[Amplitudes, float]]
 ) -> tuple[float, ...]:
-    """In Hz: the distance of each peak to the nearest one on the other meshes, times their shares; NaN where another
-    mesh has no peak within two steps of the speed."""
+    """Errors of the peaks in Hz: the distance of each peak to the nearest one on the other meshes, times their shares;
+    NaN where another mesh has no peak within two steps of the speed."""
     elsewhere = [(np.array(peak_speeds(speeds, motion)), share) for motion, share in others]
     near = 2.0 * float(np.max(np.diff(speeds), initial=0.0))
     errors = []

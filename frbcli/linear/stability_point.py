@@ -112,7 +112,7 @@ class StabilityPoint:
 
     @property
     def growing(self) -> Eigenvalues:
-        """Those of the modes that grow."""
+        """Eigenvalues of the modes that grow."""
         modes = self.modes
         return modes[modes.real > 0.0]
 
@@ -127,7 +127,7 @@ class StabilityPoint:
         return self.critical.real
 
     def growth_of(self, number: int) -> float:
-        """That of the whirl number 0, 1, ... by falling growth; of the critical eigenvalue where none oscillates."""
+        """Growth of the whirl number 0, 1, ... by falling growth; of the critical eigenvalue where none oscillates."""
         return hopf.growth_of(self.eigenvalues, number) if len(self.oscillating) else self.growth
 
 

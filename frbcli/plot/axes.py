@@ -349,7 +349,7 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """Those that are given, or those of a new figure."""
+    """The given axes, or those of a new figure."""
     if ax is not None:
         return ax
     with styled():

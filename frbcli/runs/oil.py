@@ -27,5 +27,5 @@ def displacement(system: System, state: State, film: int) -> tuple[float, float]
 
 
 def grid_angle(system: System, state: State, film: int, angle: float) -> float:
-    """By which a film's grid has turned, rad; angle: of the rotor, rad."""
+    """Angle in rad by which a film's grid has turned; angle: of the rotor, rad."""
     return float(system.turning[film, GRID] @ np.concatenate([[angle], state.q[list(system.spins)]]))

@@ -156,7 +156,7 @@ def make_law(case: Case, cavitation: str, section: Section) -> Law:
 
 
 def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
-    """By what the pressure given in each film's channels falls with the square of its ring's speed, (4.27), scaled.
+    """Fall of the pressure given in each film's channels over the square of its ring's speed, (4.27), scaled.
 
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
     end is that of the groove which they open to.

@@ -47,7 +47,7 @@ def states_moment(case: Case) -> bool:
 
 
 def slope_of(tilt: Pair, section: Section) -> Pair:
-    """By how much the displacement over the clearance, or its rate, grows over the width of the whole bearing."""
+    """Growth of the displacement over the clearance, or of its rate, over the width of the whole bearing."""
     length = section.bearing_width / section.clearance
     return length * tilt[1] + 0.0, -length * tilt[0] + 0.0  # no negative zero
 

@@ -260,7 +260,7 @@ def _onset(found: Ridges) -> Values:
 
 
 def _reach(run: Run) -> float:
-    """By how much the rotor speed changes within half a window, Hz: an onset is not known better."""
+    """Change of the rotor speed within half a window, Hz: an onset is not known better."""
     time, speed = run[TIME], np.abs(run[SPEED])
     ramp = float(np.ptp(speed) / np.ptp(time))
     return max(0.5 * window_length(run.signal(TIME), run.signal(SPEED)) * ramp, LEAST_SHARE * float(speed.max()))

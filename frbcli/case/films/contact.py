@@ -85,7 +85,7 @@ class Contact(Model):
 
     @property
     def shear(self) -> float:
-        """By which the journal's share of the square of the roughness exceeds that of the shell."""
+        """Share of the journal in the square of the roughness, less that of the shell."""
         if self.journal_roughness is None or self.flow_roughness == 0.0:
             return 0.0
         return 2.0 * (self.journal_roughness / self.flow_roughness) ** 2 - 1.0

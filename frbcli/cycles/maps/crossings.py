@@ -47,7 +47,7 @@ class CrossingStart:
 
 
 def starts_of(cycles: Sequence[Cycle], share: float, synchronous: bool) -> Iterator[CrossingStart]:
-    """Those of a branch, or of the synchronous response, at a share of the second number."""
+    """Starts of a branch, or of the synchronous response, at a share of the second number."""
     for cycle in cycles:
         if cycle.kind in (TORUS, FLIP):
             shift = abs(float(np.angle(crossing(cycle)))) / (2.0 * np.pi) * float(cycle.place.y[-2])
@@ -74,7 +74,7 @@ class CrossingCurve:
         return float(y[0] / y[-3]) if self.torus else 0.5
 
     def equations(self, y: Array) -> Equations:
-        """Those of a torus or flip point, with the bordering vectors and the phase of a y near to it."""
+        """Equations of a torus or flip point, with the bordering vectors and the phase of a y near to it."""
         size = self.plane.machine(y).size
         reference = unpacked(self.motion_of(y)[:-3], size)
         left, _, right = np.linalg.svd(self._hill(y))

@@ -56,7 +56,7 @@ class Curve:
 
 
 def hopf_equations(plane: MapPlane, y: Array) -> Equations:
-    """Those of a Hopf point y = (u, nu / pace, numbers), with the bordering vectors of a y near to it."""
+    """Equations of a Hopf point y = (u, nu / pace, numbers), with the bordering vectors of a y near to it."""
     left, _, right = np.linalg.svd(_at_rest(plane, y))
     b, c = left[:, -1], right[-1].conj()
 
@@ -96,8 +96,8 @@ def _at_rest(plane: MapPlane, y: Array) -> Complex:
 
 
 def fold_equations(plane: MapPlane, y: Array) -> Equations:
-    """Those of a fold y = (motion, nu / pace, numbers), see balance.py, with the bordering vectors and the phase of a y
-    near to it."""
+    """Equations of a fold y = (motion, nu / pace, numbers), see balance.py, with the bordering vectors and the phase of
+    a y near to it."""
     reference = unpacked(y[:-3], plane.machine(y).size)
 
     def balance(y: Array) -> tuple[Array, Array]:

@@ -58,7 +58,7 @@ class ChangingFollower(Follower):
         return state_space(self.machine_at(y))
 
     def equations(self, place: Place) -> Equations:
-        """Those of the cycles about a place."""
+        """Equations of the cycles about a place."""
         reference = self.reference(place)
 
         def of(machine: Machine) -> Equations:

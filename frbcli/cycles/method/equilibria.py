@@ -138,7 +138,7 @@ class Resting:
 
 
 def equations(machine: Machine) -> Equations:
-    """Those of a resting position y = (u, Omega / pace), see continuation.py."""
+    """Equations of a resting position y = (u, Omega / pace), see continuation.py."""
     passing = transfer(machine, np.zeros(1), machine.pace)  # at rest nothing depends on the speed but the films
     through, kappa = passing.values[0].real, passing.kappa[0].real
 

@@ -69,7 +69,7 @@ class Multipliers:
 def multipliers(
     machine: Machine, space: StateSpace, y: Array, near: Multipliers | None = None, enough: float = TRIVIAL
 ) -> Multipliers:
-    """Those of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
+    """Multipliers of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
 
     space: all states (linearised.py) or those that films see (reduced_states.py); near: those of a cycle close by, or
     of the same with fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried.

@@ -89,7 +89,7 @@ class Follower:
         return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
 
     def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
-        """Those of the cycle at a place. near, enough: see floquet.py."""
+        """Multipliers of the cycle at a place. near, enough: see floquet.py."""
         machine, y = self.machine_at(place.y), self.as_cycle(place.y)
         return multipliers(machine, self.space_at(place.y), y, near, max(TRIVIAL, enough))
 
@@ -106,15 +106,15 @@ class Follower:
         return self.machine
 
     def equations(self, place: Place) -> Equations:
-        """Those of the cycles about a place."""
+        """Equations of the cycles about a place."""
         return Balance(self.machine, self.reference(place), self.omega)
 
     def equations_at(self, place: Place) -> Equations:
-        """Those of the cycles about a place with its last unknown; by it alone they may change in another way."""
+        """Equations of the cycles about a place with its last unknown; by it alone they may change in another way."""
         return self.equations(place)
 
     def equations_near(self, place: Place) -> Equations:
-        """Those of the cycles about a place, next to its last unknown."""
+        """Equations of the cycles about a place, next to its last unknown."""
         return self.equations(place)
 
     def reference(self, place: Place) -> Complex:

@@ -74,7 +74,7 @@ def _stabilised(machine: Machine, resting: Equilibrium) -> Place | None:
 
 
 def _equations(machine: Machine, omega: float) -> Callable[[Array], tuple[Array, Array]]:
-    """Those of a resting position y = (u, a) at a speed, see equilibria.py."""
+    """Equations of a resting position y = (u, a) at a speed, see equilibria.py."""
     passing = transfer(machine, np.zeros(1), omega)
     through, kappa = passing.values[0].real, passing.kappa[0].real
     on_films = np.arange(machine.size) < 2 * machine.film_count

@@ -146,7 +146,7 @@ def _power(machine: Machine, f: int, at: _Moments) -> _Rate:
 
 
 def _flow(machine: Machine, f: int, end: EndFlow, at: _Moments) -> _Rate:
-    """By central differences: the flow of a table has none of its own."""
+    """Flow and its derivatives by central differences: the flow of a table has none of its own."""
     c, scale, half = machine.clearances[f], float(machine.scales[f]), 0.5 * at.total[:, None]
     across = np.column_stack([at.d[:, 1], -at.d[:, 0]])
     w = at.v + half * across

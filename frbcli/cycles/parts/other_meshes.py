@@ -32,7 +32,7 @@ class OtherFilms:
 
 
 def other_films(plan: Plan) -> tuple[OtherFilms, ...]:
-    """Those of a plan; none of openings that turn, whose tables would cost more than the diagram, and of bearing
+    """Other films of a plan; none of openings that turn, whose tables would cost more than the diagram, and of bearing
     models."""
     if plan.form.table_of_solutions:
         mesh = plan.mesh

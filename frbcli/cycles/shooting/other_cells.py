@@ -128,9 +128,9 @@ def _space_on(own: Shooting, other: OtherCells, space: SlowSpace) -> SlowSpace:
 
 
 def _turned(at: Array, z: Array, apart: Array) -> Array:
-    """By how much z differs at the most between two folds, the first of which lies at the length 0: its branch is z
-    (3, n) at lengths (3,), with no slope of the first number there, the other one differs by `apart` (3, n), which
-    grows as on one side of the fold; NaN if that does not turn back between them."""
+    """Largest difference of z between two folds, the first of which lies at the length 0: its branch is z (3, n) at
+    lengths (3,), with no slope of the first number there, the other one differs by `apart` (3, n), which grows as on
+    one side of the fold; NaN if that does not turn back between them."""
     ends = at[[0, 2]]
     bend = np.linalg.solve(np.column_stack([ends**2, ends**3]), z[[0, 2], 0])[0]
     _, along, _ = np.linalg.solve(np.vander(at, increasing=True), z)

@@ -143,7 +143,7 @@ class Shooting:
 
     @property
     def at_rest_difference(self) -> float:
-        """By which states are disturbed at rest."""
+        """Difference by which states are disturbed at rest."""
         return AT_REST_DIFFERENCE if self.flow.held.any() else DIFFERENCE
 
     def rest(self, near: Wet, omega: float, wider: float = 1.0) -> Rest | None:

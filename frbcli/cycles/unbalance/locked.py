@@ -132,7 +132,7 @@ def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta
 
 
 def _equations(machine: Machine, reference: Complex, share: float, theta: float) -> Equations:
-    """Those of a cycle with a share of the unbalance in its second harmonic, the rotor ahead by theta."""
+    """Equations of a cycle with a share of the unbalance in its second harmonic, the rotor ahead by theta."""
     balance = Balance(machine, reference)
 
     def at(y: Array) -> tuple[Array, Array]:

@@ -39,7 +39,7 @@ class Synchronous(Follower):
     share = 1.0
 
     def equations(self, place: Place) -> Equations:
-        """Those of the motions about a place."""
+        """Equations of the motions about a place."""
         reference = unpacked(place.y[:-2], self.machine.size)
         return synchronous_equations(self.machine, reference, self.periods, self.share)
 
@@ -53,8 +53,8 @@ class Synchronous(Follower):
 
 
 def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0) -> Equations:
-    """Those of motions of some periods of the rotor with a share of the unbalance: residual (n,), n = c (2 H + 1) + 1,
-    the last of periods nu = Omega."""
+    """Equations of motions of some periods of the rotor with a share of the unbalance: residual (n,), n = c (2 H + 1) +
+    1, the last of periods nu = Omega."""
     balance = Balance(machine, reference)
 
     def driven(speed: float) -> Array:

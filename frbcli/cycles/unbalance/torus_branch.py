@@ -76,7 +76,7 @@ class TorusFollower:
         return Torus(orders, unpacked(y[:-2], self.size), float(y[-2] * self.pace), float(y[-1] * self.pace))
 
     def equations(self, here: TorusPlace) -> Equations:
-        """Those of the motions about a place."""
+        """Equations of the motions about a place."""
         reference = self.torus(here.orders, here.place.y).motion
 
         def linearised(y: Array) -> Linearised:

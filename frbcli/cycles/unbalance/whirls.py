@@ -168,7 +168,7 @@ def _axis(harmonic: Complex) -> Array:
 
 
 def _main(lines: Sequence[SpectralLine], always: tuple[str, str]) -> tuple[SpectralLine, ...]:
-    """Those of whirl and unbalance, and the largest others."""
+    """Lines of whirl and unbalance, and the largest others."""
     first = [line for name in always for line in lines if line.name == name]
     others = [line for line in lines if line.name not in always and line.amplitude.max() > FAINT]
     others.sort(key=lambda line: -float(line.amplitude.max()))

@@ -70,7 +70,7 @@ def is_interrupted(path: Path) -> bool:
 
 
 def _otherness(command: str, case: Case, run: Run) -> str:
-    """In which way a run is of another case; "" if it is of this one."""
+    """The way in which a run differs from a case; "" if it is of this one."""
     if run.command != command or not describes(run.case_text, case):
         return f"holds a {run.command} of another case ({run.case_name or 'unnamed'}) or of this one with other keys."
     if run.versions.get(RECORD) != model_record(case).get(RECORD):

@@ -82,7 +82,7 @@ class Shaft(ABC):
 
     @property
     def disk_mass(self) -> float:
-        """In the middle of a symmetric rotor, kg."""
+        """Mass in the middle of a symmetric rotor, kg."""
         return self.mass
 
     @property
