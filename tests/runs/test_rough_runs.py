@@ -115,6 +115,23 @@ def test_a_disturbance_goes_on_as_the_linearised_machine_has_it(tmp_path: Path) 
     np.testing.assert_allclose(found, expected, atol=0.01 * np.abs(moved).max())
 
 
+@pytest.mark.nightly  # minutes of compilation
+@pytest.mark.parametrize("law", ["elrod", "bubbly"])
+def test_cells_one_and_a_half_times_finer_agree_within_the_errors_near_contact(law: str, tmp_path: Path) -> None:
+    """From summits that carry a tenth and a quarter of the load to the film alone: 3e-3 and 1.6e-2 of the clearance."""
+    course = "speed.from=0.3 Hz", "speed.to=15 Hz", "speed.duration=0.3 s", "output.step=1e-3 s"
+    film = f"film.cavitation={law}", "bearing.supply.pressure=2 bar"
+    coarse, fine = (
+        runup(rigid(*course, *film, f"accuracy.mesh=[{along}, {8 * along}]"), tmp_path / f"{along}.h5")
+        for along in (6, 9)
+    )
+    for run in (coarse, fine):
+        assert {"touch", "lift-off"} <= {event["kind"] for event in run.events}
+    apart = np.abs(coarse["eccentricity"] - fine["eccentricity"]).max()
+    assert apart < coarse.error["eccentricity"] + fine.error["eccentricity"]  # type: ignore[operator]
+    assert np.abs(coarse["asperity_share"] - fine["asperity_share"]).max() < 0.2 * coarse["asperity_share"].max()
+
+
 def test_wear_is_its_rate_times_pressure_and_path(tmp_path: Path) -> None:
     """The volume is that of the work of friction over its coefficient, the deepest place where the gap is narrowest."""
     speeds = 'speed={points=[["0 s", "0.2 Hz"], ["0.2 s", "0.2 Hz"]]}'
