@@ -79,7 +79,7 @@ def test_the_pressure_of_the_supply_times_the_conductance_is_the_flow(tmp_path: 
 def test_the_line_empties_as_an_exponential_in_time(tmp_path: Path) -> None:
     """Of a journal in the centre what flows in is proportional to the pressure: (p - p_end) falls by e in the time line
     / (given / p_end). In steps of 1 ms, a fifth of that time, and of half as much: third order, as the film's oil. A
-    line that stays during a step is 4e-3 off."""
+    line that stays during a step is 2e-2 off."""
     flow, duration, errors = FLOW[GROOVE], 0.01, []
     for name, steps in (("coarse", 20), ("fine", 40)):
         speed = f"accuracy.steps_per_revolution={steps}", f"speed.duration={duration}", "output.step=1e-3 s"
