@@ -169,4 +169,4 @@ class TiltedForm(CellForm):
         return cells[0], HALVES * cells[1]
 
 
-TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 30.0)
+TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 20.0)
