@@ -105,14 +105,15 @@ def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
     )  # fmt: skip
 
 
-def whirl_columns(films: Sequence[str]) -> tuple[Column, ...]:
-    """The columns of an UnbalancedWhirl in JSON, without its lines."""
+def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...]:
+    """The columns of an UnbalancedWhirl in JSON, without its lines. heat: whether films have temperatures."""
     return (
         SPEED_COLUMN,
         FREQUENCY,
         Column("locked", "", "whether the whirl has locked in at half the speed"),
         _largest(films),
         RINGS,
+        *_temperatures(films, heat),
         STABLE,
         Column("kind", "", "`fold` where whirls of two frequencies turn back in speed", lambda w: w.kind or None),
     )

@@ -8,7 +8,7 @@ twice: of the motion while the temperatures stay, and of the temperatures while 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -29,10 +29,11 @@ from frbcli.cycles.method.equilibria import (
 from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
-from frbcli.cycles.parts.film_heat import FilmHeats, film_heats
+from frbcli.cycles.parts.film_heat import FilmHeats, film_heats, heats_at
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
+from frbcli.cycles.unbalance.synchronous import driven_multipliers, synchronous_equations
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
@@ -93,10 +94,28 @@ class HeatOfMotions:
     def warm(self, motion: Complex, nu: float, omega: float, near: Array | None = None) -> WarmMotion:
         """A motion (H + 1, c) at its temperatures; frequency nu and rotor speed omega in rad/s; near: (n,) K from which
         they are sought. Raises Unreachable where a film boils, and OutOfGap."""
+
+        def heats(machine: Machine) -> FilmHeats:
+            return film_heats(machine, self.ends, motion, nu, omega)
+
+        t, found, gain_by, by_heat, slopes = self._balanced(heats, near)
+        by_motion = by_heat[0] @ found.power_by + by_heat[1] @ found.flow_by
+        warmer = np.linalg.solve(gain_by, -by_motion)
+        return WarmMotion(self.machine(t), slopes @ warmer, found.loads_by_scale, t, gain_by, by_motion, slopes)
+
+    def machine_along(self, u: Array, v: Array, omega: float) -> Machine:
+        """The machine at the temperatures that balance the means over moments of a motion, u and its rate (n, c), at
+        the speed omega in rad/s. Raises Unreachable where a film boils, and OutOfGap."""
+        return self.machine(self._balanced(lambda machine: heats_at(machine, self.ends, u, v, omega))[0])
+
+    def _balanced(
+        self, heats: Callable[[Machine], FilmHeats], near: Array | None = None
+    ) -> tuple[Array, FilmHeats, Array, tuple[Array, Array], Array]:
+        """Temperatures (n,) of a motion that stays; there what its films do, gain_by and slopes of WarmMotion, and the
+        derivatives of what nodes gain by power and flow. heats: of the machine at some temperatures."""
         t, free = (self.start if near is None else near).copy(), self.free
         for _ in range(ITERATIONS):
-            machine = self.machine(t)
-            found = self._heats(machine, motion, nu, omega)
+            found = self._with_flow(heats(self.machine(t)), t)
             gain, by_heat, slopes = self._gain(t, found)
             by_own = by_heat[0] * found.power_by_scale + by_heat[1] * found.flow_by_scale
             gain_by = self._gain_by_temperature(t, found) + by_own @ slopes
@@ -106,16 +125,14 @@ class HeatOfMotions:
             if not np.isfinite(t).all() or t[: len(slopes)].max() >= self.model.hottest:
                 raise Unreachable
             if float(np.abs(step).max()) < SETTLED:
-                by_motion = by_heat[0] @ found.power_by + by_heat[1] @ found.flow_by
-                warmer = np.linalg.solve(gain_by, -by_motion)
-                machine = self.machine(t)
-                return WarmMotion(machine, slopes @ warmer, found.loads_by_scale, t, gain_by, by_motion, slopes)
+                return t, found, gain_by, by_heat, slopes
         raise Unreachable
 
-    def _heats(self, machine: Machine, motion: Complex, nu: float, omega: float) -> FilmHeats:
-        found = film_heats(machine, self.ends, motion, nu, omega)
+    def _with_flow(self, found: FilmHeats, t: Array) -> FilmHeats:
+        """What films do at temperatures t, with the flow of concentric ones where that is asked for."""
         if self.concentric is None:
             return found
+        machine = self.machine(t)
         flow = self.concentric * machine.clearances**3 / (machine.scales * self.made)
         return replace(found, flow=flow, flow_by=np.zeros_like(found.flow_by), flow_by_scale=-flow)
 
@@ -234,14 +251,55 @@ class WarmFollower(Follower):
         if not self.moves(y):
             return found
         slope = Balance(warm.machine, unpacked(y[:-2], self.machine.size))(y)[1][:, :-1]
-        pushed = np.vstack([self._pushed(warm, y), np.zeros((1, len(warm.pushed)))])
+        return self._with_temperatures(found, warm, y, slope)
+
+    def _with_temperatures(self, found: Multipliers, warm: WarmMotion, y: Array, slope: Array) -> Multipliers:
+        """The multipliers of a motion y with those of its temperatures. slope: of the equations of the motion by its
+        unknowns, the first of y, while the temperatures stay."""
+        pushed = np.zeros((len(slope), len(warm.pushed)))
+        pushed[: len(y) - 2] = self._pushed(warm, y)
         follows = np.linalg.solve(slope, -pushed @ warm.slopes)  # of the motion, by the temperatures
         capacity = self._heat.model.capacity[self._heat.free]
-        growth = np.linalg.eigvals((warm.gain_by + warm.gain_by_motion[:, :-1] @ follows) / capacity[:, None])
+        by_motion = warm.gain_by_motion[:, : len(slope)]
+        growth = np.linalg.eigvals((warm.gain_by + by_motion @ follows) / capacity[:, None])
         period = 2.0 * np.pi / (y[-2] * self.machine.pace)
         slow = np.exp(np.clip((growth * period).real, None, MOST_GROWTH) + 1j * (growth * period).imag)
         others = np.concatenate([found.others, slow])
         return replace(found, values=np.concatenate([found.values[:1], others[largest_first(others)]]))
+
+    def at_its_heat(self, u: Array, v: Array, omega: float) -> Machine:
+        """See HeatOfMotions.machine_along."""
+        return self._heat.machine_along(u, v, omega)
+
+    def driven(self, slowest: float, fastest: float) -> WarmSynchronous:
+        """Follows the synchronous response of the same machine with its temperatures, between two speeds in rad/s."""
+        return WarmSynchronous(self._heat, slowest, fastest)
+
+
+class WarmSynchronous(WarmFollower):
+    """Follows the synchronous response, see Synchronous, with its temperatures."""
+
+    free = False
+
+    def equations(self, place: Place) -> Equations:
+        """Those of the motions about a place, with temperatures that follow."""
+        reference, near = unpacked(place.y[:-2], self.machine.size), self._warm(place.y).temperatures
+
+        def at(y: Array) -> tuple[Array, Array]:
+            warm = self._warm(y, near)
+            residual, slope = synchronous_equations(warm.machine, reference)(y)
+            slope[:-1] += self._pushed(warm, y) @ warm.by_motion
+            return residual, slope
+
+        return at
+
+    def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
+        """As Synchronous says, and those of the temperatures while the motion follows."""
+        y = place.y
+        warm = self._warm(y)
+        found = driven_multipliers(warm.machine, self.space_at(y), y)
+        slope = synchronous_equations(warm.machine, unpacked(y[:-2], self.machine.size))(y)[1]
+        return self._with_temperatures(found, warm, y, slope[:-1, :-2])
 
 
 def warm_walk(

@@ -10,7 +10,7 @@ from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
 from frbcli.cycles.faults import check
-from frbcli.cycles.heat import warm_walk
+from frbcli.cycles.heat import WarmFollower, warm_walk
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
@@ -22,7 +22,7 @@ from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.branches import whirls_with_unbalance
-from frbcli.cycles.unbalance.synchronous import synchronous_response
+from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
@@ -95,12 +95,16 @@ def limit_cycles(
     elif found.of(HOPF):
         found = replace(found, special=_with_errors(case, fastest, found.special))
     if with_unbalance:
-        found = whirls_with_unbalance(found, walk.course, observe)
-    changes = case.heat is not None or system.rotor.over_speed is not None
+        if isinstance(walk.follower, WarmFollower):
+            found = whirls_with_unbalance(found, OverSpeed(machine), observe, walk.follower.at_its_heat)
+        else:
+            found = whirls_with_unbalance(found, walk.course, observe)
     unbalance = machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()
-    if changes or not (unbalance or machine.rotor.loads):
+    if system.rotor.over_speed is not None or not (unbalance or machine.rotor.loads):
         return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
-    response = synchronous_response(machine, walk.resting.points[-1], slowest)
+    warm = walk.follower if isinstance(walk.follower, WarmFollower) else None
+    driven = Synchronous(machine, slowest, fastest) if warm is None else warm.driven(slowest, fastest)
+    response = synchronous_response(driven, walk.resting.points[-1])
     return with_response(found, walk, response, working_time().cpu_s - begun)
 
 

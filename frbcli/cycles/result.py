@@ -97,7 +97,7 @@ class UnbalancedWhirl:
     locked in at half the speed, else the motion has two frequencies; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean;
     lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if
     that could not be seen of a motion of two frequencies, and at a fold; kind: "fold" where motions of two frequencies
-    turn back in speed, else ""."""
+    turn back in speed, else ""; temperatures_K: (F,) of the films, empty without heat."""
 
     speed_Hz: float
     frequency_Hz: float
@@ -107,6 +107,7 @@ class UnbalancedWhirl:
     lines: tuple[SpectralLine, ...]
     stable: bool | None
     kind: str = ""
+    temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)

@@ -101,12 +101,67 @@ def test_cycle_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
     assert cycle.temperatures_K[0] > 343.15 + 10.0
 
 
+def test_derivatives_of_the_response_to_unbalance_have_the_temperatures() -> None:
+    case = jeffcott(*HEAT, "rotor.unbalance=20 g*mm", "speed.from=90 Hz", "speed.to=100 Hz")
+    plan = make_plan(case)
+    walk = warm_walk(case, plan, make_system(case, plan), *check(case, shooting=True))
+    assert isinstance(walk.follower, WarmFollower)
+    follower, c = walk.follower.driven(500.0, 600.0), walk.follower.machine.size
+    motion = np.array([walk.resting.points[-1].u, [0.1 + 0.05j, 0.05 - 0.1j], np.full(c, 0.01)], dtype=complex)
+    y = np.concatenate([packed(motion), [0.9, 0.9]])
+    equations = follower.equations(Place(y, np.ones(len(y))))
+    _, slope = equations(y)
+    for i in (0, c - 1, c, 3 * c - 1, len(y) - 2, len(y) - 1):
+        step = 1e-6 * np.eye(len(y))[i]
+        changed = (equations(y + step)[0] - equations(y - step)[0]) / 2e-6
+        assert slope[:, i] == pytest.approx(changed, abs=1e-5 * float(np.abs(changed).max()))
+
+
+def test_response_to_unbalance_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
+    """And with oil of endless capacity, that without heat."""
+    heavy, course = "rotor.unbalance=20 g*mm", ["speed.from=88 Hz", "speed.to=90 Hz"]
+    endless = limit_cycles(jeffcott(*HEAT, heavy, "oil.heat_capacity=2e9 J/(kg*K)", *course)).synchronous[0]
+    cold = limit_cycles(jeffcott("oil.temperature=70 degC", heavy, *course)).synchronous[0]
+    assert endless.eccentricity_max == pytest.approx(cold.eccentricity_max, rel=1e-5)
+    slow = np.abs(endless.multipliers[:, None] - cold.multipliers).min(axis=1) > 1e-4
+    assert slow.sum() == 1  # of the temperature
+    found = limit_cycles(jeffcott(*HEAT, heavy, *course)).synchronous[0]
+    assert found.stable
+    assert abs(float(found.eccentricity_max[0] / cold.eccentricity_max[0]) - 1.0) > 0.1
+    steady = ["speed.from=90 Hz", "speed.to=90 Hz", "speed.duration=2 s", "output.step=0.2 ms"]
+    run = runup(jeffcott(*HEAT, heavy, *steady), tmp_path / "run.h5")
+    later = run["time_s"] > 1.7
+    assert found.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=2e-4)
+    assert found.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.01)
+    assert found.torque_N_m * 2.0 * math.pi * 90.0 == pytest.approx(run["power_W"][later].mean(), rel=5e-4)
+
+
+@pytest.mark.nightly  # 40 s: a whirl of nearly half the speed has many orders
+def test_whirl_with_unbalance_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
+    light, speed = "rotor.unbalance=2 g*mm", 130.0
+    found = limit_cycles(jeffcott(*HEAT, light, "speed.from=126 Hz", f"speed.to={speed} Hz"), with_unbalance=True)
+    (branch,) = found.branches
+    whirl = max(branch.with_unbalance, key=lambda each: each.speed_Hz)
+    assert not whirl.locked
+    assert whirl.stable
+    steady = [f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=3 s", "output.step=0.2 ms"]
+    run = runup(jeffcott(*HEAT, light, *steady, "start.displacement=[0.3, 0]"), tmp_path / "run.h5")
+    later = run["time_s"] > 1.5
+    assert whirl.speed_Hz == pytest.approx(speed)
+    assert whirl.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=1e-3)
+    assert whirl.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.05)
+    x, y = (run[f"journal_{axis}_m"][later] for axis in "xy")
+    angle = np.unwrap(np.arctan2(y - y.mean(), x - x.mean()))
+    turns = (angle[-1] - angle[0]) / (2.0 * math.pi * (run["time_s"][later][-1] - run["time_s"][later][0]))
+    assert whirl.frequency_Hz == pytest.approx(turns, rel=1e-3)
+
+
 @pytest.mark.parametrize(
     ("settings", "whirls", "said"),
     [
         (["thermal.clearance=follows"], False, "over which the motions of a branch are measured"),
         (["film.theory=auto", "film.cavitation=two-phase"], False, "settles over many periods"),
-        ([], True, "has two frequencies and no period"),
+        (["film.theory=auto", "film.cavitation=reynolds"], True, "settles over many periods"),
     ],
 )
 def test_what_has_no_cycle_with_heat(settings: list[str], whirls: bool, said: str) -> None:

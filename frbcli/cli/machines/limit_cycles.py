@@ -295,7 +295,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
                 "from": None if branch.start is None else special[branch.start],
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
-                "with_unbalance": [_whirl(films, whirl) for whirl in branch.with_unbalance],
+                "with_unbalance": [_whirl(found, whirl) for whirl in branch.with_unbalance],
             }
             for branch in found.branches
         ],
@@ -315,7 +315,8 @@ def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
     return told | ({} if orbits is None else {"orbits": orbits})
 
 
-def _whirl(films: tuple[str, ...], whirl: UnbalancedWhirl) -> dict[str, object]:
+def _whirl(found: LimitCycles, whirl: UnbalancedWhirl) -> dict[str, object]:
     from frbcli.cycles.columns import line_columns, whirl_columns
 
-    return document(whirl_columns(films), whirl) | {"lines": documents(line_columns(films), whirl.lines)}
+    told = document(whirl_columns(found.films, found.case.heat is not None), whirl)
+    return told | {"lines": documents(line_columns(found.films), whirl.lines)}

@@ -20,7 +20,7 @@ from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz
-from frbcli.cycles.unbalance.synchronous import synchronous_response
+from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
 
 Array = NDArray[np.float64]
 
@@ -87,7 +87,8 @@ class SpeedPlane(MapPlane):
     def response(self, walk: Walk) -> Branch | None:
         """See MapPlane."""
         fastest = walk.resting.points[-1]
-        return synchronous_response(walk.course.machine(fastest.value), fastest, self.speeds[0])
+        driven = Synchronous(walk.course.machine(fastest.value), self.speeds[0], fastest.omega)
+        return synchronous_response(driven, fastest)
 
 
 class KeyPlane(MapPlane):

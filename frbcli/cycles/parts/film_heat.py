@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
-from frbcli.cycles.parts.machine import Loads, Machine
+from frbcli.cycles.parts.machine import Loads, Machine, film_loads
 from frbcli.film.kinds.samples import drag_factor
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
 
@@ -72,14 +72,7 @@ def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu:
     through the ends of the films. Raises OutOfGap."""
     loads, rate = loads_along(replace(machine, cones=()), motion, nu, omega)
     u, _ = motion_along(motion, len(rate))
-    speeds = np.column_stack([np.full(len(u), omega), machine.pace * u[:, 2 * machine.film_count :]])
-    powers, flows = [], []
-    by_scale = np.zeros((machine.film_count, *loads.values.shape))
-    for f, end in enumerate(ends):
-        at = _moments(machine, f, loads, u, nu * rate, speeds)
-        powers.append(_power(machine, f, at))
-        flows.append(_flow(machine, f, end, at))
-        by_scale[f] = _loads_by_scale(machine, f, at)
+    powers, flows, by_scale = _rates(machine, ends, loads, (u, nu * rate), omega)
     h = len(motion) - 1
     return FilmHeats(
         power=np.array([float(each.value.mean()) for each in powers]),
@@ -90,6 +83,38 @@ def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu:
         flow_by_scale=np.array([float(each.by_scale.mean()) for each in flows]),
         loads_by_scale=by_scale,
     )
+
+
+def heats_at(machine: Machine, ends: tuple[EndFlow, ...], u: Array, v: Array, omega: float) -> FilmHeats:
+    """Means over n moments of a motion that is given: u, v (n, c), see film_loads; no derivative by it, N = 0. Raises
+    OutOfGap."""
+    loads = film_loads(replace(machine, cones=()), u, v, omega)
+    powers, flows, by_scale = _rates(machine, ends, loads, (u, v), omega)
+    return FilmHeats(
+        power=np.array([float(each.value.mean()) for each in powers]),
+        flow=np.array([float(each.value.mean()) for each in flows]),
+        power_by=np.zeros((len(powers), 0)),
+        flow_by=np.zeros((len(flows), 0)),
+        power_by_scale=np.array([float(each.by_scale.mean()) for each in powers]),
+        flow_by_scale=np.array([float(each.by_scale.mean()) for each in flows]),
+        loads_by_scale=by_scale,
+    )
+
+
+def _rates(
+    machine: Machine, ends: tuple[EndFlow, ...], loads: Loads, motion: tuple[Array, Array], omega: float
+) -> tuple[list[_Rate], list[_Rate], Array]:
+    """Power and flow of each film at n moments of a motion, u and its rate (n, c), and loads_by_scale of FilmHeats."""
+    u, v = motion
+    speeds = np.column_stack([np.full(len(u), omega), machine.pace * u[:, 2 * machine.film_count :]])
+    powers, flows = [], []
+    by_scale = np.zeros((machine.film_count, *loads.values.shape))
+    for f, end in enumerate(ends):
+        at = _moments(machine, f, loads, u, v, speeds)
+        powers.append(_power(machine, f, at))
+        flows.append(_flow(machine, f, end, at))
+        by_scale[f] = _loads_by_scale(machine, f, at)
+    return powers, flows, by_scale
 
 
 def _moments(machine: Machine, f: int, loads: Loads, u: Array, v: Array, speeds: Array) -> _Moments:

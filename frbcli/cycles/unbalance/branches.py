@@ -18,7 +18,7 @@ from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, Unbalance
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, follow_torus
 from frbcli.cycles.unbalance.two_frequencies import Torus
-from frbcli.cycles.unbalance.whirls import Chain, WhirlFound, free_whirl
+from frbcli.cycles.unbalance.whirls import AtItsHeat, Chain, WhirlFound, free_whirl
 
 Array = NDArray[np.float64]
 Observer = Callable[[int, float, float], None]
@@ -31,12 +31,12 @@ BORDER = 1e-9  # of the fastest speed
 
 
 def whirls_with_unbalance(
-    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None
+    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None, at_its_heat: AtItsHeat | None = None
 ) -> LimitCycles:
     """A diagram over the speed with its whirls with the unbalance.
 
-    course: of the machine over the speed; observe: called with the number of motions so far, the speed in Hz and the
-    largest eccentricity of the latest one.
+    course: of the machine over the speed, with heat at any temperatures; observe: called with the number of motions so
+    far, the speed in Hz and the largest eccentricity of the latest one; at_its_heat: see Chain.
     """
     speeds = [point.speed_Hz for point in found.equilibria]
     follower = TorusFollower(course, (2.0 * math.pi * min(speeds), 2.0 * math.pi * max(speeds)))
@@ -49,17 +49,17 @@ def whirls_with_unbalance(
             observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
 
     for number, branch in enumerate(found.branches):
-        whirls, remarks = _with_unbalance(follower, branch, tell)
+        whirls, remarks = _with_unbalance(follower, branch, tell, at_its_heat)
         notes += [f"Branch {number + 1} with unbalance: {remark}" for remark in remarks]
         branches.append(replace(branch, with_unbalance=tuple(whirls)))
     return replace(found, branches=tuple(branches), notes=tuple(notes))
 
 
 def _with_unbalance(
-    follower: TorusFollower, branch: CycleBranch, tell: Tell
+    follower: TorusFollower, branch: CycleBranch, tell: Tell, at_its_heat: AtItsHeat | None
 ) -> tuple[list[UnbalancedWhirl], list[str]]:
     """The whirls of a branch in its order, and what is to be said of them."""
-    chain, motions = Chain(), {}
+    chain, motions = Chain(at_its_heat), {}
     for place in _taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
         point = branch.points[place]
         motions[place] = chain.next(follower.course.machine(2.0 * math.pi * point.speed_Hz), point)
@@ -74,7 +74,9 @@ def _with_unbalance(
     behind: dict[tuple[int, int], list[UnbalancedWhirl]] = {}
     reached: list[_End] = []
     for end in ends:
-        if end not in reached:
+        if at_its_heat is not None:
+            remarks.append(f"with heat the whirls behind {hertz(end.torus.omega):.4g} Hz are not followed.")
+        elif end not in reached:
             others = [other for other in ends if other.place != end.place]
             behind[end.place, end.way], remark = _followed(follower, end, others, reached, tell)
             remarks.append(remark)

@@ -20,6 +20,7 @@ from frbcli.cycles.method.cycle import FIRST_HARMONICS
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
 
@@ -44,12 +45,17 @@ class Synchronous(Follower):
         return synchronous_equations(self.machine, reference, self.periods, self.share)
 
     def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
-        """The multipliers; none is trivial, for the unbalance holds the motion in time, and a 1 stands in its place."""
-        harmonics = (len(place.y) - 2) // self.machine.size // 2
-        count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-        values = np.linalg.eigvals(monodromy(self.machine, self.space_at(place.y), place.y, count)).astype(complex)
-        values = values[largest_first(values)]
-        return Multipliers(np.concatenate([[1.0 + 0.0j], values]), 0.0)
+        """See driven_multipliers."""
+        return driven_multipliers(self.machine, self.space_at(place.y), place.y)
+
+
+def driven_multipliers(machine: Machine, space: StateSpace, y: Array) -> Multipliers:
+    """The multipliers of a motion y; none is trivial, for the unbalance holds it in time, and a 1 stands in its
+    place."""
+    harmonics = (len(y) - 2) // machine.size // 2
+    count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
+    values = np.linalg.eigvals(monodromy(machine, space, y, count)).astype(complex)
+    return Multipliers(np.concatenate([[1.0 + 0.0j], values[largest_first(values)]]), 0.0)
 
 
 def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0) -> Equations:
@@ -72,9 +78,10 @@ def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1
     return at
 
 
-def synchronous_response(machine: Machine, resting: Equilibrium, slowest: float) -> Branch | None:
-    """The response from the speed of a resting position down to the slowest one in rad/s; None if it does not begin."""
-    follower = Synchronous(machine, slowest, resting.omega)
+def synchronous_response(follower: Follower, resting: Equilibrium) -> Branch | None:
+    """The response from the speed of a resting position down to the slowest one that a follower of such motions has;
+    None if it does not begin."""
+    machine = follower.machine
     motion = np.zeros((first_harmonics(machine, 1) + 1, machine.size), dtype=complex)
     motion[0] = resting.u
     share = resting.omega / machine.pace

@@ -143,6 +143,14 @@ def grid_of(orders: Orders) -> tuple[int, int]:
     return next_fast_len(int(wanted[0])), 2 * next_fast_len(int(wanted[1]) // 2)
 
 
+def moments_of(torus: Torus) -> tuple[Array, Array]:
+    """(n, c) a motion at a grid of both phases, and its rate in 1/s."""
+    counts, c = grid_of(torus.orders), torus.motion.shape[1]
+    u = samples(torus.orders, torus.motion, counts)
+    v = samples(torus.orders, 1j * torus.frequencies[:, None] * torus.motion, counts)
+    return u.reshape(-1, c), v.reshape(-1, c)
+
+
 @dataclass(frozen=True)
 class Linearised:
     """The equations about a motion; reference: (m, c) whose phase it has. Its methods raise OutOfGap."""
@@ -164,10 +172,7 @@ class Linearised:
     @cached_property
     def loads(self) -> Loads:
         """The forces of the films at all phases, with their derivatives."""
-        torus, c = self.torus, self.machine.size
-        u = self.sampled(torus.motion)
-        v = self.sampled(1j * torus.frequencies[:, None] * torus.motion)
-        return film_loads(self.machine, u.reshape(-1, c), v.reshape(-1, c), torus.omega)
+        return film_loads(self.machine, *moments_of(self.torus), self.torus.omega)
 
     @cached_property
     def inner(self) -> Complex:

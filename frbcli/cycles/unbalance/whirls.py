@@ -4,13 +4,13 @@ half the speed."""
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.cycles.method.balance import motion_along, packed, unpacked
+from frbcli.cycles.method.balance import moments, motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.cycle import MOMENTS, Cycle, largest_of
 from frbcli.cycles.parts.machine import Machine
@@ -19,13 +19,16 @@ from frbcli.cycles.result import CyclePoint, SpectralLine, UnbalancedWhirl, hert
 from frbcli.cycles.unbalance.beats import beating
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
-from frbcli.cycles.unbalance.two_frequencies import Torus, fitted, of_cycle, samples, with_unbalance
+from frbcli.cycles.unbalance.two_frequencies import Orders, Torus, fitted, moments_of, of_cycle, samples, with_unbalance
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
+AtItsHeat = Callable[[Array, Array, float], Machine]
+
+ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
-PHASES = (256, 128)  # at which eccentricities are taken
+PHASES = (256, 128)  # at which eccentricities are taken, at least
 LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
 
 
@@ -40,9 +43,11 @@ class WhirlFound:
 
 
 class Chain:
-    """Motions along a branch, each from the one before it where that leads to it."""
+    """Motions along a branch, each from the one before it where that leads to it. at_its_heat: gives the machine at the
+    temperatures that moments of a motion balance, u and its rate (n, c), at a speed in rad/s; None without heat."""
 
-    def __init__(self) -> None:
+    def __init__(self, at_its_heat: AtItsHeat | None = None) -> None:
+        self.at_its_heat = at_its_heat
         self.locked: Cycle | None = None
         self.last: tuple[Torus, Torus] | None = None  # without and with the unbalance
 
@@ -51,19 +56,47 @@ class Chain:
         motion = motion_of(machine, point)
         nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
         cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
-        self.locked = self._locked(machine, motion, nu, omega)
-        if self.locked is not None:
-            self.last = None
-            return WhirlFound(_locked_whirl(machine, self.locked), None, cycle)
-        before = of_cycle(motion, nu, omega, machine.orders)
         try:
-            torus = self._torus(machine, before)
+            machine, torus = self._settled(machine, motion, nu, omega)
         except Unreachable:
             self.last = None
             return None
-        self.last = before, torus
+        if self.locked is not None:
+            return WhirlFound(_locked_whirl(machine, self.locked), None, cycle)
+        assert torus is not None
         stable = is_stable(machine, reduced_space(machine), torus, cycle)
         return WhirlFound(free_whirl(machine, torus, stable), torus, cycle)
+
+    def _settled(
+        self, machine: Machine, motion: Complex, nu: float, omega: float
+    ) -> tuple[Machine, Torus | None]:
+        """The machine, with heat at the temperatures of the motion that it then has, and this; None if it has locked
+        in. Temperatures and motion are found in turn: they hardly change each other. Raises Unreachable."""
+        if self.at_its_heat is None:
+            return machine, self._found(machine, motion, nu, omega)
+        machine = self.at_its_heat(*_moments_of_cycle(motion, nu), omega)
+        for _ in range(ROUNDS):
+            torus = self._found(machine, motion, nu, omega)
+            if torus is not None:
+                moved = moments_of(torus)
+            else:
+                assert self.locked is not None
+                moved = _moments_of_cycle(unpacked(self.locked.y[:-2], machine.size), 0.5 * omega)
+            before, machine = machine.temperatures, self.at_its_heat(*moved, omega)
+            if float(np.abs(machine.temperatures - before).max()) < WARM_ENOUGH:
+                return machine, torus
+        raise Unreachable
+
+    def _found(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Torus | None:
+        """The motion of two frequencies of a machine; None if it has locked in. Raises Unreachable."""
+        self.locked = self._locked(machine, motion, nu, omega)
+        if self.locked is not None:
+            self.last = None
+            return None
+        before = of_cycle(motion, nu, omega, machine.orders)
+        torus = self._torus(machine, before)
+        self.last = before, torus
+        return torus
 
     def _locked(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
         if not _nearly_half(nu, omega):
@@ -94,6 +127,18 @@ class Chain:
         return _moved_on(before, *self.last)
 
 
+def _phases(orders: Orders) -> tuple[int, int]:
+    """At how many phases of both frequencies eccentricities are taken: motions that nearly lock in have many orders."""
+    a, b = (int(each) for each in np.maximum(PHASES, 4 * np.abs(orders).max(axis=0)))
+    return a, b
+
+
+def _moments_of_cycle(motion: Complex, nu: float) -> tuple[Array, Array]:
+    """(n, c) a motion of the frequency nu in rad/s at moments of its period, and its rate in 1/s."""
+    u, rate = motion_along(motion, moments(len(motion) - 1))
+    return u, nu * rate
+
+
 def _nearly_half(nu: float, omega: float) -> bool:
     return abs(2.0 * nu - omega) <= NEAR_HALF * omega
 
@@ -122,7 +167,7 @@ def motion_of(machine: Machine, point: CyclePoint) -> Complex:
 def free_whirl(machine: Machine, torus: Torus, stable: bool | None, kind: str = "") -> UnbalancedWhirl:
     """Results of a motion of two frequencies."""
     films = 2 * machine.film_count
-    displacements = samples(torus.orders, torus.motion[:, :films], PHASES)
+    displacements = samples(torus.orders, torus.motion[:, :films], _phases(torus.orders))
     lines = [
         SpectralLine(_combination(int(j), int(k), frequency), abs(hertz(frequency)), _axis(harmonic[:films]))
         for (j, k), frequency, harmonic in zip(torus.orders, torus.frequencies, torus.motion, strict=True)
@@ -137,6 +182,7 @@ def free_whirl(machine: Machine, torus: Torus, stable: bool | None, kind: str = 
         lines=_main(lines, ("nu", "Omega")),
         stable=stable,
         kind=kind,
+        temperatures_K=machine.temperatures,
     )
 
 
@@ -158,6 +204,7 @@ def _locked_whirl(machine: Machine, cycle: Cycle) -> UnbalancedWhirl:
         ring_speeds_Hz=hertz(machine.pace) * motion[0, films:].real,
         lines=_main(lines, (_half(1), _half(2))),
         stable=cycle.multipliers.stable,
+        temperatures_K=machine.temperatures,
     )
 
 

@@ -63,11 +63,10 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
             yield Fault(f"thermal.{key}", "follows", None, problem, 'Write "fixed".')
 
 
-def other_cycle_heat_faults(case: Case, but: str) -> Iterator[Fault]:
-    """Cycles over other numbers than the speed, and motions of two frequencies, are computed at given temperatures.
-    but: why they have no balance."""
+def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
+    """Cycles over other numbers than the speed are computed at given temperatures."""
     if case.heat is not None:
-        problem = f"balances the heat over one period of a limit cycle; {but}."
+        problem = "balances the heat of limit cycles over the speed alone."
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
 
 
