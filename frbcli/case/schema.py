@@ -34,7 +34,7 @@ from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
 from frbcli.case.surroundings.magnetic_pull import MagneticPull
 from frbcli.case.surroundings.over_time import largest
-from frbcli.case.thermal import Thermal
+from frbcli.case.thermal import AnyThermal, Thermal
 from frbcli.errors import Fault, InputError
 from frbcli.html import html_table
 
@@ -82,7 +82,7 @@ class Case(Model):
         default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"
     )
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
-    thermal: Thermal | None = Field(default=None, description="heat; without it every film keeps its temperature")
+    thermal: AnyThermal = Field(default=None, description="heat; without it every film keeps its temperature")
     given_speed: SpeedRamp | None = Field(
         default=None, alias="speed", description="must be given, but for a case with [motion]"
     )

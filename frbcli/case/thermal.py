@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from frbcli.case.model import Model
 from frbcli.case.quantities import Conductance, HeatCapacity, Quantity, Temperature
@@ -87,3 +87,11 @@ class Thermal(Model):
     hottest_film: Temperature = Field(
         default=HOTTEST_FILM, description="a film that reaches it ends the run as `overheated`"
     )
+
+
+def _without_heat(given: object) -> object:
+    """None of a table that says no more than that there is no heat: it needs no temperature of the supply."""
+    return None if given == {"model": "none"} else given
+
+
+AnyThermal = Annotated[Thermal | None, BeforeValidator(_without_heat)]

@@ -13,6 +13,7 @@ from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.reading.shipped import shipped_cases, shipped_names
 from frbcli.case.rotor import JeffcottRotor, TurbochargerRotor
 from frbcli.case.schema import Case, json_schema
+from frbcli.errors import InputError
 
 
 def test_small_case_in_si_with_its_defaults() -> None:
@@ -204,3 +205,14 @@ def _is_quantity(module: object, name: str) -> bool:
 def test_case_needs_its_sections() -> None:
     assert set(faults_of("")) == {"rotor", "bearing", "oil", "speed"}
     assert isinstance(load_case_text(SMALL), Case)
+
+
+def test_a_table_that_says_that_there_is_no_heat_needs_no_more() -> None:
+    case = load_case("jeffcott", ["thermal.model=none"])
+    assert case.heat is None
+    assert load_case_text(case.source_text, name="again").heat is None
+    oil = 'oil.viscosity={grade="ISO VG 32"}'
+    warm = case.with_settings("thermal.model=lumped", "thermal.supply_temperature=70 degC", oil)
+    assert warm.heat is not None
+    with pytest.raises(InputError, match="supply_temperature: is missing"):
+        load_case("jeffcott", ["thermal={model='none', mixing=0.6}"])
