@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import click
@@ -111,6 +112,15 @@ def test_bars_of_a_campbell_diagram_are_the_errors_of_its_eigenvalues() -> None:
     band = below.collections[-1].get_paths()[0].vertices
     assert np.ptp(band[band[:, 0] == 200.0, 1]) == pytest.approx(2.0 * found.sweep[-1].critical_error)
     assert bars_of(campbell_figure(frbcli.stability(frbcli.load_case("seal"), [50.0])).axes[0]) == []
+
+
+def test_growth_has_a_gap_where_no_position_of_rest_was_found() -> None:
+    """And the edge of the diagram does not cut the dots at its last speed."""
+    found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]), [150.0])
+    lost = replace(found.sweep[5], films=(), eigenvalues=np.zeros(0, dtype=complex), problem="not found")
+    above, below = campbell_figure(replace(found, sweep=(*found.sweep[:5], lost, *found.sweep[6:]))).axes
+    assert np.flatnonzero(np.isnan(below.lines[0].get_ydata())).tolist() == [5]
+    assert above.get_xlim()[1] > found.sweep[-1].speed_Hz
 
 
 def bars_of(axes: Axes) -> list[tuple[float, float]]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -13,7 +15,7 @@ from frbcli.plot.style import BAND, BLACK, BLUE, GREY, VERMILION, new_figure, st
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
 DOT, SMALL_DOT = 15.0, 6.0  # pt^2
-BESIDE_ONE = 1.1  # times the speed of a single point, which the edge would cut
+BESIDE_ONE, BESIDE_LAST = 1.1, 1.01  # times the last speed: the edge would cut its points
 GROWTH_FLOOR = 1.0  # 1/s, smallest half height of the growth panel, above round-off
 
 
@@ -30,7 +32,7 @@ def campbell_figure(stability: Stability) -> Figure:
         figure = new_figure(case.heading, "eigenvalues about the resting position", height=5.8)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
         draw_frequencies(above, points)
-        _draw_growth(below, points)
+        _draw_growth(below, stability.sweep)
         if stability.threshold is not None:
             _mark_threshold((above, below), stability.threshold)
         figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=4)
@@ -50,19 +52,21 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half the rotor speed", 0.5, (0, (1, 2)))):
         axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
     axes.scatter(
-        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="decays"
-    )
+        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="decays",
+        zorder=2.0,
+    )  # fmt: skip
     axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
     for which, colour in ((~grows, BLUE), (grows, VERMILION)):
         some = which & (errors > 0.0)  # NaN where they are not known
         axes.errorbar(speeds[some], frequencies[some], errors[some] / (2 * np.pi), linestyle="", ecolor=colour,
                       elinewidth=0.8, capsize=1.5, zorder=1.8)  # fmt: skip
-    axes.set_xlim(0.0, fastest * (1.0 if len(points) > 1 else BESIDE_ONE))
+    axes.set_xlim(0.0, fastest * (BESIDE_LAST if len(points) > 1 else BESIDE_ONE))
     axes.set_ylim(0.0, top)
     axes.set_ylabel("damped frequency in Hz")
 
 
-def _draw_growth(axes: Axes, points: list[StabilityPoint]) -> None:
+def _draw_growth(axes: Axes, points: Sequence[StabilityPoint]) -> None:
+    """Growth of the critical motion, with a gap at speeds without a resting position."""
     speeds = np.array([point.speed_Hz for point in points])
     growth = np.array([point.growth for point in points])
     axes.plot(speeds, growth, color=BLACK, marker="." if len(points) == 1 else "")
