@@ -125,6 +125,9 @@ def _notes(
         return notes
     if all(rest.stable for rest in rests):
         return [*notes, f"No whirl begins between {between}: every small motion decays there."]
+    if not any(rest.stable for rest in rests):
+        why = "small motions grow at all of these speeds, and branches begin in Hopf points. Begin at a lower speed."
+        return [*notes, f"No whirl begins between {between}: {why}"]
     return [*notes, f"No whirl begins between {between}, where small motions grow: branches begin in Hopf points only."]
 
 
