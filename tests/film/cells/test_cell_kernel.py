@@ -117,7 +117,9 @@ def solved_ring(stencil: np.ndarray, right: np.ndarray) -> np.ndarray:
 
 
 COUNTS = [SIDES, ALL_SIDES]  # of right-hand sides, of films whose journal does not tilt and of those where it does
-SHAPES = [(3, 1), (4, 2), (3, 3), (8, 4), (12, 5), (30, 6), (9, 8), (9, 9), (24, 10), (16, 12), (40, 20)]
+SHAPES = [
+    (3, 1), (4, 2), (3, 3), (8, 4), (12, 5), (30, 6), (9, 8), (9, 9), (24, 10), (16, 12), (16, 14), (16, 16), (40, 20)
+]  # fmt: skip
 
 
 @pytest.mark.parametrize("sides", COUNTS)

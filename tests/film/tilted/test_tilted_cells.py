@@ -19,7 +19,7 @@ def plain(width: float) -> Section:
     return Section(R, width, width, C, ETA, 1e5, 1e5, 1, "oil-bath", "oil-bath")
 
 
-@pytest.mark.parametrize("along", [5, 6, 8, 10, 12, 16])
+@pytest.mark.parametrize("along", [5, 6, 8, 10, 12, 14, 16])
 def test_faces_lie_midway_and_weights_are_exact(along: int) -> None:
     """For constants and straight lines, nearly for parabolas, and of one sign."""
     z, height = tilted_cells(along)

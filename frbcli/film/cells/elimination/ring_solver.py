@@ -21,7 +21,7 @@ from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, answer_al
 UNKNOWN_SIDES = 0
 ANY = 0, UNKNOWN_SIDES  # sizes that have no code of their own
 THREE, FOUR, FIVE, SIX, EIGHT, TEN = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 8, (0,) * 10
-TWELVE, SIXTEEN = (0,) * 12, (0,) * 16
+TWELVE, FOURTEEN, SIXTEEN = (0,) * 12, (0,) * 14, (0,) * 16
 TILTED = FIVE  # right-hand sides of a film whose journal tilts
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
@@ -92,6 +92,10 @@ def _twelve_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped
     solve_known(carray(stencil, (ENTRIES, m, 12)), carray(fields, (m, 12, 17)), TWELVE, TILTED)
 
 
+def _fourteen_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, 14)), carray(fields, (m, 14, 19)), FOURTEEN, TILTED)
+
+
 def _sixteen_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
     solve_known(carray(stencil, (ENTRIES, m, 16)), carray(fields, (m, 16, 21)), SIXTEEN, TILTED)
 
@@ -109,6 +113,7 @@ _LENGTHS: dict[tuple[int, int], Callable[..., None]] = {
     (len(EIGHT), len(TILTED)): _eight_tilted,
     (len(TEN), len(TILTED)): _ten_tilted,
     (len(TWELVE), len(TILTED)): _twelve_tilted,
+    (len(FOURTEEN), len(TILTED)): _fourteen_tilted,
     (len(SIXTEEN), len(TILTED)): _sixteen_tilted,
 }
 
