@@ -84,7 +84,8 @@ def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Ar
         bodies[ring] = speed
         return summit_torque(system, ring, omega, position, bodies) / drag - (speed - free)
 
-    end, close = free + 2.0 * surplus(free), CLOSE * abs(omega)
+    end = free + 2.0 * surplus(free)
+    close = CLOSE * (abs(omega) or abs(end - free))  # the rotor may stand still
     return free if end == free else float(brentq(surplus, *sorted((free, end)), xtol=close, rtol=ROUND_OFF))
 
 

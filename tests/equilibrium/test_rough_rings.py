@@ -55,6 +55,13 @@ def rest_of(system: System, speed: float, stuck: bool) -> RestingPosition:
     return resting_position(system, 2.0 * math.pi * speed, start)
 
 
+def test_a_machine_that_stands_still_rests_on_its_summits(system: System) -> None:
+    """Nothing turns its rings: a start from 0 Hz has to find that."""
+    rest = resting_position(system, 0.0)
+    assert rest.ring_speeds == pytest.approx(0.0, abs=1e-15)
+    assert np.hypot(*rest.journals.T) == pytest.approx(system.clearances, rel=0.05)
+
+
 def test_summits_have_the_slopes_of_their_forces_and_torques() -> None:
     """As rub has the same, and as differences have what it has not."""
     rubbing = Rubbing(SURFACES, 0, CLEARANCE)
