@@ -224,13 +224,17 @@ class WarmFollower(Follower):
         """The machine at the temperatures of the cycle y."""
         return self._warm(y).machine
 
+    def cold_equations(self, machine: Machine, reference: Complex) -> Equations:
+        """Equations of the motions of a machine whose temperatures stay. reference: see Balance."""
+        return Balance(machine, reference)
+
     def equations(self, place: Place) -> Equations:
-        """Equations of the cycles about a place, with temperatures that follow."""
+        """Equations of the motions about a place, with temperatures that follow."""
         reference, near = self.reference(place), self._warm(place.y).temperatures
 
         def at(y: Array) -> tuple[Array, Array]:
             warm = self._warm(y, near)
-            residual, slope = Balance(warm.machine, reference)(y)
+            residual, slope = self.cold_equations(warm.machine, reference)(y)
             slope[:-1] += self._pushed(warm, y) @ warm.by_motion
             return residual, slope
 
@@ -250,8 +254,8 @@ class WarmFollower(Follower):
         found = multipliers(warm.machine, self.space_at(y), y, near, max(TRIVIAL, enough))
         if not self.moves(y):
             return found
-        slope = Balance(warm.machine, unpacked(y[:-2], self.machine.size))(y)[1][:, :-1]
-        return self._with_temperatures(found, warm, y, slope)
+        slope = self.cold_equations(warm.machine, self.reference(place))(y)[1]
+        return self._with_temperatures(found, warm, y, slope[:, :-1])
 
     def _with_temperatures(self, found: Multipliers, warm: WarmMotion, y: Array, slope: Array) -> Multipliers:
         """The multipliers of a motion y with those of its temperatures. slope: of the equations of the motion by its
@@ -281,24 +285,20 @@ class WarmSynchronous(WarmFollower):
 
     free = False
 
-    def equations(self, place: Place) -> Equations:
-        """Those of the motions about a place, with temperatures that follow."""
-        reference, near = unpacked(place.y[:-2], self.machine.size), self._warm(place.y).temperatures
+    def reference(self, place: Place) -> Complex:
+        """The motion itself: the unbalance holds its phase."""
+        return unpacked(place.y[:-2], self.machine.size)
 
-        def at(y: Array) -> tuple[Array, Array]:
-            warm = self._warm(y, near)
-            residual, slope = synchronous_equations(warm.machine, reference)(y)
-            slope[:-1] += self._pushed(warm, y) @ warm.by_motion
-            return residual, slope
-
-        return at
+    def cold_equations(self, machine: Machine, reference: Complex) -> Equations:
+        """Equations of the synchronous motions of a machine whose temperatures stay."""
+        return synchronous_equations(machine, reference)
 
     def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
         """As Synchronous says, and those of the temperatures while the motion follows."""
         y = place.y
         warm = self._warm(y)
         found = driven_multipliers(warm.machine, self.space_at(y), y)
-        slope = synchronous_equations(warm.machine, unpacked(y[:-2], self.machine.size))(y)[1]
+        slope = self.cold_equations(warm.machine, self.reference(place))(y)[1]
         return self._with_temperatures(found, warm, y, slope[:-1, :-2])
 
 

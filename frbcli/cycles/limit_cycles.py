@@ -74,11 +74,7 @@ def limit_cycles(
     begun = working_time().cpu_s
     slowest, fastest = check(case, True, with_unbalance)
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
-    if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
-        problem = f"lies outside of the range, {hertz(slowest):.4g} to {hertz(fastest):.4g} Hz."
-        remedy = "Ask for a speed within it, or set speed.from and speed.to."
-        faults = tuple(Fault("speed", f"{hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
-        raise InputError(case.name or "case", faults)
+    _check_asked(case, asked, slowest, fastest)
     if by_shooting(case):
         return _with_missing(limit_cycles_by_shooting(case, slowest, fastest, asked, observe), speeds_Hz)
     plan = make_plan(case)
@@ -94,18 +90,25 @@ def limit_cycles(
         found = with_hopf_errors(found, walk)
     elif found.of(HOPF):
         found = replace(found, special=_with_errors(case, fastest, found.special))
+    warm = walk.follower if isinstance(walk.follower, WarmFollower) else None
     if with_unbalance:
-        if isinstance(walk.follower, WarmFollower):
-            found = whirls_with_unbalance(found, OverSpeed(machine), observe, walk.follower.at_its_heat)
-        else:
-            found = whirls_with_unbalance(found, walk.course, observe)
+        course = walk.course if warm is None else OverSpeed(machine)
+        found = whirls_with_unbalance(found, course, observe, None if warm is None else warm.at_its_heat)
     unbalance = machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()
     if system.rotor.over_speed is not None or not (unbalance or machine.rotor.loads):
         return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
-    warm = walk.follower if isinstance(walk.follower, WarmFollower) else None
     driven = Synchronous(machine, slowest, fastest) if warm is None else warm.driven(slowest, fastest)
     response = synchronous_response(driven, walk.resting.points[-1])
     return with_response(found, walk, response, working_time().cpu_s - begun)
+
+
+def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: float) -> None:
+    """Raises InputError for speeds in rad/s outside of the range of the diagram."""
+    if outside := [speed for speed in asked if not slowest <= speed <= fastest]:
+        problem = f"lies outside of the range, {hertz(slowest):.4g} to {hertz(fastest):.4g} Hz."
+        remedy = "Ask for a speed within it, or set speed.from and speed.to."
+        faults = tuple(Fault("speed", f"{hertz(speed):g} Hz", None, problem, remedy) for speed in outside)
+        raise InputError(case.name or "case", faults)
 
 
 def _walk(

@@ -9,7 +9,9 @@ import click
 from frbcli.cli.files import InputFile, OutputFile, OutputFolder
 from frbcli.cli.main import COMMANDS, command_named
 
-SHORT = ("--set", "film.theory=short", "--set", "speed.duration=0.1 s")
+SETTINGS = ("film.theory=short", "speed.duration=0.1 s")  # of a run of jeffcott that takes no time
+SHORT = tuple(word for setting in SETTINGS for word in ("--set", setting))
+MODELS = ("--cavitation", "half-sommerfeld,sommerfeld")
 CASE, RUN, TABLE = "my.toml", "whole.h5", "measured.csv"
 
 

@@ -7,6 +7,7 @@ import os
 from pathlib import Path
 
 import pytest
+from output_options import MODELS, SETTINGS, SHORT
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
@@ -15,9 +16,7 @@ from frbcli.results.store import Run, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 
-SETTINGS = ("film.theory=short", "speed.duration=0.1 s")
-QUICK = ["jeffcott", *(word for setting in SETTINGS for word in ("--set", setting))]
-MODELS = ["--cavitation", "half-sommerfeld,sommerfeld"]
+QUICK = ["jeffcott", *SHORT]
 
 
 @pytest.fixture(autouse=True)

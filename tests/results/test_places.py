@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, other_paths, output_options
+from output_options import CALLS, CASE, RUN, SETTINGS, SHORT, TABLE, Option, other_paths, output_options
 from pages import column_tables
 from paths import ROOT
 from synthetic_run import Rotor, signals
@@ -36,7 +36,6 @@ from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 
-SETTINGS = ("film.theory=short", "speed.duration=0.1 s")
 OPTIONS = output_options()
 
 

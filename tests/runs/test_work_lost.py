@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from output_options import MODELS, SETTINGS, SHORT
 from paths import ROOT
 
 from frbcli.bearing_tests import tested_film
@@ -32,9 +33,7 @@ from frbcli.studies.compare import compare
 from frbcli.studies.sweep.sweep import Workers, sweep
 from frbcli.studies.verify import verify
 
-SETTINGS = ("film.theory=short", "speed.duration=0.1 s")
-QUICK = ["jeffcott", *(word for setting in SETTINGS for word in ("--set", setting))]
-MODELS = ["--cavitation", "half-sommerfeld,sommerfeld"]
+QUICK = ["jeffcott", *SHORT]
 
 
 @pytest.fixture(autouse=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 import runpy
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,6 @@ from paths import DOCS
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.gap import whole_width
 from frbcli.film.grid import Mesh
@@ -82,11 +80,8 @@ COPY = BearingModel("copy", "short, full film", full_force, flow=pressed_out)
 
 
 @pytest.fixture(autouse=True)
-def added() -> Iterator[None]:
+def added() -> None:
     frbcli.add_bearing(COPY)
-    yield
-    for model in table.models():
-        frbcli.remove_bearing(model.name)
 
 
 def test_a_copy_of_the_film_of_the_program_is_as_warm() -> None:

@@ -36,7 +36,6 @@ import frbcli
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
-from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.checks import model_film
 from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.gap import Section
@@ -56,13 +55,9 @@ def spring_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, 
 
 
 @pytest.fixture(autouse=True)
-def added() -> Iterator[None]:
-    """Has the models of this file, and takes away what a test adds."""
+def added() -> None:
     frbcli.add_bearing(HALF)
     frbcli.add_bearing(CHOSEN)
-    yield
-    for model in table.models():
-        frbcli.remove_bearing(model.name)
 
 
 def film_of(model: BearingModel, bearing: Section = JOURNAL, keys: tuple[float, ...] = ()) -> Any:

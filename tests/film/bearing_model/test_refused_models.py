@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -21,13 +20,9 @@ from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 
 @pytest.fixture(autouse=True)
-def added() -> Iterator[None]:
-    """Has the models of this file, and takes away what a test adds."""
+def added() -> None:
     frbcli.add_bearing(HALF)
     frbcli.add_bearing(CHOSEN)
-    yield
-    for model in table.models():
-        frbcli.remove_bearing(model.name)
 
 
 def test_keys_and_plan_of_a_model_are_those_of_a_case(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
