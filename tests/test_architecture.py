@@ -191,3 +191,27 @@ def test_a_class_name_has_one_meaning() -> None:
     for name, place in names:
         places.setdefault(name, []).append(place)
     assert not {name: found for name, found in places.items() if len(found) > 1}
+
+
+def test_public_methods_say_what_they_do() -> None:
+    """A method that overrides another one has its docstring, as `help` shows it, unless it has more to say."""
+    classes = {node.name: node for file in FILES for node in parts(file) if isinstance(node, ast.ClassDef)}
+
+    def line(name: str) -> Iterator[ast.ClassDef]:
+        if name in classes:
+            yield classes[name]
+            for base in classes[name].bases:
+                yield from line(ast.unparse(base).partition("[")[0])
+
+    def says(node: ast.AST, name: str) -> bool:
+        return isinstance(node, ast.FunctionDef) and node.name == name and ast.get_docstring(node) is not None
+
+    silent = [
+        (name, method.name)
+        for name, node in classes.items()
+        if not name.startswith("_")
+        for method in node.body
+        if isinstance(method, ast.FunctionDef) and not method.name.startswith("_")
+        if not any(says(own, method.name) for ancestor in line(name) for own in ancestor.body)
+    ]
+    assert silent == []

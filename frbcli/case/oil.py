@@ -35,7 +35,6 @@ class _Constant(Quantity):
     """A quantity that a table over time cannot give."""
 
     def read(self, given: object) -> float:
-        """See Quantity."""
         if is_over_time(given):
             problem = "changes over time, and the pressures of all films count from one that stays."
             raise ValueFault(problem, "Give one pressure; that of a supply may change over time.")

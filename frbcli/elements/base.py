@@ -28,17 +28,14 @@ class BaseElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         single = len(case.bases) == 1
         for number, base in enumerate(case.bases):
             yield cls("base" if single else f"base.{number}", "base" if single else f"base {number + 1}", base)
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         load = changing_load(self.name, np.array(self.given.amplitude), self.given)
         return Parts(loads=((GROUND, load),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         x, y = (display(each, "m/s^2") for each in self.given.amplitude)
         return "ground", f"{x} in x, {y} in y", f"{self.given.turning}; displacements are those against the ground"

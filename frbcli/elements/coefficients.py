@@ -30,13 +30,11 @@ class GivenCoefficients(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if isinstance(bearing, CoefficientsBearing):
                 yield cls(key, bearing)
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         name = self.given.name
         return Parts(links=((Link(site.journal(name), site.shell(name), site.count), self.linear),))
 
@@ -63,7 +61,6 @@ class GivenCoefficients(MachineElement):
         return [Fault(f"{self.key}.file", self.given.file, None, problem, remedy)]
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         value, reason = self._values()
         return "bearings", f"{self.given.name}: {value}".removeprefix(": "), reason
 

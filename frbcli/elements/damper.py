@@ -36,7 +36,6 @@ class DamperElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if bearing.damper is not None:
                 yield cls(f"{key}.damper", bearing.name, bearing.damper)
@@ -52,7 +51,6 @@ class DamperElement(MachineElement):
         return f"{self.bearing}_damper".lstrip("_")
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         spring = LinearPart.of(np.diag(self.given.spring))
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((self.link(site), spring),))
 
@@ -61,7 +59,6 @@ class DamperElement(MachineElement):
         return Link(self.node, site.seat(self.bearing), site.count)
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} in a film".removeprefix(": ")
         spring = "no centring spring: it sinks under a static load"
         if any(self.given.spring):

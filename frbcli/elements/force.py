@@ -36,17 +36,14 @@ class ForceElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for number, force in enumerate(case.forces):
             yield cls(f"force.{number}", f"force {number + 1}", node_at(case, force.at), force)
 
     @property
     def acts_on(self) -> str:
-        """See MachineElement."""
         return self.node
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         given = self.given
         x, y = np.multiply(equal_places(self.node, site), given.amplitude).tolist()
         if given.constant:
@@ -55,7 +52,6 @@ class ForceElement(MachineElement):
         return Parts(loads=((self.node, changing_load(self.name, amplitude, given)),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         x, y = (display(each, "N") for each in self.given.amplitude)
         turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
         where = "at each of both equal bearings" if equal_places(self.node, site) > 1.0 else "at one place"

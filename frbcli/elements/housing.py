@@ -38,7 +38,6 @@ class HousingElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         if case.housing is not None:
             places = () if case.rotor.symmetric else case.placed_bearings
             yield cls(KEY, case.housing, tuple((bearing.name, bearing.position or 0.0) for bearing in places))
@@ -48,11 +47,9 @@ class HousingElement(MachineElement):
         return f"{NODE}_{bearing}" if self.bearings else NODE
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         return Parts(bodies=(self._modal(site.gravity) if self.given.modes else self._rigid(site.gravity),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         if self.given.modes:
             frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in self.given.modes)
             weight = "its weight at its masses" if self.given.masses else "without its weight, for no masses are given"

@@ -32,23 +32,19 @@ class MagneticPullElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for number, pull in enumerate(case.magnetic_pulls):
             stator = node_at(case, pull.stator) if pull.stator else GROUND
             yield cls(f"magnetic_pull.{number}", node_at(case, pull.at), stator, pull)
 
     @property
     def acts_on(self) -> str:
-        """See MachineElement."""
         return self.node
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         pull = LinearPart.of(-self.given.pull * np.eye(2))
         return Parts(links=((Link(self.node, self.stator, equal_places(self.node, site)), pull),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         value = f"{self.node.replace('_', ' ')}: {display(self.given.pull, 'N/m')}"
         stator = self.stator.replace("_", " ") or "the ground"
         return "magnetic pull", value, f"out of the middle of its stator, on {stator}; a spring of negative stiffness"

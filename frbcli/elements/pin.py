@@ -33,13 +33,11 @@ class PinElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for key, bearing in zip(case.given_keys, case.given_bearings, strict=True):
             if bearing.pin is not None:
                 yield cls(f"{key}.pin", bearing.name, bearing.pin)
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         pin = self.given
         value = f"{self.bearing}: play {display(pin.play, 'm')}".removeprefix(": ")
         free = f"{math.degrees(pin.play / pin.radius):.3g} deg to either side"

@@ -33,7 +33,6 @@ class SupportElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if bearing.support is not None:
                 yield cls(f"{key}.support", bearing.name, bearing.support)
@@ -44,13 +43,11 @@ class SupportElement(MachineElement):
         return f"support_{self.bearing}".rstrip("_")
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         mount = LinearPart.of(np.diag(self.given.stiffness), np.diag(self.given.damping))
         link = Link(self.node, site.ground(self.bearing), site.count)
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         springs = directions(self.given.stiffness, "N/m")
         damping = f", {directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")

@@ -57,7 +57,6 @@ class Harmonic(Load):
     frequency: float
 
     def factors(self, t: Array, angle: Array) -> Array:
-        """See Load."""
         theta = self.order * angle + self.frequency * t
         return np.column_stack([np.cos(theta), np.sin(theta)])
 
@@ -68,7 +67,6 @@ class Harmonic(Load):
 
     @property
     def strays(self) -> str:
-        """See Load."""
         if self.frequency:
             return "has a frequency of its own, so that no motion under it repeats with a whirl or with the rotor"
         if not self.order.is_integer():
@@ -100,11 +98,9 @@ class Tabulated(Load):
 
     @property
     def largest(self) -> Array:
-        """See Load."""
         return np.asarray(np.abs(self.factors(self.times, self.times)).max(axis=0)[:, None] * self.columns)
 
     def factors(self, t: Array, angle: Array) -> Array:  # noqa: ARG002
-        """See Load."""
         piece = np.clip(np.searchsorted(self.times, t, side="right") - 1, 0, len(self.cubics) - 1)
         powers = (t - self.times[piece])[:, None] ** np.arange(4)
         return np.asarray(np.einsum("kcp,kp->kc", self.cubics[piece], powers))

@@ -26,20 +26,16 @@ class AxialGrooves(SpacedSupply):
 
     @property
     def rectangular(self) -> bool:
-        """See OilSupply."""
         return True
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        """See OilSupply."""
         return tuple(Outline(at, 0.5 * width, 0.5 * self.opening_angle, 0.5 * width) for at in self.positions)
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
-        """See OilSupply."""
         gauge = self.gauge(ambient)
         return Openings(grooves=tuple(AxialGroove(at, self.opening_angle, gauge) for at in self.positions))
 
     @property
     def gap(self) -> tuple[str, str]:
-        """See OilSupply."""
         why = "axial grooves divide the circumference; the film is symmetric about its middle"
         return f"{self.count} rectangles", why

@@ -26,6 +26,5 @@ class AxialSlots(SpacedSupply):
     sizes: ClassVar[tuple[str, ...]] = ("length",)
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        """See OilSupply."""
         half_angle, half_length = 0.5 * self.opening_angle, 0.5 * self.length
         return tuple(Outline(at, 0.5 * width, half_angle, half_length) for at in self.positions)

@@ -30,29 +30,24 @@ class Bores(SpacedSupply):
 
     @property
     def surface(self) -> Literal["journal", "shell", "housing"]:
-        """See OilSupply."""
         return self.on
 
     @property
     def channels(self) -> Bores | None:
-        """See OilSupply."""
         return self
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        """See OilSupply."""
         axial, size = self.axial_position * width, 0.5 * self.diameter
         return tuple(Outline(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
 
     @property
     def words(self) -> str:
-        """See OilSupply."""
         return super().words.replace("bores", "feed holes")
 
     @classmethod
     def breaches(
         cls, path: Path, given: Mapping[str, Any], diameter: float | None, width: float | None, ambient: float | None
     ) -> Iterator[Breach]:
-        """See OilSupply."""
         yield from super().breaches(path, given, diameter, width, ambient)
         count, bore = number(given, "count", NUMBER, 1.0), number(given, "diameter", "m")
         place = number(given, "axial_position", NUMBER, 0.5)

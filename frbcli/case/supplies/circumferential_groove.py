@@ -30,12 +30,10 @@ class CircumferentialGroove(PressureSupply):
 
     @property
     def rectangular(self) -> bool:
-        """See OilSupply."""
         return self.axial_position in (0.0, MIDDLE, 1.0)
 
     @property
     def splits(self) -> bool:
-        """See OilSupply."""
         return self.axial_position == MIDDLE
 
     @property
@@ -45,7 +43,6 @@ class CircumferentialGroove(PressureSupply):
 
     @property
     def land_share(self) -> float:
-        """See OilSupply."""
         return 1.0 if self.splits else ONE_LAND
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
@@ -53,18 +50,15 @@ class CircumferentialGroove(PressureSupply):
         return (Outline(0.0, self.axial_position * width, math.pi, SHOWN * width, through=True),)
 
     def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
-        """See OilSupply."""
         return Openings(2 if self.splits else 1, "groove", self.gauge(ambient))
 
     @property
     def gap(self) -> tuple[str, str]:
-        """See OilSupply."""
         if self.splits:
             return "2 equal rectangles", "a central circumferential groove splits the width; one section is solved"
         return "1 rectangle", "a circumferential groove at one end: one section of the whole width"
 
     def faults(self, key: str) -> list[Fault]:
-        """See OilSupply."""
         if self.rectangular:
             return []
         problem = "is neither in the middle nor at an end: the two films would differ."

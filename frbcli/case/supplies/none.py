@@ -19,10 +19,8 @@ class NoSupply(OilSupply):
 
     @property
     def rectangular(self) -> bool:
-        """See OilSupply."""
         return True
 
     @property
     def gap(self) -> tuple[str, str]:
-        """See OilSupply."""
         return "1 rectangle", "plain bearing: the film is symmetric about its middle"

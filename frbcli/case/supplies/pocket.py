@@ -22,5 +22,4 @@ class Pocket(PressureSupply):
     flow: LargestFlow = None
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
-        """See OilSupply."""
         return (Outline(self.position, 0.5 * width, 0.5 * self.opening_angle, 0.5 * self.width),)

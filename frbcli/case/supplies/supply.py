@@ -203,27 +203,22 @@ class PressureSupply(OilSupply):
         flow: float | None
 
     def absolute(self, ambient: float) -> float:
-        """See OilSupply."""
         return largest(self.pressure)
 
     @property
     def over_time(self) -> OverTime | None:
-        """See OilSupply."""
         return self.pressure if isinstance(self.pressure, OverTime) else None
 
     @property
     def rise_time(self) -> float:
-        """See OilSupply."""
         return self.ramp
 
     @property
     def largest_flow(self) -> float:
-        """See OilSupply."""
         return math.inf if self.flow is None else self.flow
 
     @property
     def words(self) -> str:
-        """See OilSupply."""
         up_to = "" if self.over_time is None else "up to "
         told = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
         return told if self.flow is None else f"{told}, at most {display(self.flow, 'm^3/s')}"
@@ -243,5 +238,4 @@ class SpacedSupply(PressureSupply):
 
     @property
     def words(self) -> str:
-        """See OilSupply."""
         return f"{self.count} {super().words}" if self.count > 1 else super().words

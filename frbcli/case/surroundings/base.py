@@ -65,7 +65,6 @@ class Base(MachineTable):
         return f"order {1.0 if self.order is None else self.order:g}{of}"
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        """See MachineTable."""
         if case.housing is not None and case.housing.modes and not case.housing.masses:
             problem = "acts on masses, and those of the housing are not known: its modes do not say them."
             yield Breach(path, problem, "Give housing.masses, or a rigid housing.")

@@ -77,7 +77,6 @@ class AppliedForce(MachineTable):
         return f"order {order:g}" if order else f"{frequency:g} Hz" if frequency else ""
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        """See MachineTable."""
         if not node_at(case, self.at):
             yield Breach((*path, "at"), *no_place(case, self.at))
         if self.order is not None and self.frequency is not None:

@@ -96,7 +96,6 @@ class Housing(MachineTable):
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        """See MachineTable."""
         return _modal(path, case, self) if self.modes else _rigid(path, case, self)
 
 

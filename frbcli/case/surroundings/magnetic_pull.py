@@ -30,7 +30,6 @@ class MagneticPull(MachineTable):
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        """See MachineTable."""
         for key, place in (("at", self.at), ("stator", self.stator)):
             if (place or key == "at") and not node_at(case, place):
                 yield Breach((*path, key), *no_place(case, place))

@@ -42,7 +42,6 @@ class ThrustElement(MachineElement):
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
-        """See MachineElement."""
         collar = None
         if case.axial is not None:
             from frbcli.elements.collar.collar import collar_of
@@ -63,12 +62,10 @@ class ThrustElement(MachineElement):
         return tilt_part(self.collar)
 
     def parts(self, site: Site) -> Parts:
-        """See MachineElement."""
         linear = self.linear
         return Parts() if linear is None else Parts(links=((Link(COLLAR, self.stand, sees=TILTS), linear),))
 
     def told(self, site: Site) -> Line:
-        """See MachineElement."""
         if self.collar is None or not self.collar.top:
             return "thrust bearing", f"{self.given.name}: left out".removeprefix(": "), LEFT_OUT
         rest = self.collar.rest(self.collar.top)

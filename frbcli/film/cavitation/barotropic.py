@@ -54,7 +54,6 @@ class Barotropic(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         vapour, liquid = oil.density * given.vapour_sound_speed**2, oil.density * given.liquid_sound_speed**2
         emptied = vapour_fraction(vapour, liquid, oil.cavitation)
         tension, ratio, lowest = mixture(emptied, vapour, liquid)
@@ -62,7 +61,6 @@ class Barotropic(Law):
 
     @classmethod
     def legend(cls, given: Any) -> str:
-        """See Law.legend."""
         return f"Bayada-Chupin, $c_v$ = {given.vapour_sound_speed:g} m/s"
 
     @staticmethod

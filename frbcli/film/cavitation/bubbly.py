@@ -63,13 +63,11 @@ class Bubbly(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         pressure = oil.cavitation if given.saturation_pressure is None else given.saturation_pressure
         return cls(given.bunsen, given.entrained, pressure / oil.scale, given.release_time, given.absorption_time)
 
     @classmethod
     def legend(cls, given: Any) -> str:
-        """See Law.legend."""
         return f"bubbly, $\\alpha_B$ = {given.bunsen:g}, in equilibrium"
 
     def cells(self, w: Array, scales: Scales) -> CellState:
@@ -151,7 +149,6 @@ class Bubbly(Law):
         return self.bunsen + self.supplied
 
     def standing(self, scales: Scales) -> float:
-        """See Law.standing."""
         u = scales.ambient / self.saturation
         free = max(self.gas_content - self.bunsen * u, 0.0)
         return -free / (u + free) - scales.cavitation / scales.reference

@@ -33,12 +33,10 @@ class Elrod(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         return cls() if given.bulk_modulus is None else cls(given.bulk_modulus / oil.scale)
 
     @classmethod
     def legend(cls, given: Any) -> str:
-        """See Law.legend."""
         modulus = given.bulk_modulus
         return f"Elrod, {'incompressible' if modulus is None else f'bulk modulus {modulus / BAR:.4g} bar'}"
 
@@ -61,7 +59,6 @@ class Elrod(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """See Law.cell."""
         if w > 0.0:
             if parameters[0] == math.inf:  # without exp, which the vector units would take for the cavity as well
                 return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0

@@ -28,12 +28,10 @@ class Peeken(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         return cls(given.bunsen)
 
     @classmethod
     def legend(cls, given: Any) -> str:
-        """See Law.legend."""
         return f"Peeken, $\\alpha_B$ = {given.bunsen:g}"
 
     def cells(self, w: Array, scales: Scales) -> CellState:
@@ -63,7 +61,6 @@ class Peeken(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """See Law.cell."""
         if w > 0.0:
             return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
         a = parameters[0]

@@ -49,7 +49,6 @@ class Penalty(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         exponent = steepness_exponent(0.0)
         if given.pressure == "absolute":
             return cls(PREFACTOR, exponent * oil.scale / oil.ambient, BY_ECCENTRICITY)

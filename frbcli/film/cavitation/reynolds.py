@@ -40,7 +40,6 @@ class Reynolds(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """See Law.cell."""
         if w > 0.0:
             return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
         return scales.cavitation, 1.0, -w * scales.reference, 0.0, 0.0, -scales.reference

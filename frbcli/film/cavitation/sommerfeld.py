@@ -28,7 +28,6 @@ class Sommerfeld(Law):
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:
-        """See Law.cell."""
         return scales.cavitation + w * scales.reference, 1.0, 0.0, scales.reference, 0.0, 0.0
 
 

@@ -57,12 +57,10 @@ class TwoPhase(Law):
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """See Law.scaled."""
         return cls(given.steepness, whirl_steepness=given.whirl_steepness or STAYS)
 
     @classmethod
     def legend(cls, given: Any) -> str:
-        """See Law.legend."""
         return f"two-phase, $x_1$ = {given.steepness:g}"
 
     @staticmethod

@@ -65,11 +65,9 @@ class CellFilms(Films):
 
     @property
     def with_fields(self) -> tuple[VolumeFilm, ...]:
-        """See Films.with_fields."""
         return self.own
 
     def gaps(self, d: Array) -> Array:
-        """See Films.gaps."""
         ring = self.data.ring
         return np.asarray(ring[:, GAP] + d[:, :1] * ring[:, SIN] - d[:, 1:] * ring[:, COS])[:, :, None]
 
@@ -80,13 +78,11 @@ class CellFilms(Films):
 
     @property
     def gas_contents(self) -> Array:
-        """See Films.gas_contents."""
         laws = [film.law for film in self.own]
         gassy = any(law.carries_gas for law in laws)
         return np.array([law.gas_content if law.carries_gas else 0.0 for law in laws if gassy])
 
     def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        """See Films.oil_unknowns."""
         count = self.count
         return np.stack([
             unknown_with_gas(film, content[i::count], near[i::count], w[i])
@@ -102,12 +98,10 @@ class CellFilms(Films):
 
     @property
     def remembering(self) -> tuple[bool, ...]:
-        """See Films.remembering."""
         return tuple(bool(film.remembers) for film in self.data.films)
 
     @property
     def sheared(self) -> Array:
-        """See Films.sheared."""
         return np.asarray(self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def harmonic_gaps(self, places: Array) -> Array:
@@ -122,13 +116,11 @@ class CellFilms(Films):
         return np.asarray(areas.sum(axis=1) / sheared.sum(axis=1))
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         start = near.field if near is not None and self.sought_near[i] else None
         return steady_force(self.own[i], place, rate, total, start)
 
     @property
     def compared_states(self) -> int:
-        """See Films.compared_states."""
         return self.states
 
     def compared(self) -> Compared:
@@ -176,7 +168,6 @@ class CellFilms(Films):
     def refill(
         self, i: int, before: Films, d: tuple[float, float], wet: Array, flows: Array
     ) -> tuple[float, float] | None:
-        """See Films.refill."""
         if not self.remembering[i]:
             return None
         film, old = self.own[i], before.with_fields[i]
@@ -212,7 +203,6 @@ class CellFilms(Films):
         return worst
 
     def oil_passed(self, flows: Array) -> dict[str, float]:
-        """See Films.oil_passed."""
         if not any(self.remembering):
             return {}
         size = [
@@ -222,7 +212,6 @@ class CellFilms(Films):
         return passed_oil(size, flows)
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """See Films.power_and_flow."""
         film, d = self.own[i], place / self.clearances[i]
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
         solution, at = steady_solution(film, motion), film_at(film, math.hypot(*d), total)
@@ -232,7 +221,6 @@ class CellFilms(Films):
         return power, outflow(at, motion.d, at.pressure(solution.state))
 
     def heat_ends(self) -> Any:
-        """See Films.heat_ends."""
         return CellEnds(
             far_open=np.array([opens_far(film) for film in self.own], dtype=np.int64),
             units=self._areas,
@@ -246,11 +234,9 @@ class CellFilms(Films):
 
     @property
     def far_open(self) -> Array:
-        """See Films.far_open."""
         return np.array([opens_far(film) for film in self.own], dtype=np.float64)
 
     def flow_units(self, clearances: Array) -> Array:
-        """See Films.flow_units."""
         return np.asarray(self._areas * clearances)
 
     @property
@@ -259,17 +245,14 @@ class CellFilms(Films):
         return np.array([each.copies * each.radius * each.width for each in sections])
 
     def smallest_gap(self, i: int, d: Array) -> Array:
-        """See Films.smallest_gap."""
         return least_gaps(self.own[i].section, d)
 
     @property
     def starving(self) -> bool:
-        """See Films.starving."""
         films = zip(self.own, self.remembering, strict=True)
         return any(keeps and is_unfed(film.section, type(film.law)) for film, keeps in films)
 
     def changeable(self) -> Self:
-        """See Films.changeable."""
         data = self.data
         own = data._replace(
             films=data.films.copy(),
@@ -280,7 +263,6 @@ class CellFilms(Films):
         return replace(self, data=own)
 
     def supplied(self, shares: Array) -> Self:
-        """See Films.supplied."""
         own = tuple(supplied(film, float(share)) for film, share in zip(self.own, shares, strict=True))
         return replace(self, own=own)
 

@@ -41,16 +41,13 @@ class ElementFilms(Films):
 
     @property
     def remembering(self) -> tuple[bool, ...]:
-        """See Films.remembering."""
         return (True,)
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         return published_force(self.film, place, rate, total)
 
     @property
     def compared_states(self) -> int:
-        """See Films.compared_states."""
         return COMPARED
 
     def compared(self) -> Compared:
@@ -66,7 +63,6 @@ class ElementFilms(Films):
         return forces
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
-        """See Films.first_state."""
         film, data, omega = self.film, self.data, float(totals[0])
         d, state = places[0] / film.section.clearance, film.full()
         moves = bool(np.any(d != 0.0)) and omega != 0.0
@@ -90,7 +86,6 @@ class ElementFilms(Films):
         return abs(self._created(flows)) / max(float(flows[PASSED, 0, [CAME, LEFT]].max()), full)
 
     def oil_passed(self, flows: Array) -> dict[str, float]:
-        """See Films.oil_passed."""
         passed, created = flows[PASSED, 0], self._created(flows)
         return {"oil_in_m3": float(passed[CAME]), "oil_out_m3": float(passed[LEFT]), "oil_created_m3": created}
 

@@ -43,25 +43,21 @@ class FieldFilm(Protocol):
 
 
 @dataclass(frozen=True)
-class EvenFilm:
+class EvenFilm(FieldFilm):
     """A film whose gap is the same along the axis. See FieldFilm."""
 
     film: VolumeFilm
 
     @property
     def section(self) -> Section:
-        """See FieldFilm."""
         return self.film.section
 
     def ends(self, d: Array) -> Array:
-        """See FieldFilm."""
         return np.asarray(d)[None]
 
     def parts(self, d: Array, total: float) -> tuple[Part, ...]:
-        """See FieldFilm."""
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
         return ((film_at(self.film, math.hypot(*motion.d), total), motion),)
 
     def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
-        """See FieldFilm."""
         return outflow(solver.film, motion.d, solver.film.pressure(solution.state), solver.data)

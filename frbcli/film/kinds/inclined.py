@@ -27,19 +27,16 @@ class InclinedFilms(Films):
         raise NotImplementedError
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         whole = np.concatenate([place, self.tilted.standing[i, 2:]])
         found = self.tilted.force(i, whole, np.concatenate([rate, np.zeros(2)]), total, near)
         by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (found.by_displacement, found.by_velocity))
         return FilmForce(found.force[PLANE], by_place, by_rate, found.field)
 
     def ends(self, places: Array) -> Array:
-        """See Films.ends."""
         return self.tilted.ends(np.hstack([places, self.tilted.standing[:, 2:]]))
 
     @property
     def fields(self) -> tuple[InclinedFilm, ...]:
-        """See Films.fields."""
         tilts = self.tilted.standing[:, 2:]
         return tuple(InclinedFilm(film, tilt) for film, tilt in zip(self.tilted.own, tilts, strict=True))
 
@@ -51,5 +48,4 @@ class InclinedFilm(TiltedField):
     tilt: Array
 
     def coordinates(self, d: Array) -> Array:
-        """See TiltedField."""
         return np.concatenate([self.section.clearance * d, self.tilt])

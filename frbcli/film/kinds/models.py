@@ -24,11 +24,9 @@ class ModelFilms(Films):
 
     @property
     def loop(self) -> Any:
-        """See Films.loop."""
         return self.data
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         return evaluate(self.data[i], self.clearances[i], place, rate, total)
 
     def heat_ends(self) -> Any:
@@ -43,9 +41,7 @@ class ModelFilms(Films):
         return power, np.nan if film.flow == NO_FLOW else float(model_flow(film, x, y, 0.0, 0.0, total))
 
     def changeable(self) -> Self:
-        """See Films.changeable."""
         return replace(self, data=tuple(film._replace(parameters=film.parameters.copy()) for film in self.data))
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        """See Films.smooth."""
         return self.data

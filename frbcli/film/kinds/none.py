@@ -28,9 +28,7 @@ class NoFilms(Films):
         raise IndexError(i)
 
     def heat_ends(self) -> Any:
-        """See Films.heat_ends."""
         return ()
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        """See Films.smooth."""
         return ()

@@ -39,7 +39,6 @@ class TableFilms(Films):
         return self.data
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         if self.scales is None:
             return evaluate(self.data[i], self.clearances[i], place, rate, total)
         s = self.scales[i]
@@ -49,15 +48,12 @@ class TableFilms(Films):
 
     @cached_property
     def end_flows(self) -> tuple[EndFlow, ...]:
-        """See Films.end_flows."""
         return tuple(make_end_flow(section, film) for section, film in zip(self.sections, self.data, strict=True))
 
     def heat_ends(self) -> Any:
-        """See Films.heat_ends."""
         return self.end_flows
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """See Films.power_and_flow."""
         d, c = place / self.clearances[i], self.clearances[i]
         power = couette_power(place, c, self.force(i, place, np.zeros(2), total).force, total, slip, drag)
         scale = 1.0 if self.scales is None else self.scales[i]
@@ -66,16 +62,13 @@ class TableFilms(Films):
         return power, c * leaving
 
     def scaled(self, scales: Array, clearances: Array) -> Self | None:
-        """See Films.scaled."""
         return replace(self, clearances=tuple(clearances.tolist()), scales=tuple(scales.tolist()))
 
     def supplied(self, shares: Array) -> Self:
-        """See Films.supplied."""
         scales = np.ones(self.count) if self.scales is None else np.asarray(self.scales)
         return replace(self, scales=tuple((scales / shares).tolist()), shares=tuple(shares.tolist()))
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        """See Films.smooth."""
         return self.data
 
 
@@ -115,12 +108,10 @@ class SolutionFilms(TableFilms):
     mesh: Mesh
 
     def with_half_the_nodes(self) -> Self:
-        """See Films."""
         tables = (film for film in self.data if isinstance(film, PenaltyTableFilm))
         return replace(self, data=tuple(film._replace(table=with_half_the_nodes(film.table)) for film in tables))
 
     def compared(self) -> Compared:
-        """See Films.compared."""
         finer = Mesh(FINER * self.mesh.axial, FINER * self.mesh.circumferential)
         fine = [replace(film, mesh=finer) for film in self.solved]
 

@@ -33,7 +33,7 @@ from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil, unknown_at
 from frbcli.film.kinds.contract import Compared, Films
-from frbcli.film.kinds.fields import Part
+from frbcli.film.kinds.fields import FieldFilm, Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
 from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
@@ -69,20 +69,16 @@ class TiltedFilms(Films):
 
     @property
     def loop(self) -> Any:
-        """See Films.loop."""
         return self.data
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """See Films.force."""
         return tilted_force(self.own[i], place, rate, total, None if near is None else near.field)
 
     @property
     def standing(self) -> Array:
-        """See Films.standing."""
         return np.hstack([np.zeros_like(self.misalignments), -self.misalignments])
 
     def seen(self, journals: Array) -> Array:
-        """See Films.seen."""
         return np.concatenate([film.at_ends(journal) for film, journal in zip(self.own, journals, strict=True)])
 
     def harmonic_gaps(self, places: Array) -> Array:
@@ -93,12 +89,10 @@ class TiltedFilms(Films):
 
     @property
     def sheared(self) -> Array:
-        """See Films.sheared."""
         shares = self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * np.pi)
         return np.asarray([shares[one:end].mean() for one, end in pairwise(self.data.first.tolist())])
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
-        """See Films.first_state."""
         moves = [place.any() and total != 0.0 for place, total in zip(places, totals, strict=True)]
         of = self._lands
         wet = np.zeros((WET, len(of), *of[0][1].film.grid.shape))
@@ -113,34 +107,28 @@ class TiltedFilms(Films):
 
     @property
     def remembering(self) -> tuple[bool, ...]:
-        """See Films.remembering."""
         return tuple(film.lands[0].film.law.keeps_oil for film in self.own)
 
     @property
     def starving(self) -> bool:
-        """See Films.starving."""
         films = zip(self.own, self.remembering, strict=True)
         return any(keeps and is_unfed(film.section, type(film.lands[0].film.law)) for film, keeps in films)
 
     @property
     def film_of_cells(self) -> NDArray[np.int64]:
-        """See Films.film_of_cells."""
         return np.array([i for i, _ in self._lands])
 
     def gaps(self, d: Array) -> Array:
-        """See Films.gaps."""
         ring, along = self.data.ring, self.data.places[:, MIDDLES, :-1]
         ends = np.swapaxes(d.reshape(self.count, self.stations, 2)[self.film_of_cells], 0, 1)
         near, far = (ring[:, GAP] + end[:, :1] * ring[:, SIN] - end[:, 1:] * ring[:, COS] for end in ends)
         return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
 
     def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        """See Films.oil_unknowns."""
         films = [land.film for _, land in self._lands]
         return np.stack([unknown_at(*each) for each in zip(films, content, near, w, strict=True)])
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
-        """See Films.oil_defect."""
         if not any(self.remembering):
             return None
         worst = 0.0
@@ -152,7 +140,6 @@ class TiltedFilms(Films):
         return worst
 
     def oil_passed(self, flows: Array) -> dict[str, float]:
-        """See Films.oil_passed."""
         if not any(self.remembering):
             return {}
         sections = [land.film.section for _, land in self._lands]
@@ -168,7 +155,6 @@ class TiltedFilms(Films):
 
     @property
     def compared_states(self) -> int:
-        """See Films.compared_states."""
         return self.states
 
     def compared(self) -> Compared:
@@ -183,24 +169,21 @@ class TiltedFilms(Films):
         return forces
 
     def smallest_gap(self, i: int, d: Array) -> Array:
-        """See Films.smallest_gap."""
         return least_gaps(self.own[i].section, d)
 
     @property
     def fields(self) -> tuple[TiltedField, ...]:
-        """See Films.fields."""
         return tuple(map(TiltedField, self.own))
 
 
 @dataclass(frozen=True)
-class TiltedField:
+class TiltedField(FieldFilm):
     """The fields of a film whose journal tilts. See FieldFilm."""
 
     film: TiltedFilm
 
     @property
     def section(self) -> Section:
-        """See FieldFilm."""
         return self.film.section
 
     def coordinates(self, d: Array) -> Array:
@@ -208,15 +191,11 @@ class TiltedField:
         return np.concatenate([self.section.clearance * d[:2], d[2:]])
 
     def ends(self, d: Array) -> Array:
-        """See FieldFilm."""
         return self.film.ends(self.coordinates(d))
 
     def parts(self, d: Array, total: float) -> tuple[Part, ...]:
-        """See FieldFilm."""
         place, still = self.coordinates(d), np.zeros(COORDINATES)
         return tuple((land.film, land.motion(place, still, total)) for land in self.film.lands)
 
-    @staticmethod
-    def outflow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
-        """See FieldFilm."""
+    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
         return tilted_outflow(solver.film, motion, solution)

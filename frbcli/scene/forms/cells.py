@@ -45,7 +45,6 @@ class CellForm(FilmForm):
     compiling: ClassVar[tuple[float, float]] = COMPILING
 
     def solve_us(self, case: Case, plan: Plan) -> float:
-        """See FilmForm."""
         size = self.cells_solved(case, plan) / cells_time(*USUAL)
         law = float(np.mean([law_named(name).cost for name in case.cavitations]))
         return self.us * (law * (FIXED + (1.0 - FIXED) * size))
@@ -55,37 +54,30 @@ class CellForm(FilmForm):
         return cells_time(*cells_of(plan))
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
-        """See FilmForm."""
         return films * (RESTING if resting else 1.0) * _steady_s(cells_of(plan))
 
     def again_share(self) -> float:
-        """See FilmForm."""
         return AGAIN
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """See FilmForm."""
         cells = cells_of(plan)
         fine = cells[0] * FINER, cells[1] * FINER
         return compared_states(cells) * films * (_steady_s(cells) + _steady_s(fine))
 
     def memory_B(self, plan: Plan, films: int) -> float:
-        """See FilmForm."""
         return cells_B(cells_of(plan), films)
 
     def solves_of_a_stage(self, plan: Plan, per_turn: Array, turning: bool) -> Array | None:
-        """See FilmForm."""
         if not turning:
             return None
         passed = 0.5 * cells_of(plan)[0] / np.maximum(per_turn, 1.0)
         return np.asarray(KEEPING_SOLVES + FRONT_SOLVES * passed)
 
     def steps_at_fronts(self, plan: Plan, fronts: float) -> float:
-        """See FilmForm."""
         coarse = USUAL[0] / cells_of(plan)[0]
         return float(fronts * plan.tolerance ** (-1.0 / FRONT_ORDER) * coarse**FRONT_CELLS)
 
     def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
-        """See FilmForm."""
         found = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
         return None if found is None else self.of_whole(found)
 
@@ -94,7 +86,6 @@ class CellForm(FilmForm):
         return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
-        """See FilmForm."""
         assert films.cells is not None
         around, along = films.cells
         told = ("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")

@@ -147,11 +147,9 @@ class ModelForm(FilmForm):
     rules: ClassVar[tuple[Rule, ...]] = RULES
 
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        """See FilmForm."""
         return (0, 0), ""
 
     def remedies(self, case: Case) -> tuple[str, ...]:
-        """See FilmForm."""
         return (f"a force of film.theory = {case.film.theory} without jumps, or with derivatives of its own",)
 
 

@@ -149,28 +149,22 @@ class PublishedForm(FilmForm):
     rules: ClassVar[tuple[Rule, ...]] = RULES
 
     def solve_us(self, case: Case, plan: Plan) -> float:
-        """See FilmForm."""
         around, along = cells_of(plan)
         return self.us * float((around * along / COUNT) ** POWER)
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
-        """See FilmForm."""
         return STATE_s
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """See FilmForm."""
         return COMPARED * STATE_s
 
     def memory_B(self, plan: Plan, films: int) -> float:
-        """See FilmForm."""
         return cells_B(cells_of(plan), films)
 
     def about_oil(self, law: type[Law]) -> str:
-        """See FilmForm."""
         return "the oil is part of the state, and some is created"
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
-        """See FilmForm."""
         assert films.cells is not None
         around, along = films.cells
         reason = "two-phase in its published form (4.31): creates oil where it cavitates; the run states how much"
@@ -181,7 +175,6 @@ class PublishedForm(FilmForm):
         )
 
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        """See FilmForm."""
         return published_elements(case)
 
     def transport(self, case: Case) -> tuple[str, str, str] | None:
@@ -190,7 +183,6 @@ class PublishedForm(FilmForm):
         return "diffusion", kind, DIFFUSIONS[kind]
 
     def remedies(self, case: Case) -> tuple[str, ...]:
-        """See FilmForm."""
         two_phase, found = case.film.two_phase, ['film.two-phase.form = "conservative"']
         if two_phase.diffusion != "consistent":
             found.append('film.two-phase.diffusion = "consistent"')
@@ -199,7 +191,6 @@ class PublishedForm(FilmForm):
         return tuple(found)
 
     def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
-        """See FilmForm."""
         return "quadratic elements", "two-phase in its published form (4.31): creates oil where it cavitates"
 
 

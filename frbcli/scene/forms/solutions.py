@@ -45,16 +45,13 @@ class SolutionForm(FilmForm):
     )  # fmt: skip
 
     def table_s(self, plan: Plan) -> float:
-        """See FilmForm."""
         size = plan.mesh.circumferential / SOLUTION_MESH.circumferential
         return TABULATING_s * size * _along_factor(plan.mesh) / _along_factor(SOLUTION_MESH)
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """See FilmForm."""
         return SAMPLES * films * ONE_STATE * self.table_s(plan)
 
     def memory_B(self, plan: Plan, films: int) -> float:
-        """See FilmForm."""
         return 8.0 * BLOCKS * plan.mesh.circumferential * plan.mesh.axial**2
 
 

@@ -34,18 +34,15 @@ class TableForm(FilmForm):
     any_theory: ClassVar[bool] = True
 
     def pressed(self, plan: Plan) -> tuple[float, float]:
-        """See FilmForm."""
         full = plan.theory == "finite" and not law_named(plan.cavitation).cavitates
         return (self.work.pressed[0], FULL_PRESSED) if full else self.work.pressed
 
     def table_s(self, plan: Plan) -> float:
-        """See FilmForm."""
         if plan.theory == "short":
             return 0.0
         return _modes_s(plan) + TABLE_s * plan.mesh.circumferential * (plan.mesh.axial + self.lines)
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """See FilmForm."""
         axial, around = FINER * plan.mesh.axial, FINER * plan.mesh.circumferential
         return MODES_s * axial**3 + SAMPLES * films * (STATE_s + DIRECT_s * axial * around)
 
@@ -68,7 +65,6 @@ class ModalForm(FilmForm):
     modal: ClassVar[bool] = True
 
     def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
-        """See FilmForm."""
         return self.name, f"{law.name} in a rectangular gap; it has no state"
 
 
@@ -80,11 +76,9 @@ class ShortForm(FilmForm):
     parts: ClassVar[tuple[str, str]] = "points", "around x along"
 
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        """See FilmForm."""
         return SHORT_POINTS, "at which the pressure is told; the force is exact"
 
     def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
-        """See FilmForm."""
         return self.name, f"{law.name} of the short bearing, set in the case; it has no state"
 
 
@@ -96,16 +90,13 @@ class ChainForm(FilmForm):
     why: ClassVar[str] = "no table: the grooves do not turn with the line of centres"
 
     def solve_us(self, case: Case, plan: Plan) -> float:
-        """See FilmForm."""
         elements = min(plan.mesh.axial, CHAIN_MODES) * plan.mesh.circumferential
         return self.us * (1.0 - CHAIN_SHARE + CHAIN_SHARE * elements / CHAIN_ELEMENTS)
 
     def table_s(self, plan: Plan) -> float:
-        """See FilmForm."""
         return _modes_s(plan)
 
     def error_s(self, plan: Plan, films: int, machines: int) -> float:
-        """See FilmForm."""
         return machines * MODES_s * (FINER * plan.mesh.axial) ** 3 + SAMPLES * films * STATE_s
 
 

@@ -165,7 +165,6 @@ class TiltedForm(CellForm):
         return cells[0], cells[1] // HALVES
 
     def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """See CellForm."""
         return cells[0], HALVES * cells[1]
 
 

@@ -27,26 +27,21 @@ class RigidShaft(Shaft):
     freedoms: ClassVar[int] = 2
 
     def body(self) -> Body:
-        """See Shaft."""
         rotor = self.rotor
         return point_mass("journal", rotor.mass, rotor.gravity, rotor.unbalance, rotor.external_damping)
 
     def undamped_body(self) -> Body:
-        """See Shaft."""
         return point_mass("journal", self.rotor.mass, 0.0)
 
     @property
     def mass(self) -> float:
-        """See Shaft."""
         return self.rotor.mass
 
     @property
     def eccentricity(self) -> float:
-        """See Shaft."""
         return self.rotor.unbalance / self.rotor.mass
 
     def stations(self, machine: LinearRotor) -> Stations:
-        """See Shaft."""
         journal = dict(machine.points)["journal"]
         return symmetric_stations(np.array([0.0, 1.0]), np.stack([journal, journal]))
 
@@ -63,7 +58,6 @@ class JeffcottShaft(Shaft):
     freedoms: ClassVar[int] = 4
 
     def body(self) -> Body:
-        """See Shaft."""
         rotor = self.rotor
         return jeffcott_rotor(
             rotor.mass,
@@ -76,33 +70,27 @@ class JeffcottShaft(Shaft):
         )
 
     def undamped_body(self) -> Body:
-        """See Shaft."""
         rotor = self.rotor
         return jeffcott_rotor(rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, 0.0, 0.0, 0.0, 0.0)
 
     @property
     def mass(self) -> float:
-        """See Shaft."""
         return self.rotor.mass + self.rotor.journal_mass
 
     @property
     def disk_mass(self) -> float:
-        """See Shaft."""
         return self.rotor.mass
 
     @property
     def eccentricity(self) -> float:
-        """See Shaft."""
         return self.rotor.unbalance / self.rotor.mass
 
     @property
     def compliance(self) -> float:
-        """See Shaft."""
         return self.rotor.mass / self.rotor.shaft_stiffness
 
     @property
     def natural_frequencies(self) -> tuple[tuple[float, ...], str]:
-        """See Shaft."""
         frequency = math.sqrt(self.rotor.shaft_stiffness / self.rotor.mass) / (2.0 * math.pi)
         return (frequency,), "in rigid bearings"
 

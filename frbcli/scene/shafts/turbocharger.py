@@ -63,7 +63,6 @@ class TurbochargerShaft(Shaft):
         return f"{count} of {count}", "the rotor is not symmetric"
 
     def body(self) -> Body:
-        """See Shaft."""
         rotor, free = self.rotor, self.free()
         modes = free.modes.lowest(free.kept)
         return turbocharger_rotor(
@@ -77,7 +76,6 @@ class TurbochargerShaft(Shaft):
         )
 
     def undamped_body(self) -> Body:
-        """See Shaft."""
         free = self.free()
         return turbocharger_rotor(free.modes, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
 
@@ -132,19 +130,16 @@ class TurbochargerShaft(Shaft):
 
     @property
     def mass(self) -> float:
-        """See Shaft."""
         areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in self.case.shaft)
         shaft = sum(area * part.length * part.density for area, part in zip(areas, self.case.shaft, strict=True))
         return shaft + sum(disk.mass for disk in self.case.disks)
 
     @property
     def eccentricity(self) -> float:
-        """See Shaft."""
         return sum(disk.unbalance for disk in self.case.disks) / self.mass
 
     @property
     def disk_count(self) -> int:
-        """See Shaft."""
         return len(self.case.disks)
 
     @property
@@ -163,7 +158,6 @@ class TurbochargerShaft(Shaft):
 
     @property
     def beam_freedoms(self) -> int:
-        """See Shaft."""
         case = self.case
         return 2 * (1 + ELEMENTS + len(case.shaft) + len(case.disks) + len(case.placed_bearings))
 
@@ -174,11 +168,9 @@ class TurbochargerShaft(Shaft):
         return tuple(frequencies.tolist()), "free, at rest"
 
     def journal(self, name: str) -> str:
-        """See Shaft."""
         return f"journal_{name}"
 
     def stations(self, machine: LinearRotor) -> Stations:
-        """See Shaft."""
         free = self.free()
         maps = np.zeros((len(free.modes.positions), 2, machine.size))
         maps[:, 0, : free.kept] = maps[:, 1, free.kept : 2 * free.kept] = free.modes.shapes[:, : free.kept]
