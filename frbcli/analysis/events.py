@@ -26,9 +26,10 @@ from frbcli.analysis.orders.resonance import (
 )
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
 from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, window_step_s
-from frbcli.analysis.signals import Motion, RunLike, Values, joined, pieces, points
+from frbcli.analysis.signals import RunLike, joined, pieces, points
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.windows import hann
+from frbcli.arrays import Array, Complex
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
                "clearance-step"]  # fmt: skip
@@ -173,8 +174,8 @@ def growth(run: RunLike, event: Mapping[str, Any], known: float) -> float:
 def _near_the_speed(
     run: RunLike,
     turns: Revolutions,
-    resonances: Mapping[str, Sequence[Motion]],
-    besides: Sequence[Sequence[Motion]],
+    resonances: Mapping[str, Sequence[Complex]],
+    besides: Sequence[Sequence[Complex]],
     before_s: float,
 ) -> Iterator[Event]:
     """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals.
@@ -232,7 +233,7 @@ def _whirls_of_any_frequency(
             yield Event(kind, film, moment.time_s, speed, frequency, frequency / speed, point, reached)
 
 
-def _whirl(run: RunLike, motion: Motion, turns: Revolutions, name: str) -> Iterator[Event]:
+def _whirl(run: RunLike, motion: Complex, turns: Revolutions, name: str) -> Iterator[Event]:
     """Onsets and offsets; motion (m,): of a journal at half the speed, relative to the clearance."""
     amplitude = np.abs(motion)
     middle = WHIRL_REVOLUTIONS * STEPS // 2
@@ -266,7 +267,7 @@ def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: 
     return Event(kind, name or None, float(event_s), speed, ratio * speed, ratio, joined("journal", name))
 
 
-def _at_even_angles(run: RunLike, name: str, times_s: Values) -> Motion:
+def _at_even_angles(run: RunLike, name: str, times_s: Array) -> Complex:
     """x + iy of a journal, FREQUENCY_SAMPLES times per revolution, from the first to the last of the times (m,) of even
     steps; seen from behind where the rotor turns the other way round: forward motion then has a positive order."""
     start, stop = signals.samples_about(run, float(times_s[0]), float(times_s[-1]))

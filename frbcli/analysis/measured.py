@@ -11,8 +11,9 @@ import numpy as np
 
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.tacho import tacho_speed
-from frbcli.analysis.signals import Values, point_of
+from frbcli.analysis.signals import point_of
 from frbcli.analysis.spectra.sampling import even_steps, times
+from frbcli.arrays import Array
 from frbcli.nearest import did_you_mean
 from frbcli.results.measured.columns import Columns, wrong_file
 from frbcli.results.measured.reading import read_columns
@@ -167,7 +168,7 @@ def _signals(columns: Columns, given: Measurement) -> dict[str, Signal]:
     return signals
 
 
-def _column(columns: Columns, name: str, one: float | None, unit: str, option: str) -> Values:
+def _column(columns: Columns, name: str, one: float | None, unit: str, option: str) -> Array:
     """A column in SI; one: what 1 in it is, None for what the file says or else the usual unit. Raises InputError if
     the file says that it is something else."""
     values, stated = columns[name], columns.unit(name)
@@ -195,7 +196,7 @@ def _in_si(stated: str, unit: str) -> float | None:
     return None
 
 
-def _times(columns: Columns, given: Measurement, count: int) -> Values:
+def _times(columns: Columns, given: Measurement, count: int) -> Array:
     if given.time is not None:
         return times(columns, given.time, _column(columns, given.time, given.time_unit_s, "s", "--time-unit"))
     rate = columns.rate if given.rate is None else given.rate
@@ -219,7 +220,7 @@ def _number(columns: Columns, name: str) -> float:
     raise wrong_file(columns.path, f'has no single number "{name}".', remedy)
 
 
-def _speeds(columns: Columns, given: Measurement, time: Values) -> Values:
+def _speeds(columns: Columns, given: Measurement, time: Array) -> Array:
     if given.speed is not None:
         return _column(columns, given.speed, given.speed_unit_Hz, SPEED, "--speed-unit")
     if given.speed_Hz is not None:
@@ -234,7 +235,7 @@ def _speeds(columns: Columns, given: Measurement, time: Values) -> Values:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
 
 
-def _check_sampling(columns: Columns, given: Measurement, time: Values, speed: Values) -> None:
+def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:
     """Raises InputError if the rotor turns faster than the samples show, which also tells of a wrong unit of times or
     speeds before anything is computed with them."""
     rate = (len(time) - 1) / max(float(time[-1] - time[0]), SMALLEST)

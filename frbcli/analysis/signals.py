@@ -9,13 +9,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.errors import Fault, InputError
 from frbcli.nearest import did_you_mean
 from frbcli.results.records import TIME
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
-
-Values = NDArray[np.float64]
-Motion = NDArray[np.complex128]
 
 KINDS = ("journal", "disk", "ring", "shell", "support", "housing")  # of points
 END = "_x_m"
@@ -27,7 +25,7 @@ class SignalColumn(Protocol):
     """Values (n,) that are given in slices: an array, or a signal of a run that is too long to be read at once."""
 
     def __len__(self) -> int: ...
-    def __getitem__(self, where: slice, /) -> Values: ...
+    def __getitem__(self, where: slice, /) -> Array: ...
 
 
 class RunLike(Protocol):
@@ -48,7 +46,7 @@ class RunLike(Protocol):
         """How the run ended: "finished", "contact", "starved", "not-converged" or "interrupted"."""
         ...
 
-    def __getitem__(self, name: str) -> Values: ...
+    def __getitem__(self, name: str) -> Array: ...
     def __len__(self) -> int: ...
 
 
@@ -62,27 +60,27 @@ class SignalOf:
     def __len__(self) -> int:
         return len(self.run)
 
-    def __getitem__(self, where: slice) -> Values:
+    def __getitem__(self, where: slice) -> Array:
         return self._piece(where.start or 0, len(self) if where.stop is None else where.stop)
 
-    def _piece(self, start: int, stop: int) -> Values:
+    def _piece(self, start: int, stop: int) -> Array:
         return piece(self.run, self.name, start, stop)
 
 
 class RingSpeed(SignalOf):
     """The speed (n,) in Hz of the ring of a bearing with a name, read slice by slice; 0 of one that does not turn."""
 
-    def _piece(self, start: int, stop: int) -> Values:
+    def _piece(self, start: int, stop: int) -> Array:
         return ring_speed(self.run, self.name, start, stop)
 
 
-def piece(run: RunLike, name: str, start: int, stop: int) -> Values:
+def piece(run: RunLike, name: str, start: int, stop: int) -> Array:
     """The samples from start to stop of a signal; a run that can read them alone does so."""
     read = getattr(run, "read", None)
     return np.asarray(run[name][start:stop] if read is None else read(name, start, stop))
 
 
-def samples(column: SignalColumn, places: NDArray[np.int64]) -> Values:
+def samples(column: SignalColumn, places: NDArray[np.int64]) -> Array:
     """The values at some samples (k,), ascending, read in pieces."""
     if len(places) == 0:
         return np.empty(0)
@@ -96,7 +94,7 @@ def samples(column: SignalColumn, places: NDArray[np.int64]) -> Values:
     return np.concatenate(found)
 
 
-def course(time_s: SignalColumn, speed_Hz: SignalColumn) -> tuple[Values, Values]:
+def course(time_s: SignalColumn, speed_Hz: SignalColumn) -> tuple[Array, Array]:
     """Time in s and rotor speed in Hz at the ends of CORNERS intervals of a run (n,)."""
     count = len(time_s)
     places = np.unique(np.linspace(0, count - 1, CORNERS + 1).round().astype(np.int64))
@@ -153,13 +151,13 @@ def films(names: Iterable[str]) -> Iterator[str]:
     return (name[len("eccentricity_") :] for name in names if f"{name}_".startswith("eccentricity_"))
 
 
-def motion_of(run: RunLike, kind: str, name: str, start: int = 0, stop: int | None = None) -> Motion:
+def motion_of(run: RunLike, kind: str, name: str, start: int = 0, stop: int | None = None) -> Complex:
     """x + iy (n,) in m of a point, from one sample to another."""
     node, stop = joined(kind, name), len(run) if stop is None else stop
     return np.asarray(piece(run, node + END, start, stop) + 1j * piece(run, f"{node}_y_m", start, stop))
 
 
-def ring_speed(run: RunLike, name: str, start: int = 0, stop: int | None = None) -> Values:
+def ring_speed(run: RunLike, name: str, start: int = 0, stop: int | None = None) -> Array:
     """Speed (n,) in Hz of the ring of a bearing, from one sample to another; 0 of a ring that does not turn."""
     signal, stop = joined("ring_speed", name, "Hz"), len(run) if stop is None else stop
     return piece(run, signal, start, stop) if signal in set(run.signals) else np.zeros(stop - start)

@@ -24,7 +24,8 @@ from numpy.typing import NDArray
 
 from frbcli.analysis.events import WHIRL_BEGINS, growth, resolution
 from frbcli.analysis.orders.subsynchronous import BEGINS, SIDES
-from frbcli.analysis.signals import RunLike, Values, joined, piece, samples_about, speed_at
+from frbcli.analysis.signals import RunLike, joined, piece, samples_about, speed_at
+from frbcli.arrays import Array
 
 BETWEEN = 0.03  # of a step of the search: how far a moment that is read between two steps may be off
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
@@ -123,7 +124,7 @@ def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
     return found
 
 
-def _means(run: RunLike, name: str, edges: NDArray[np.int64]) -> Values:
+def _means(run: RunLike, name: str, edges: NDArray[np.int64]) -> Array:
     """Means of a signal between samples (k + 1,)."""
     values = piece(run, name, 0, int(edges[-1]))
     return np.asarray(np.add.reduceat(values, edges[:-1]) / np.diff(edges))
@@ -262,13 +263,13 @@ def _number(event: Record, key: str) -> float:
     return np.nan if value is None else float(value)
 
 
-def _without_outliers(differences: Sequence[float]) -> Values:
+def _without_outliers(differences: Sequence[float]) -> Array:
     """Known values, ascending, without at least the largest quarter."""
     known = np.sort([value for value in differences if not np.isnan(value)])
     return known[: max(1, int(0.75 * len(known)))]
 
 
-def _usual(kept: Values, share: float) -> float:
+def _usual(kept: Array, share: float) -> float:
     """The uncertainty of an event by the differences of all of them without outliers."""
     if not len(kept):
         return 0.0

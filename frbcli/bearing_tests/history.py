@@ -8,8 +8,8 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Truths
 from frbcli.bearing_tests.march import FilmAt, Moment, inclined_path, march
 from frbcli.bearing_tests.steady_film import (
     COARSE_MODAL_MESH,
@@ -30,8 +30,6 @@ from frbcli.film.cells.tilted.lands import land_paths, lands, summed
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 from frbcli.scene.tilt import slope_of, tilt_of
-
-Array = NDArray[np.float64]
 
 PROBE = math.pi  # phi of the probe and of the stated gap: the bottom of the bearing
 PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
@@ -133,7 +131,7 @@ def film_course(
 
 
 def course_of(
-    moments: Sequence[MovedFilm], worst: MovedFilm, field: FilmField, error: float, fixed: NDArray[np.bool_],
+    moments: Sequence[MovedFilm], worst: MovedFilm, field: FilmField, error: float, fixed: Truths,
     spent: int, problem: str,
 ) -> Course:  # fmt: skip
     """The course of a film. worst: its moment of the largest force; fixed: where pressures are given; spent: iterations

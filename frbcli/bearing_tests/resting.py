@@ -8,8 +8,8 @@ from contextlib import suppress
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.steady_film import film_force
 from frbcli.case.schema import Case
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
@@ -22,7 +22,6 @@ from frbcli.film.section_faults import no_inflow
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
-Array = NDArray[np.float64]
 Near = Callable[[Motion, FilmForce | None], FilmForce]  # on the journal in a motion, sought from one near by
 ForceOf = Callable[[Case, KinematicPlan, tuple[int, int], Motion, FilmForce | None], FilmForce]  # the same on cells
 

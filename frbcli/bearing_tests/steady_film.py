@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import Law
@@ -26,8 +26,6 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 from frbcli.scene.tilt import gaps_at_ends
-
-Array = NDArray[np.float64]
 
 MODAL_MESH, COARSE_MODAL_MESH = Mesh(10, 192), Mesh(5, 96)
 NUDGE = 1e-3  # share of the gap by which the journal is moved for a derivative

@@ -10,8 +10,8 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.resting import COARSE_CELLS
 from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.case.schema import Case
@@ -20,8 +20,6 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import friction_coefficient
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
-
-Array = NDArray[np.float64]
 
 RATIO, MOST = 10.0**0.2, 24  # of two speeds of a curve, and points on either side of the speed of the test
 BOUNDARY = 0.9  # share of the summits in the load, from which on they carry it

@@ -8,12 +8,13 @@ from functools import partial
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.forms.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.forms.published import published_course, published_moment, resting_in_published
 from frbcli.bearing_tests.forms.short import short_course, short_force, short_moment
 from frbcli.bearing_tests.history import Course, film_course
 from frbcli.bearing_tests.resting import ForceOf, resting_displacement
-from frbcli.bearing_tests.steady_film import Array, FilmMoment, film_force, film_moment
+from frbcli.bearing_tests.steady_film import FilmMoment, film_force, film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.published.solution import NodeState

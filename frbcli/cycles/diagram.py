@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
 from frbcli.cycles.method.balance import loads_along, unpacked
@@ -34,7 +34,6 @@ from frbcli.cycles.result import (
 )
 from frbcli.scene.films import film_places
 
-Array = NDArray[np.float64]
 Observer = Callable[[int, float, float], None]
 
 SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
@@ -42,9 +43,6 @@ from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.model import HeatModel, rates, viscosities_at
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # Of Newton's method; the longest of its steps and the last one, K: behind it 1e-11 K are left, for steps become shorter
 # as their squares.

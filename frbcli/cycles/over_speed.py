@@ -5,9 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.method.changing import ChangingFollower, by_difference, kept
@@ -27,8 +25,6 @@ from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.equilibrium.resting import resting_position
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
-
-Array = NDArray[np.float64]
 
 
 class ChangingSpeed:

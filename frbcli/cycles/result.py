@@ -6,15 +6,12 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.cycles.method.balance import motion_along
 from frbcli.html import Tabular
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SPEED = "speed"  # what diagrams go over
 SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"

@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Table, spread_table
 from frbcli.elements.coefficients import GivenCoefficients
@@ -30,8 +30,6 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import support_faults
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.shafts.table import shaft_of
-
-Array = NDArray[np.float64]
 
 STIFFNESSES = 61
 DECADES = (-3.0, 2.0)  # about the stiffness on which the rotor as a rigid mass has its highest speed as frequency

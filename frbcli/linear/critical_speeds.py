@@ -13,16 +13,14 @@ import math
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.scene.films import full_films, rings
-
-Array = NDArray[np.float64]
 
 SPEEDS = 20  # between which natural frequencies are nearly straight
 LOWEST = 0.01  # share of the highest speed

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
@@ -26,9 +26,6 @@ from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
 
-Array = NDArray[np.float64]
-Amplitudes = NDArray[np.complex128]
-
 FORWARD, BACKWARD, MIXED = "forward", "backward", "mixed"
 UNMOVED = 1e-12  # of a ring that turns on its pin, in m over rad, below which nothing else moves
 STILL = 1e-3  # of the largest motion: a point that moves less has no sense of whirl
@@ -46,8 +43,8 @@ class DampedMode:
 
     eigenvalue: complex
     direction: str
-    motion: Amplitudes
-    shape: Amplitudes
+    motion: Complex
+    shape: Complex
     error: float = math.nan
 
     @property
@@ -128,7 +125,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     point = with_errors(point_at_rest(machine, speed_Hz), machine)
     shapes = []
     for value, vector in _eigenvectors(rotor, machine):
-        motion: Amplitudes = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
+        motion: Complex = np.array([place @ vector for _, place in rotor.points], dtype=np.complex128)
         shape = np.einsum("sij,j->si", stations.maps, vector)
         size = float(np.max(larger_semi_axis(np.concatenate([motion, shape]))))
         if size > UNMOVED * float(np.abs(vector).max()):
@@ -145,7 +142,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     )
 
 
-def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[complex, Amplitudes]]:
+def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[complex, Complex]]:
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
     if machine.dynamic:
         own = [film.own for film in machine.dynamic]
@@ -156,7 +153,7 @@ def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[comp
     return [(complex(values[i]), vectors[:n, i]) for i in np.flatnonzero(oscillating(values))]
 
 
-def _direction(motion: Amplitudes) -> str:
+def _direction(motion: Complex) -> str:
     """The direction in which points with complex amplitudes (p, 2) whirl."""
     forward, backward = np.abs(motion[:, 0] + 1j * motion[:, 1]), np.abs(motion[:, 0] - 1j * motion[:, 1])
     moving = forward + backward > STILL * np.max(forward + backward)

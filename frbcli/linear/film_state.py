@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.oil import USUAL_TEMPERATURE
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import LEAST, RestingFilm, TiltingFilm, force_error, settled_force
@@ -25,8 +25,6 @@ from frbcli.film.roughness.asperities import rub
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.system import System
 from frbcli.scene.section import film_section
-
-Array = NDArray[np.float64]
 
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them

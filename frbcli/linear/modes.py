@@ -12,8 +12,8 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, named, table_of
 from frbcli.errors import Fault, InputError
@@ -28,8 +28,6 @@ from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
     from frbcli.equilibrium.coefficients import RestingFilm
-
-Array = NDArray[np.float64]
 
 SPEEDS = 25  # of the default sweep
 SHOWN = 4  # slowest modes of each direction

@@ -22,8 +22,8 @@ from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex, Truths
 from frbcli.case.schema import Case
 from frbcli.columns import Table, spread_table
 from frbcli.equilibrium.coefficients import LEAST, coefficients_of
@@ -42,9 +42,6 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_forces, harmonics_of
 from frbcli.scene.machine.system import elastic_shell
 from frbcli.scene.speeds import default_speeds
-
-Array = NDArray[np.float64]
-Amplitudes = NDArray[np.complex128]
 
 UNBALANCE = "unbalance"  # as excitation
 SPEEDS = 120  # of the default sweep
@@ -75,14 +72,14 @@ class Response(Tabular):
     case: Case
     speeds_Hz: Array
     points: tuple[str, ...]
-    motion: Amplitudes
+    motion: Complex
     films: tuple[str, ...]
     elements: tuple[str, ...]
-    forces: Amplitudes
+    forces: Complex
     growth: Array
     critical_speeds_Hz: tuple[float, ...]
     resting: tuple[StabilityPoint, ...]
-    in_films: Amplitudes
+    in_films: Complex
     clearances: Array
     amplitude_error: Array
     critical_speed_errors_Hz: tuple[float, ...]
@@ -117,7 +114,7 @@ class Response(Tabular):
         return found.reshape(self.clearances.shape)
 
     @property
-    def _pressed(self) -> NDArray[np.bool_]:
+    def _pressed(self) -> Truths:
         """(n, f) which journals rest on their elastic shells."""
         shell = elastic_shell(self.case)
         return np.zeros(self.clearances.shape, dtype=bool) if shell is None else self._eccentricity > shell.begins
@@ -144,12 +141,12 @@ class Response(Tabular):
         )
 
     @property
-    def forward(self) -> Amplitudes:
+    def forward(self) -> Complex:
         """(n, p) complex amplitudes in m of what turns with the rotor."""
         return np.asarray(0.5 * (self.motion[:, :, 0] + 1j * self.motion[:, :, 1]))
 
     @property
-    def backward(self) -> Amplitudes:
+    def backward(self) -> Complex:
         """(n, p) complex amplitudes in m of what turns against it, as in order_track."""
         return np.asarray(np.conj(0.5 * (self.motion[:, :, 0] - 1j * self.motion[:, :, 1])))
 
@@ -260,7 +257,7 @@ def _frequency(case: Case, excitation: str, omega: float) -> float:
     return named[excitation].excitation(omega)[0] if excitation in named else omega
 
 
-def excited(rotor: LinearRotor, omega: float, excitation: str = UNBALANCE) -> tuple[float, Amplitudes]:
+def excited(rotor: LinearRotor, omega: float, excitation: str = UNBALANCE) -> tuple[float, Complex]:
     """Frequency in rad/s, not below 0, and (n,) complex amplitudes in N of what excites a rotor that turns with omega
     rad/s, see Response."""
     harmonics = {load.name: load for load in rotor.loads if isinstance(load, Harmonic)}
@@ -271,15 +268,15 @@ def excited(rotor: LinearRotor, omega: float, excitation: str = UNBALANCE) -> tu
 
 
 def forced_motion(
-    rotor: LinearRotor, omega: float, load: tuple[float, Amplitudes], stiffness: Array, damping: Array
-) -> Amplitudes:
+    rotor: LinearRotor, omega: float, load: tuple[float, Complex], stiffness: Array, damping: Array
+) -> Complex:
     """(n,) complex amplitudes of all degrees of freedom at omega rad/s, under a load of a frequency and amplitudes, on
     bearings of stiffness and damping (films, 2, 2) in N/m and N s/m."""
     (frequency, force), (mass, d, k) = load, linearised(rotor, omega, stiffness, damping)
     return np.asarray(np.linalg.solve(k + 1j * frequency * d - frequency**2 * mass, force))
 
 
-def larger_semi_axis(motion: Amplitudes) -> Array:
+def larger_semi_axis(motion: Complex) -> Array:
     """(...) of the ellipse that x and y with the complex amplitudes (..., 2) draw: its forward and its backward part
     added up."""
     x, y = motion[..., 0], motion[..., 1]
@@ -288,7 +285,7 @@ def larger_semi_axis(motion: Amplitudes) -> Array:
 
 def _at(
     case: Case, rotor: LinearRotor, point: StabilityPoint, excitation: str
-) -> tuple[Amplitudes, Amplitudes, Amplitudes]:
+) -> tuple[Complex, Complex, Complex]:
     """Motion (p, 2) of the points, forces (films + elements, 2), and motion (films, 2) of the journals in their films
     at one speed."""
     omega = 2.0 * math.pi * point.speed_Hz
@@ -303,7 +300,7 @@ def _at(
 
 def _on_others(
     rotors: Sequence[LinearRotor], points: Sequence[StabilityPoint], excitation: str
-) -> list[tuple[Amplitudes, float]]:
+) -> list[tuple[Complex, float]]:
     """The motion (n, p, 2) of the points of a rotor, as it is at each speed, on each other mesh of its films, with the
     share of the difference that is the error; none where a mesh is missing at a speed."""
     if len({len(point.others) for point in points}) > 1:
@@ -319,7 +316,7 @@ def _on_others(
     return found
 
 
-def _amplitude_error(motion: Amplitudes, others: Sequence[tuple[Amplitudes, float]]) -> Array:
+def _amplitude_error(motion: Complex, others: Sequence[tuple[Complex, float]]) -> Array:
     """(n, p) in m: the largest difference of the amplitudes on other meshes times their shares, at least LEAST."""
     own = larger_semi_axis(motion)
     if not others:
@@ -329,7 +326,7 @@ def _amplitude_error(motion: Amplitudes, others: Sequence[tuple[Amplitudes, floa
 
 
 def _peak_errors(
-    speeds: Array, peaks: Sequence[float], others: Sequence[tuple[Amplitudes, float]]
+    speeds: Array, peaks: Sequence[float], others: Sequence[tuple[Complex, float]]
 ) -> tuple[float, ...]:
     """Errors of the peaks in Hz: the distance of each peak to the nearest one on the other meshes, times their shares;
     NaN where another mesh has no peak within two steps of the speed."""
@@ -343,7 +340,7 @@ def _peak_errors(
     return tuple(errors)
 
 
-def peak_speeds(speeds: Array, motion: Amplitudes) -> tuple[float, ...]:
+def peak_speeds(speeds: Array, motion: Complex) -> tuple[float, ...]:
     """Speeds at which the larger semi-axis of a point has a peak, each by a parabola through three speeds; peaks of
     several points within a step of the speed are one."""
     found: list[float] = []

@@ -8,8 +8,8 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
@@ -22,9 +22,6 @@ from frbcli.rotor.order import fastest_first, ranks
 
 if TYPE_CHECKING:  # films on pads take long to import
     from frbcli.linear.thrust.axial import AxialState
-
-Array = NDArray[np.float64]
-Eigenvalues = NDArray[np.complex128]
 
 HARDLY_KNOWN = 0.25  # error of coefficients of films that keep oil, relative, above which they are not told
 UNKNOWN_WHIRL = 0.5  # over the rotor's speed: frequency of coefficients where no motion oscillates
@@ -56,7 +53,7 @@ class StabilityPoint:
 
     speed_Hz: float
     films: tuple[RestingFilm, ...]
-    eigenvalues: Eigenvalues
+    eigenvalues: Complex
     problem: str = ""
     ring_speeds_Hz: tuple[float, ...] = ()
     warm: WarmMachine | None = None
@@ -81,17 +78,17 @@ class StabilityPoint:
         return not self.problem
 
     @property
-    def oscillating(self) -> Eigenvalues:
+    def oscillating(self) -> Complex:
         """One eigenvalue of each oscillating pair, that with positive imaginary part, ascending in frequency."""
         return self.eigenvalues[hopf.oscillating(self.eigenvalues)]
 
     @property
-    def modes(self) -> Eigenvalues:
+    def modes(self) -> Complex:
         """One eigenvalue of each motion that oscillates or grows: those that grow, the fastest first, then those that
         decay, the slowest first."""
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
-        told: Eigenvalues = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
+        told: Complex = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
         return told[fastest_first(told)]
 
     @property
@@ -111,7 +108,7 @@ class StabilityPoint:
         return self.error_of(self.critical)
 
     @property
-    def growing(self) -> Eigenvalues:
+    def growing(self) -> Complex:
         """Eigenvalues of the modes that grow."""
         modes = self.modes
         return modes[modes.real > 0.0]
@@ -131,7 +128,7 @@ class StabilityPoint:
         return hopf.growth_of(self.eigenvalues, number) if len(self.oscillating) else self.growth
 
 
-def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Eigenvalues:
+def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Complex:
     """(2 n,) eigenvalues in 1/s of the rotor at omega rad/s on bearings of stiffness and damping (films, 2, 2).
 
     Ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
@@ -139,7 +136,7 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
     return _ordered(np.linalg.eigvals(state_matrix(rotor, omega, stiffness, damping)).astype(complex))
 
 
-def _ordered(values: Eigenvalues) -> Eigenvalues:
+def _ordered(values: Complex) -> Complex:
     """Eigenvalues (N,) in the order of `eigenvalues`."""
     # frequencies that are equal but for round-off are one, and the real parts decide
     frequency = np.abs(values.imag)
@@ -147,7 +144,7 @@ def _ordered(values: Eigenvalues) -> Eigenvalues:
     return values[np.lexsort((-values.imag, frequency, values.real, equal))]
 
 
-def critical_eigenvalue(values: Eigenvalues) -> complex:
+def critical_eigenvalue(values: Complex) -> complex:
     """The eigenvalue with the largest real part among those that oscillate, or among all where none does; NaN of
     none."""
     whirling = hopf.oscillating(values)
@@ -155,7 +152,7 @@ def critical_eigenvalue(values: Eigenvalues) -> complex:
     return complex(candidates[fastest_first(candidates)[0]]) if len(candidates) else complex(math.nan, math.nan)
 
 
-def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Eigenvalues:
+def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Complex:
     """(2 n,) eigenvalues in 1/s of a machine at rest with its films as they are solved, on its own mesh or another."""
     return eigenvalues(machine_rotor(machine, films), machine.omega, *_coefficients(films))
 
@@ -166,7 +163,7 @@ def machine_rotor(machine: MachineAtRest, films: FilmsAtRest | None = None) -> L
     return rotor_at_rest(machine.system, machine.omega, at_rest.position.ring_speeds, films or at_rest)
 
 
-def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Eigenvalues, float]]:
+def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Complex, float]]:
     """The eigenvalues of a machine at rest on the other meshes of its films, each with the share of the difference that
     is the error."""
     if machine.dynamic:
@@ -227,7 +224,7 @@ def _check_known(films: Sequence[RestingFilm]) -> None:
         )
 
 
-def _with_memory(machine: MachineAtRest, fine: bool = False) -> Eigenvalues:
+def _with_memory(machine: MachineAtRest, fine: bool = False) -> Complex:
     """The eigenvalues of a machine with the memory of its oil, both of each pair, in the order of `eigenvalues`. fine:
     on the finer of two meshes in place of the extrapolation."""
     own = [film.fine if fine else film.own for film in machine.dynamic]

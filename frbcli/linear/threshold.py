@@ -8,18 +8,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged
-from frbcli.linear.stability_point import (
-    Eigenvalues,
-    StabilityPoint,
-    critical_eigenvalue,
-    other_eigenvalues,
-    point_at_rest,
-)
+from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
 from frbcli.scene.remedies import advised
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
@@ -125,7 +120,7 @@ def threshold_at(
     these films is part of the error. By default it is the threshold of the least damped whirl on these films.
     """
 
-    def critical(values: Eigenvalues) -> complex:
+    def critical(values: Complex) -> complex:
         if frequency_Hz is None:
             return critical_eigenvalue(values)
         return complex(values[np.argmin(np.abs(values - 2j * math.pi * frequency_Hz))])

@@ -9,8 +9,8 @@ from typing import Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.plot.run.envelope import Envelope, EnvelopeColumn, curve, extremes
 from frbcli.plot.signals import cut, heading, labels
 from frbcli.plot.style import COLOURS, legend_below, new_figure, styled
@@ -19,7 +19,6 @@ from frbcli.results.records import SPEED
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
 
-Values = NDArray[np.float64]
 Over = Literal["time", "speed"]
 Span = tuple[float | None, float | None]
 
@@ -42,7 +41,7 @@ class ScaledSignal:
     def __len__(self) -> int:
         return len(self.signal)
 
-    def __getitem__(self, part: slice, /) -> Values:
+    def __getitem__(self, part: slice, /) -> Array:
         return np.asarray(self.factor * self.signal[part] + self.offset)
 
 
@@ -86,7 +85,7 @@ def finish(axes: Axes, over: Over) -> None:
     axes.set_xlabel(WORDS[over])
 
 
-def _ways(run: Run, over: Over, shown: tuple[int, int], column: EnvelopeColumn) -> list[tuple[str, Values, Values]]:
+def _ways(run: Run, over: Over, shown: tuple[int, int], column: EnvelopeColumn) -> list[tuple[str, Array, Array]]:
     """The way up and the way down of the rotor speed with their thinned curves; all of a curve over time."""
     if over == "time":
         return [("", *curve(run, column, *shown))]
@@ -107,7 +106,7 @@ def _ways(run: Run, over: Over, shown: tuple[int, int], column: EnvelopeColumn) 
     return ways if len(ways) > 1 else [("", *ways[0][1:])]
 
 
-def _changes(run: Run, shown: tuple[int, int]) -> Iterator[tuple[int, int, Values, Values]]:
+def _changes(run: Run, shown: tuple[int, int]) -> Iterator[tuple[int, int, Array, Array]]:
     """Pieces of the samples shown, from and to, each with the speed and its change per sample there."""
     first, last = shown
     for start, stop in pieces(first, last):

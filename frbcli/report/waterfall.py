@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, Values, scale_colours, ticks
+from frbcli.arrays import Array
+from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, scale_colours, ticks
 from frbcli.plot.spectra.waterfall import LEVELS_dB
 from frbcli.report.speed_words import SpeedWords
 from frbcli.report.svg import curve, drawing, element, line, text
@@ -141,7 +142,7 @@ def _flags(events: Sequence[dict[str, Any]], across: Any, bottom: float, span: t
     return lines + flags
 
 
-def _edges(middles: Values) -> tuple[float, float]:
+def _edges(middles: Array) -> tuple[float, float]:
     """From the beginning of the first to the end of the last of even spans, by their middles."""
     half = 0.5 * float(middles[-1] - middles[0]) / max(len(middles) - 1, 1)
     return float(middles[0]) - half, float(middles[-1]) + half

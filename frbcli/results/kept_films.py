@@ -7,13 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.nearest import did_you_mean
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
-
-Array = NDArray[np.float64]
 
 # Arrays: (n, 1 + 3 films) times in s, then angle of the grid in rad and displacement over the clearance of each film;
 # (n, films, m, k) oil fractions, and free gas over the oil, of no films where the oil of none carries any; (films, m +

@@ -5,12 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frbcli.arrays import Array
 from frbcli.results.files.stored import Stored
-
-Values = NDArray[np.float64]
 
 PIECE = 262_144  # samples of a signal that are held at a time
 
@@ -23,18 +19,18 @@ class Signal:
     RunFileError is raised if the file has changed. A slice gives the values (m,) of some samples.
     """
 
-    source: Values | Stored
+    source: Array | Stored
     unit: str
 
     @property
-    def values(self) -> Values:
+    def values(self) -> Array:
         """All values (n,)."""
         return self.source[:]
 
     def __len__(self) -> int:
         return len(self.source)
 
-    def __getitem__(self, part: slice) -> Values:
+    def __getitem__(self, part: slice) -> Array:
         return self.source[part]
 
 

@@ -17,6 +17,7 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.columns import table_of
 from frbcli.html import html_table
 from frbcli.nearest import did_you_mean
@@ -35,7 +36,7 @@ from frbcli.results.records import (
     wrong_unit,
     wrong_values,
 )
-from frbcli.results.signals import Signal, Values
+from frbcli.results.signals import Signal
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -95,11 +96,11 @@ class Run:
     checkpoint: Mapping[str, NDArray[Any]] | None
     checkpoint_samples: int = 0
 
-    def __getitem__(self, name: str) -> Values:
+    def __getitem__(self, name: str) -> Array:
         """All values (n,) of a signal. Raises RunFileError if there is no such signal, or its file has changed."""
         return self.signal(name).values
 
-    def read(self, name: str, start: int = 0, stop: int | None = None) -> Values:
+    def read(self, name: str, start: int = 0, stop: int | None = None) -> Array:
         """The values (m,) of a signal from the sample `start` to before `stop`; raises as run[name] does."""
         return self.signal(name)[start:stop]
 
@@ -151,7 +152,7 @@ class RunWriter:
         self.path = Path(path)
         check_output(self.path)
         self._header = header
-        self._chunks: dict[str, list[Values]] = {name: [] for name in header.units}
+        self._chunks: dict[str, list[Array]] = {name: [] for name in header.units}
         self._state: dict[str, NDArray[Any]] | None = None
         self._state_samples = 0
         self._cost: dict[str, Any] = {}
@@ -189,7 +190,7 @@ class RunWriter:
         """The number of samples taken so far."""
         return min((sum(map(len, chunks)) for chunks in self._chunks.values()), default=0)
 
-    def append(self, chunk: Mapping[str, Values]) -> None:
+    def append(self, chunk: Mapping[str, Array]) -> None:
         """Take the next samples, one array (m,) for each signal of the header. Raises ValueError if they do not fit."""
         if set(chunk) != set(self._chunks):
             raise ValueError(f"signals {sorted(chunk)} given, {sorted(self._chunks)} announced")
@@ -253,7 +254,7 @@ class RunWriter:
             checkpoint_samples=self._state_samples,
         )
 
-    def _joined(self) -> dict[str, Values]:
+    def _joined(self) -> dict[str, Array]:
         for name, chunks in self._chunks.items():
             if len(chunks) != 1:
                 self._chunks[name] = [np.concatenate([np.empty(0), *chunks])]

@@ -11,8 +11,9 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.measured import events_at
-from frbcli.analysis.signals import Values, bearing_clearance, joined, located
+from frbcli.analysis.signals import bearing_clearance, joined, located
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
+from frbcli.arrays import Array
 from frbcli.columns import Column, Shown, Table, named, spread_table
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
@@ -138,6 +139,6 @@ def _range(run: Run) -> str:
     return f"{speed.min():.4g} to {speed.max():.4g} Hz"
 
 
-def _rms(values: Values) -> float:
+def _rms(values: Array) -> float:
     known = values[np.isfinite(values)]
     return float(np.sqrt(np.mean(known**2))) if len(known) else float("nan")

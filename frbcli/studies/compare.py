@@ -12,8 +12,8 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged
@@ -281,11 +281,11 @@ def deviation(run: Run, reference: Run) -> Deviation:
     return Deviation(float(np.abs(apart).max()), _rms(apart), until)
 
 
-def _last(run: Run, name: str) -> NDArray[np.float64]:
+def _last(run: Run, name: str) -> Array:
     return run[name][-max(1, round(LAST * len(run))) :]
 
 
-def _rms(values: NDArray[np.float64]) -> float:
+def _rms(values: Array) -> float:
     return float(np.sqrt(np.mean(values**2)))
 
 

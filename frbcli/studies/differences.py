@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.results.store import Run
 from frbcli.runs.errors.error_budget import quiet_until
-
-Values = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -34,7 +32,7 @@ def difference(run: Run, reference: Run) -> Difference:
     lengths = reference.references
     room = lengths["clearance_m"] if "clearance_m" in lengths else lengths["length_m"]
     top = float(np.max(np.abs(reference["speed_Hz"][:count])))
-    apart: dict[str, Values] = {}
+    apart: dict[str, Array] = {}
     for name in reference.signals:
         if name in ("time_s", "speed_Hz") or name not in run:
             continue

@@ -16,11 +16,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from numpy.typing import NDArray
 
-from frbcli.analysis.signals import Values, bearing_clearance
+from frbcli.analysis.signals import bearing_clearance
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.spectra.spectrum import window_length
+from frbcli.arrays import Array, Truths
 from frbcli.case.reading.listing import values as listed
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
@@ -43,7 +43,7 @@ SECOND = 6.0  # variance of a second difference of independent numbers over thei
 SETTLED = 1e-3  # relative change of the numbers that ends a fit
 LARGE = 1e3  # residuals of a case that cannot be run
 
-Scatter = float | Values
+Scatter = float | Array
 Observer = Callable[[int, Mapping[str, float]], None]
 
 
@@ -74,7 +74,7 @@ class Fit(Tabular):
 
     case: Case
     numbers: tuple[Fitted, ...]
-    correlation: Values
+    correlation: Array
     before: Ridges
     after: Ridges
     measured: Ridges
@@ -177,15 +177,15 @@ class _Trial:
         self.count = 0
         self._known: dict[tuple[float, ...], Ridges] = {}
 
-    def case_at(self, x: Values) -> Case:
+    def case_at(self, x: Array) -> Case:
         """The case with the numbers that are exp(x) times those at first."""
         settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
         return self._case.with_settings(*settings)
 
-    def _values(self, x: Values) -> dict[str, float]:
+    def _values(self, x: Array) -> dict[str, float]:
         return {n.key: n.start * math.exp(change) for n, change in zip(self._numbers, x.tolist(), strict=True)}
 
-    def ridges(self, x: Values) -> Ridges:
+    def ridges(self, x: Array) -> Ridges:
         """The ridges of the run with these numbers. Raises FrbError if the run fails."""
         key = tuple(x.tolist())
         if key not in self._known:
@@ -200,7 +200,7 @@ class _Trial:
             self._known[key] = ridges(run, self._speeds, length, self._signal)
         return self._known[key]
 
-    def residuals(self, x: Values, scatter: Sequence[Scatter], _: Values) -> Values:
+    def residuals(self, x: Array, scatter: Sequence[Scatter], _: Array) -> Array:
         """Computed less measured ridges over their scatter; the limits matter to the slopes only."""
         try:
             found = self.ridges(x)
@@ -211,7 +211,7 @@ class _Trial:
         groups = _differences(found, self.measured)
         return np.concatenate([group / size for group, size in zip(groups, scatter, strict=True)])
 
-    def slopes(self, x: Values, scatter: Sequence[Scatter], limits: Values) -> Values:
+    def slopes(self, x: Array, scatter: Sequence[Scatter], limits: Array) -> Array:
         """(r, k) derivatives of the residuals by x, central where the bounds leave room."""
         columns = []
         for number in range(len(x)):
@@ -229,7 +229,7 @@ class _Trial:
         return InputError(self._case.name, (Fault("--vary", key, None, problem, "Leave it out."),))
 
 
-def _compared(measured: Ridges) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+def _compared(measured: Ridges) -> tuple[Truths, Truths]:
     """(n,) at which speeds synchronous amplitudes and whirls are compared: below and above the measured onset, not
     beside it."""
     known = np.isfinite(measured.synchronous).all(axis=1)
@@ -241,7 +241,7 @@ def _compared(measured: Ridges) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
     return still & (after < -apart), whirls & (after > apart)
 
 
-def _differences(found: Ridges, measured: Ridges) -> list[Values]:
+def _differences(found: Ridges, measured: Ridges) -> list[Array]:
     """Computed less measured, by groups: synchronous amplitudes in m, frequencies in Hz and amplitudes in m of the
     whirl, the onset in Hz. A ridge that the computed run does not have there counts as nothing."""
     still, whirls = _compared(measured)
@@ -254,7 +254,7 @@ def _differences(found: Ridges, measured: Ridges) -> list[Values]:
     return [np.nan_to_num(mine) - other for mine, other in pairs]
 
 
-def _onset(found: Ridges) -> Values:
+def _onset(found: Ridges) -> Array:
     """(1,) Hz; of a run that does not whirl, its last speed."""
     return np.array([found.onset_Hz if np.isfinite(found.onset_Hz) else found.speed_Hz[-1]])
 
@@ -266,7 +266,7 @@ def _reach(run: Run) -> float:
     return max(0.5 * window_length(run.signal(TIME), run.signal(SPEED)) * ramp, LEAST_SHARE * float(speed.max()))
 
 
-def _groups(measured: Ridges) -> list[Values]:
+def _groups(measured: Ridges) -> list[Array]:
     """The measured ridges of the groups of _differences without the onset, in the order of the speeds along axis 0."""
     still, whirls = _compared(measured)
     return [measured.synchronous[still], measured.whirl_Hz[whirls], measured.whirl[whirls]]
@@ -291,7 +291,7 @@ def _scatter(measured: Ridges, run: Run) -> list[Scatter]:
     return [*found, reach]
 
 
-def _largest(group: Values) -> float:
+def _largest(group: Array) -> float:
     return float(np.nanmax(np.abs(group), initial=1e-12))
 
 

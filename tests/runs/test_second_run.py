@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from frbcli.analysis.signals import Values
 from frbcli.analysis.uncertainty import partners
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
@@ -150,7 +150,7 @@ class Long:
     time: float = 0.0
     names: tuple[str, ...] = ("time_s", *(f"signal_{number}" for number in range(7)))
 
-    def chunk(self) -> tuple[int, dict[str, Values]]:
+    def chunk(self) -> tuple[int, dict[str, Array]]:
         self.time += 0.2
         return RUNNING, {name: np.full(20_000, self.time) for name in self.names}
 

@@ -9,8 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis.orders.revolutions import Tracked, track
-from frbcli.analysis.signals import Motion, RunLike, Values, located, point_of
+from frbcli.analysis.signals import RunLike, located, point_of
 from frbcli.analysis.spectra.spectrum import DIRECTIONS, Direction
+from frbcli.arrays import Array, Complex
 from frbcli.errors import Fault, InputError
 
 REVOLUTIONS = 16  # of the window, by default: it parts orders that are a fifth from each other
@@ -30,12 +31,12 @@ class OrderTrack:
     order: float
     signal: str
     revolutions: int
-    time_s: Values
-    speed_Hz: Values
-    forward: Motion
-    backward: Motion
+    time_s: Array
+    speed_Hz: Array
+    forward: Complex
+    backward: Complex
 
-    def along(self, direction: Direction = "x") -> Motion:
+    def along(self, direction: Direction = "x") -> Complex:
         """Complex amplitude (m,) in m of x = Re(A exp(i order phi)), y = Re(A exp(i order phi)), or the forward one.
 
         direction: "x", "y" or "forward"; InputError for any other."""
@@ -46,11 +47,11 @@ class OrderTrack:
         against = np.conj(self.backward)
         return self.forward + against if direction == "x" else -1j * (self.forward - against)
 
-    def amplitude(self, direction: Direction = "x") -> Values:
+    def amplitude(self, direction: Direction = "x") -> Array:
         """Peak amplitude (m,) in m."""
         return np.asarray(np.abs(self.along(direction)))
 
-    def phase_deg(self, direction: Direction = "x") -> Values:
+    def phase_deg(self, direction: Direction = "x") -> Array:
         """Phase (m,) in deg to the rotor's angle, continuous."""
         return np.asarray(np.degrees(np.unwrap(np.angle(self.along(direction)))))
 

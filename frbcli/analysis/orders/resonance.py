@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked
-from frbcli.analysis.signals import Motion, Values
 from frbcli.analysis.spectra.peaks import Peak, intervals_above, prominent_peaks
+from frbcli.arrays import Array, Complex
 
 REVOLUTIONS = 8  # of the window: a resonance is passed in many more
 WHIRL = 0.5  # order of oil whirl
@@ -66,7 +66,7 @@ def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
 
 
 def critical_step(
-    motions: Iterable[Sequence[Motion]],
+    motions: Iterable[Sequence[Complex]],
     turns: Revolutions,
     floor: float,
     before_s: float,
@@ -98,17 +98,17 @@ def critical_step(
     return None if best is None else best[1:]
 
 
-def synchronous_amplitude(motions: Sequence[Motion], step: int) -> float:
+def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
     """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: those of `resonant`,
     whose windows are half of REVOLUTIONS behind."""
     return float(np.abs(motions[0][step - REVOLUTIONS * STEPS // 2]))
 
 
-def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tuple[int, float, bool]]:
+def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[tuple[int, float, bool]]:
     """Sample and prominence of each resonance with the unbalance up to a sample, and whether the prominence is so low
     that only a known critical speed makes it one; motions (n,): those of `resonant`."""
     synchronous, background, whirl = motions
-    amplitude: Values = np.abs(synchronous)
+    amplitude: Array = np.abs(synchronous)
     if len(amplitude) == 0:
         return []
     phase = np.unwrap(np.angle(synchronous))
@@ -128,7 +128,7 @@ def _resonances(motions: Sequence[Motion], floor: float, until: int) -> list[tup
     ]
 
 
-def _cut_off(amplitude: Values, least: float) -> list[Peak]:
+def _cut_off(amplitude: Array, least: float) -> list[Peak]:
     """The highest peak of a curve (n,) that ends with the run or the first whirl, which cuts off the far side of the
     peak: its prominence is then how far it rises.
 
@@ -143,7 +143,7 @@ def _cut_off(amplitude: Values, least: float) -> list[Peak]:
     ]
 
 
-def _low(amplitude: Values, least: float) -> list[Peak]:
+def _low(amplitude: Array, least: float) -> list[Peak]:
     """The highest peak of a curve (n,) with LOW_PROMINENCE, its flanks reaching to the lowest point of each side."""
     highest = int(np.argmax(amplitude)) if len(amplitude) else 0
     return [
@@ -154,7 +154,7 @@ def _low(amplitude: Values, least: float) -> list[Peak]:
 
 
 def vibrations_beside(
-    tracked: Sequence[Motion], turns: Revolutions, clearance: float, before_s: float, modes: Sequence[float] | None
+    tracked: Sequence[Complex], turns: Revolutions, clearance: float, before_s: float, modes: Sequence[float] | None
 ) -> Iterator[Vibration]:
     """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
 

@@ -23,8 +23,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis import signals
-from frbcli.analysis.signals import Motion, RunLike, Values
+from frbcli.analysis.signals import RunLike
 from frbcli.analysis.spectra.windows import fast_length, hann
+from frbcli.arrays import Array, Complex
 
 CELLS = 32  # per revolution
 STEPS = 8  # angles per revolution at which orders are known
@@ -39,9 +40,9 @@ class Revolutions:
     """Even steps of the angle that the rotor has passed, in either sense: revolution (m,), the time (m,) when each is
     reached and the speed (m,) there, which is negative where the rotor turns the other way round."""
 
-    revolution: Values
-    time_s: Values
-    speed_Hz: Values
+    revolution: Array
+    time_s: Array
+    speed_Hz: Array
 
     @property
     def settled(self) -> int:
@@ -76,7 +77,7 @@ class Tracked:
         return self.window * STEPS // 2
 
 
-def track(run: RunLike, wanted: Sequence[Tracked]) -> tuple[Revolutions, list[Motion]]:
+def track(run: RunLike, wanted: Sequence[Tracked]) -> tuple[Revolutions, list[Complex]]:
     """The steps (m,) of a run, and of each of the motions wanted its complex amplitude (m - 2 half,) in m, seen from a
     frame that turns with its order: value i belongs to step i + half. Empty where the run is shorter than a window."""
     rotor, windows = _Rotor(), [_Window(one) for one in wanted]
@@ -100,11 +101,11 @@ class _Piece:
     """Samples (n,) of a run: angle, and passed angle, in revolutions; edges (k,) of cells that are among them, the
     sample before each, and how far it lies beyond that one."""
 
-    angle: Values
-    passed: Values
-    edges: Values
+    angle: Array
+    passed: Array
+    edges: Array
     before: np.typing.NDArray[np.intp]
-    beyond: Values
+    beyond: Array
 
 
 class _Rotor:
@@ -113,10 +114,10 @@ class _Rotor:
     def __init__(self) -> None:
         self._angle = self._passed = 0.0
         self._edges = 0
-        self._times: list[Values] = []
-        self._speeds: list[Values] = []
+        self._times: list[Array] = []
+        self._speeds: list[Array] = []
 
-    def take(self, time_s: Values, speed: Values) -> _Piece:
+    def take(self, time_s: Array, speed: Array) -> _Piece:
         turned = 0.5 * (speed[1:] + speed[:-1]) * np.diff(time_s)
         angle = self._angle + np.append(0.0, np.cumsum(turned))
         passed = self._passed + np.append(0.0, np.cumsum(np.abs(turned)))
@@ -143,7 +144,7 @@ class _Sum:
         self._whole = self._edge = 0.0 + 0.0j  # up to the last sample, and to the last edge
         self._begun = False
 
-    def take(self, seen: Motion, piece: _Piece) -> Motion:
+    def take(self, seen: Complex, piece: _Piece) -> Complex:
         """Means over the cells that end in a piece; seen (n,): the integrand at its samples."""
         between = np.diff(piece.passed)
         whole = self._whole + np.append(0.0, np.cumsum(0.5 * (seen[1:] + seen[:-1]) * between))
@@ -168,9 +169,9 @@ class _Window:
         self._shape = shape / shape.sum()
         self._first = 0  # number of the first cell in reach
         self._reach = np.empty(0, dtype=np.complex128)
-        self._found: list[Motion] = []
+        self._found: list[Complex] = []
 
-    def take(self, cells: Motion) -> None:
+    def take(self, cells: Complex) -> None:
         width, every = len(self._shape), CELLS // STEPS
         reach = np.concatenate([self._reach, cells])
         if len(reach) >= width:
@@ -180,7 +181,7 @@ class _Window:
         kept = max(0, len(reach) - width + 1)
         self._first, self._reach = self._first + kept, reach[kept:].copy()
 
-    def found(self, steps: int) -> Motion:
+    def found(self, steps: int) -> Complex:
         """(m - 2 half,) of m steps in all."""
         found = np.concatenate([np.empty(0, dtype=np.complex128), *self._found])
         self._found.clear()

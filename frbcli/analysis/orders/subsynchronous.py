@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis import signals
-from frbcli.analysis.signals import PIECE, Motion, RingSpeed, RunLike, SignalOf, Values, steepest_ramp
+from frbcli.analysis.signals import PIECE, RingSpeed, RunLike, SignalOf, steepest_ramp
 from frbcli.analysis.spectra.peaks import crossing, local_maxima, summit
 from frbcli.analysis.spectra.windows import fast_length, hann
+from frbcli.arrays import Array, Complex
 
 Side = Literal["inner", "outer"]
 SIDES: tuple[Side, ...] = ("inner", "outer")
@@ -91,7 +92,7 @@ class _Windows:
     hop: int
     step_s: float
 
-    def peaks(self, highest_Hz: Values) -> Iterator[list[tuple[float, float]]]:
+    def peaks(self, highest_Hz: Array) -> Iterator[list[tuple[float, float]]]:
         """Frequency in Hz and amplitude of the peaks of each forward spectrum, up to a frequency (m,), the strongest
         first."""
         shape = self._shape()
@@ -107,7 +108,7 @@ class _Windows:
                     peaks.append((float(place), float(level[i])))
             yield sorted(peaks, key=lambda peak: -peak[1])
 
-    def continued(self, frequency_Hz: Values, amplitude: Values, first: int, last: int) -> tuple[Values, Values]:
+    def continued(self, frequency_Hz: Array, amplitude: Array, first: int, last: int) -> tuple[Array, Array]:
         """Frequency and amplitude of a whirl (windows,), also in the window before the first and after the last one
         that it is seen in: it is too small for a peak of its own there."""
         frequency_Hz, amplitude = frequency_Hz.copy(), amplitude.copy()
@@ -129,11 +130,11 @@ class _Windows:
             frequency_Hz, level = frequency_Hz + line * summit(*levels), float(levels.max())
         return frequency_Hz, level
 
-    def _shape(self) -> Values:
+    def _shape(self) -> Array:
         window = hann(self.width)
         return np.asarray(window / window.sum())
 
-    def _motions(self) -> Iterator[Motion]:
+    def _motions(self) -> Iterator[Complex]:
         """The motion (width,) in each window, read many windows at a time."""
         starts = range(0, len(self.run) - self.width + 1, self.hop)
         at_a_time = max(1, PIECE // self.hop)
@@ -202,7 +203,7 @@ def _window_length(run: RunLike) -> float:
     return min(LONGEST_s, (SWEEP / ramp) ** 0.5) if ramp > 0.0 else LONGEST_s
 
 
-def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
+def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Array, Array]:
     """Frequencies and amplitudes (ridges, count) over the windows, 0 where there is none."""
     frequencies, amplitudes = np.zeros((len(ridges), count)), np.zeros((len(ridges), count))
     for row, ridge in enumerate(ridges):
@@ -210,7 +211,7 @@ def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Values, Values]:
     return frequencies, amplitudes
 
 
-def _begins(amplitude: Values, settled: int) -> int:
+def _begins(amplitude: Array, settled: int) -> int:
     """The window in which a ridge of an amplitude (windows,) becomes a whirl; settled: that in which the run has
     settled. The fall of the start is a ridge, too, and may fade into that of a whirl which grows later; a whirl that
     begins with the run grows beyond what the start has left."""
@@ -221,13 +222,13 @@ def _begins(amplitude: Values, settled: int) -> int:
     return faded + int(np.argmax(whirls[faded:])) if falls and whirls[faded:].any() else first
 
 
-def _side(frequency: Values, ring: Values) -> Side:
+def _side(frequency: Array, ring: Array) -> Side:
     """The film that drives a ridge (windows,)."""
     there = frequency > 0.0
     return "outer" if np.median(frequency[there]) <= OUTER_UP_TO * np.median(0.5 * ring[there]) else "inner"
 
 
-def _combination(index: int, frequencies: Values, amplitudes: Values, window_s: float) -> bool:
+def _combination(index: int, frequencies: Array, amplitudes: Array, window_s: float) -> bool:
     """Whether a ridge begins as 2 f_1, f_1 - f_2 or 2 f_1 - f_2 of one or two stronger ones."""
     begins = np.flatnonzero(frequencies[index])[:BEGINNING]
     f, a = frequencies[:, begins], amplitudes[:, begins]
@@ -290,7 +291,7 @@ def _nearest(active: Sequence[_Ridge], column: int, frequency: float, window_s: 
     return nearest
 
 
-def _moment(place: float, time_s: Values, frequency_Hz: Values) -> WhirlMoment:
+def _moment(place: float, time_s: Array, frequency_Hz: Array) -> WhirlMoment:
     """The moment at a place between windows at even steps of time (m,), in which a whirl has a frequency (m,), 0 where
     it is not seen."""
     at = np.flatnonzero(frequency_Hz)
@@ -298,14 +299,14 @@ def _moment(place: float, time_s: Values, frequency_Hz: Values) -> WhirlMoment:
     return WhirlMoment(float(when), float(np.interp(place, at, frequency_Hz[at])))
 
 
-def _overtaken(ahead: Values, last: int) -> float:
+def _overtaken(ahead: Array, last: int) -> float:
     """Where a whirl is overtaken that is ahead of all others in the window `last` for the last time; ahead (windows,):
     by how much."""
     here, beyond = float(ahead[last]), float(ahead[last + 1])
     return last + here / (here - beyond)
 
 
-def _lock_in(at: NDArray[np.intp], over: Values) -> float | None:
+def _lock_in(at: NDArray[np.intp], over: Array) -> float | None:
     """Where a whirl that is seen in the windows `at` (k,) leaves the frequency of a free one for good; over (k,): by
     how much its frequency is above the one at which it does."""
     follows = np.flatnonzero(over >= 0.0)

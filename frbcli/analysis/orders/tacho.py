@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.analysis.signals import Values
+from frbcli.arrays import Array
 
 LEAST_PULSES = 3
 REVOLUTIONS = 8  # that a speed is taken over
 
 
-def tacho_speed(time: Values, signal: Values, pulses: int) -> Values:
+def tacho_speed(time: Array, signal: Array, pulses: int) -> Array:
     """(n,) rotor speed in Hz from a signal with so many pulses per revolution, at the times (n,) in s.
 
     A pulse begins where the signal rises through the middle between its least and its largest value, interpolated

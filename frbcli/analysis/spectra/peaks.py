@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
+from frbcli.arrays import Array
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Peak:
     after: int
 
 
-def local_maxima(values: Values, least: float = -np.inf) -> NDArray[np.intp]:
+def local_maxima(values: Array, least: float = -np.inf) -> NDArray[np.intp]:
     """Samples of `values` (n,) of at least this height that are higher than both neighbours."""
     inner = values[1:-1]
     return np.flatnonzero((inner > values[:-2]) & (inner >= values[2:]) & (inner >= least)) + 1
@@ -39,7 +39,7 @@ def summit(left: float, here: float, right: float) -> float:
     return float(np.clip(0.5 * (left - right) / bend, -0.5, 0.5)) if bend < 0.0 else 0.0
 
 
-def crossing(values: Values, place: int, level: float, step: int) -> float:
+def crossing(values: Array, place: int, level: float, step: int) -> float:
     """Where `values` (n,), which are positive, cross a level between the sample `place`, which reaches it, and the next
     one in the direction of `step`, -1 or 1. What grows or dies is straight over the logarithm. The place itself if the
     next sample is as high, or the curve ends there."""
@@ -49,7 +49,7 @@ def crossing(values: Values, place: int, level: float, step: int) -> float:
     return place + step * float((here - np.log(level)) / (here - beyond))
 
 
-def prominent_peaks(values: Values, least: float) -> list[Peak]:
+def prominent_peaks(values: Array, least: float) -> list[Peak]:
     """The peaks of `values` (n,) with at least this prominence, which is greater than zero."""
     if len(values) < 3:
         return []
@@ -66,7 +66,7 @@ def prominent_peaks(values: Values, least: float) -> list[Peak]:
     return found
 
 
-def _swings(values: Values, least: float) -> list[int]:
+def _swings(values: Array, least: float) -> list[int]:
     """The maxima from which `values` (n,) fall by `least` before they rise beyond them: few of many in noise."""
     turns = np.flatnonzero(np.diff(np.sign(np.diff(values)), prepend=0.0) != 0.0)
     swings: list[int] = []
@@ -84,14 +84,14 @@ def _swings(values: Values, least: float) -> list[int]:
     return swings
 
 
-def _foot(side: Values, height: float) -> float:
+def _foot(side: Array, height: float) -> float:
     """The lowest value of a side (n,) of a peak, seen from the peak, before it rises above the peak."""
     higher = side > height
     end = int(np.argmax(higher)) if higher.any() else len(side)
     return float(side[:end].min(initial=height))
 
 
-def intervals_above(amplitude: Values, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
+def intervals_above(amplitude: Array, begins: float, ends: float, pause: int) -> Iterator[tuple[int, int]]:
     """First and one past the last sample of each interval above `begins`, where dips shorter than `pause` do not count.
 
     An interval must fall below `ends` to be over, and counts to where it last was above `begins`.

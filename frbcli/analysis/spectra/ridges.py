@@ -9,12 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import order_track
-from frbcli.analysis.signals import Values, joined, located
+from frbcli.analysis.signals import joined, located
 from frbcli.analysis.spectra.peaks import summit
 from frbcli.analysis.spectra.spectrum import Spectrogram, waterfall, window_length
+from frbcli.arrays import Array, Truths
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 
@@ -35,15 +35,15 @@ class Ridges:
     a whirl where `whirls` (n,); onset_Hz: rotor speed at the first onset of whirl, NaN if there is none. What lies
     outside of the run is NaN."""
 
-    speed_Hz: Values
-    synchronous: Values
-    whirl_Hz: Values
-    whirl: Values
-    whirls: NDArray[np.bool_]
+    speed_Hz: Array
+    synchronous: Array
+    whirl_Hz: Array
+    whirl: Array
+    whirls: Truths
     onset_Hz: float
 
 
-def ridge_speeds(run: Run, signal: str = "journal") -> Values:
+def ridge_speeds(run: Run, signal: str = "journal") -> Array:
     """(n,) rotor speeds in Hz that suit a run: as far from each other as its windows reach, at most MOST_SPEEDS."""
     speed, time = np.abs(run[SPEED]), run[TIME]
     top = int(np.argmax(speed))
@@ -55,7 +55,7 @@ def ridge_speeds(run: Run, signal: str = "journal") -> Values:
     return np.linspace(low + reach, high - 1.5 * reach, count)
 
 
-def ridges(run: Run, speeds_Hz: Values, clearance: float, signal: str = "journal") -> Ridges:
+def ridges(run: Run, speeds_Hz: Array, clearance: float, signal: str = "journal") -> Ridges:
     """The ridges of a run at rotor speeds (n,) in Hz; clearance in m. Raises InputError as order_track and waterfall
     do, of a run that is too short for them."""
     track = order_track(run, 1.0, signal)
@@ -84,17 +84,17 @@ def _spectra(run: Run, signal: str, clearance: float) -> Spectrogram:
     )  # fmt: skip
 
 
-def _rising(speed: Values) -> NDArray[np.bool_]:
+def _rising(speed: Array) -> Truths:
     """(m,) where a speed has not been reached before: the way up."""
     before = np.concatenate([[-np.inf], np.maximum.accumulate(speed)[:-1]])
     return np.asarray(speed > before)
 
 
-def _at(wanted: Values, speed: Values, values: Values) -> Values:
+def _at(wanted: Array, speed: Array, values: Array) -> Array:
     return np.asarray(np.interp(wanted, speed, values, left=np.nan, right=np.nan))
 
 
-def _lines(found: Spectrogram) -> tuple[Values, Values]:
+def _lines(found: Spectrogram) -> tuple[Array, Array]:
     """(m,) frequency in Hz and amplitude of the largest line within the band of each spectrum, between the lines of the
     spectrum by a parabola through their logarithms."""
     step = float(found.frequency_Hz[1] - found.frequency_Hz[0])

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from frbcli.analysis.signals import Values
+from frbcli.arrays import Array
 from frbcli.results.measured.columns import Columns, wrong_file
 
 UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the signals are interpolated to even steps
@@ -15,7 +15,7 @@ UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the sign
 JITTER = 0.5
 
 
-def times(columns: Columns, name: str, time: Values) -> Values:
+def times(columns: Columns, name: str, time: Array) -> Array:
     """The times (n,) in s of a column. Raises InputError if they do not rise, or have gaps."""
     steps = np.diff(time)
     if not np.all(steps > 0.0):
@@ -34,7 +34,7 @@ def times(columns: Columns, name: str, time: Values) -> Values:
     return time
 
 
-def even_steps(time: Values, signals: Mapping[str, Values]) -> dict[str, Values]:
+def even_steps(time: Array, signals: Mapping[str, Array]) -> dict[str, Array]:
     """Times (m,) at even steps and signals (m,) at them. Where the times (n,) are uneven, the steps are as short as the
     shortest one, so that nothing is sampled coarser than before, and signals are interpolated by cubic splines."""
     step = (time[-1] - time[0]) / (len(time) - 1)

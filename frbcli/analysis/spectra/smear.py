@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
+from frbcli.arrays import Array
 
 SWEEP_OF_A_PANEL, POINTS = 8.0, 24  # a panel has at most 2 pi of phase, which so many Gauss points integrate exactly
 
 
-def chirp_height(sweep: Values) -> Values:
+def chirp_height(sweep: Array) -> Array:
     """Height of the line of a motion of amplitude 1 whose frequency rises or falls evenly, at the middle of a window.
 
     sweep: any shape, r T^2 for a frequency that changes by r Hz/s and a window of T s. With u = t/T from -1/2 to 1/2

@@ -14,9 +14,10 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.analysis.signals import PIECE, Motion, SignalColumn, Values, course, steepest_ramp
+from frbcli.analysis.signals import PIECE, SignalColumn, course, steepest_ramp
 from frbcli.analysis.spectra.smear import chirp_height
 from frbcli.analysis.spectra.windows import fast_length, hann
+from frbcli.arrays import Array, Complex
 from frbcli.errors import Fault, InputError
 
 Direction = Literal["x", "y", "forward"]
@@ -46,13 +47,13 @@ class Spectrogram:
     smeared by q times the ramp.
     """
 
-    time_s: Values
-    speed_Hz: Values
-    frequency_Hz: Values
-    amplitude: Values
-    level_dB: Values
+    time_s: Array
+    speed_Hz: Array
+    frequency_Hz: Array
+    amplitude: Array
+    level_dB: Array
     window_s: float
-    low_dB: Values
+    low_dB: Array
 
 
 def waterfall(
@@ -131,9 +132,9 @@ def waterfall(
 class _Transform:
     """window: (length,) Hann's, with the sum 1; padded: samples of a transform; frequency: (kept,) Hz of its lines."""
 
-    window: Values
+    window: Array
     padded: int
-    frequency: Values
+    frequency: Array
 
 
 def _transform(length: int, step: float, two_sided: bool, most_Hz: float | None) -> _Transform:
@@ -147,7 +148,7 @@ def _transform(length: int, step: float, two_sided: bool, most_Hz: float | None)
 def _spectra(
     groups: list[NDArray[np.int64]], transform: _Transform, x: SignalColumn, y: SignalColumn, speed_Hz: SignalColumn,
     direction: Direction,
-) -> tuple[Values, Values, Values, Values]:  # fmt: skip
+) -> tuple[Array, Array, Array, Array]:  # fmt: skip
     """The largest lines (kept, m) of m groups of windows that begin at samples; (m,) the sample in the middle of each,
     the speed there, and by how much it changes within a window at most."""
     length = len(transform.window)
@@ -200,7 +201,7 @@ def _starts(count: int, length: int, hop: int) -> NDArray[np.int64]:
     return np.arange(first if first + length <= count else 0, count - length + 1, hop)
 
 
-def _lines(motion: Values | Motion, starts: NDArray[np.int64], transform: _Transform) -> Iterator[Values]:
+def _lines(motion: Array | Complex, starts: NDArray[np.int64], transform: _Transform) -> Iterator[Array]:
     """Peak amplitudes (kept,) of the windows of `motion` at `starts`, without their mean."""
     window, padded, kept = transform.window, transform.padded, len(transform.frequency)
     at_a_time = max(1, BLOCK // padded)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
-Values = NDArray[np.float64]
+from frbcli.arrays import Array
 
 FACTORS = (2, 3, 5)
 
 
-def hann(length: int) -> Values:
+def hann(length: int) -> Array:
     """(n,) values of a Hann window that repeats after its length."""
     return np.asarray(0.5 - 0.5 * np.cos(2.0 * np.pi * np.arange(length) / length))
 

@@ -6,8 +6,9 @@ import math
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.history import Course, History
-from frbcli.bearing_tests.steady_film import Array, FilmMoment
+from frbcli.bearing_tests.steady_film import FilmMoment
 from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion, Path

@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.history import (
     PROBE,
     PROBE_WIDTH,
@@ -35,8 +35,6 @@ from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.scene.machine.machine_films import published_film
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
-
-Array = NDArray[np.float64]
 
 SETTLED = 1e-5  # force left over, relative to the load
 TOLERATED = 1e-2  # the same where no position is better: with a steep step the force itself is not smoother

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.history import PROBE, PROBE_WIDTH, Course, MovedFilm, history_of
-from frbcli.bearing_tests.steady_film import Array, FilmField, FilmMoment, modal_force
+from frbcli.bearing_tests.steady_film import FilmField, FilmMoment, modal_force
 from frbcli.case.schema import Case
 from frbcli.film.cells.film import supply_share
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque

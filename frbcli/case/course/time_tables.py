@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from frbcli.arrays import Array
 from frbcli.case.model import Model
 from frbcli.case.quantities import SMALLEST, unit_of
 from frbcli.case.reading.lines import Path as Key
@@ -20,7 +21,7 @@ from frbcli.errors import InputError
 from frbcli.units import ValueFault, quantity
 
 if TYPE_CHECKING:
-    from frbcli.results.measured.columns import Columns, Values
+    from frbcli.results.measured.columns import Columns
 
 MOST_NUMBERS = 60_000  # of all tables of a case, whose text a run file holds
 TIMES, RATES = ("t", "time", "zeit"), ("fs", "rate", "sampling_rate", "sample_rate")
@@ -144,7 +145,7 @@ def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
             yield suffix.group(1), name
 
 
-def _times(columns: Columns) -> Values:
+def _times(columns: Columns) -> Array:
     import numpy as np
 
     named = dict(_plain(columns))
@@ -175,7 +176,7 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
     raise Unfit("has no columns of the values in x and y.", remedy)
 
 
-def _values(columns: Columns, name: str, wanted: TableKind) -> Values:
+def _values(columns: Columns, name: str, wanted: TableKind) -> Array:
     none, one = (_unit(columns, name, wanted.unit, number) for number in (0, 1))
     values = columns[name] * (one - none) + none
     values[abs(values) < SMALLEST] = 0.0  # round-off, as of a sine at its zero
@@ -197,7 +198,7 @@ def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
         raise Unfit(problem, f"Give it in {si} or a unit like it.") from None
 
 
-def _check_times(columns: Columns, time: Values, values: Sequence[Values]) -> None:
+def _check_times(columns: Columns, time: Array, values: Sequence[Array]) -> None:
     """Times rise, and the table has no gap: no missing rows among even ones, and among uneven ones no interval that is
     much longer than most and across which a line would make up the values."""
     import numpy as np
@@ -225,7 +226,7 @@ def _check_times(columns: Columns, time: Values, values: Sequence[Values]) -> No
         raise Unfit(problem, "Fill the gap, or cut the table there.")
 
 
-def _differ(values: Sequence[Values]) -> Any:
+def _differ(values: Sequence[Array]) -> Any:
     """Whether values of neighbouring rows differ, by more than a small share of the range of their column."""
     import numpy as np
 

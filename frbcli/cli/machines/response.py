@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import click
 
+from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
 from frbcli.cli.machines.stability_table import tell_coefficient_error
@@ -19,7 +20,7 @@ from frbcli.errors import Fault, InputError
 if TYPE_CHECKING:
     from frbcli.analysis.orders.order_tracking import OrderTrack
     from frbcli.case.schema import Case
-    from frbcli.linear.response import Array, Response
+    from frbcli.linear.response import Response
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
 

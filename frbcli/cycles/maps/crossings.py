@@ -21,6 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import crossing
 from frbcli.cycles.maps.curves import DIFFERENCE, MOST_HARMONICS, TAIL, require_positive, with_harmonics
 from frbcli.cycles.maps.planes import MapPlane
@@ -29,8 +30,6 @@ from frbcli.cycles.method.continuation import Equations, Place, corrected, orien
 from frbcli.cycles.method.cycle import FLIP, TORUS, Cycle
 from frbcli.cycles.parts.machine import Machine, transfer
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Motions = Callable[[Machine, Complex], Equations]  # of a machine and a motion whose phase others have
 
 SPARE = 4  # harmonics of a disturbance beyond those of the motion

@@ -19,9 +19,9 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.maps.planes import MapPlane
 from frbcli.cycles.method.balance import Balance, left_out, unpacked
 from frbcli.cycles.method.continuation import (
@@ -38,9 +38,6 @@ from frbcli.cycles.method.continuation import (
 )
 from frbcli.cycles.method.equilibria import equations as resting_equations
 from frbcli.cycles.parts.machine import film_loads, transfer
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 STRIDES = Strides(first=0.02, shortest=1e-5, longest=0.06, points=300)
 DIFFERENCE = 1e-5  # of the unknowns of Hopf points, of numbers of the case, and along the vector v of folds

@@ -10,8 +10,8 @@ from functools import lru_cache
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.cycles.branch import Branch
 from frbcli.cycles.diagram import Walk, over_speed
 from frbcli.cycles.family import Family
@@ -21,8 +21,6 @@ from frbcli.cycles.over_key import KeyFollower, resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
-
-Array = NDArray[np.float64]
 
 FAMILIES = 8  # that are kept, of values of the second number
 

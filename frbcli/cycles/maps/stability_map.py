@@ -9,8 +9,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.cycles.columns import map_columns
@@ -36,8 +36,6 @@ from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.cycles.unbalance.synchronous import synchronous_equations
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
-
-Array = NDArray[np.float64]
 
 BAUTIN, CUSP = "bautin", "cusp"
 ACROSS = 200  # values of the first number at which the growth at rest is evaluated

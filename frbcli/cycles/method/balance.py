@@ -14,12 +14,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.parts.machine import Loads, Machine, film_loads, transfer
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SAMPLES_PER_HARMONIC, FEWEST_SAMPLES = 6, 64
 

@@ -7,15 +7,14 @@ from collections.abc import Callable, Sequence
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine
 
-Array = NDArray[np.float64]
 MachineAt = Callable[[float], Machine]  # by the last unknown
 
 DIFFERENCE = 1e-5  # of the last unknown, which is of the order of 1

@@ -11,10 +11,10 @@ from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.linalg import lu_factor, lu_solve
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
+
 Found = TypeVar("Found")
 Equations = Callable[[Array], tuple[Array, Array]]  # residual (n,), and its derivative (n, n + 1)
 

@@ -21,13 +21,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.equilibria import HopfPoint
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads
 from frbcli.film.kinds.samples import have_closed_forms
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 States = Mapping[int, NDArray[Any]]
 
 ANGLES = 32

@@ -5,15 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import moments, motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.machine import Machine
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 FIRST_HARMONICS = 5  # of a cycle of no size
 MOMENTS = 256  # of a period at which eccentricities are taken

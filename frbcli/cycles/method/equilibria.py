@@ -12,8 +12,8 @@ from functools import cached_property
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import (
     Equations,
     Place,
@@ -30,9 +30,6 @@ from frbcli.equilibrium import hopf
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.rotor.order import first_largest
 from frbcli.scene.machine.system import System
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 STRIDES = Strides(first=0.01, shortest=1e-7, longest=0.04, points=2000)
 SHARP = 1e-12  # relative tolerance of the speed at a Hopf point

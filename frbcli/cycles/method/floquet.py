@@ -11,15 +11,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, film_loads
 from frbcli.rotor.order import largest_first
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768

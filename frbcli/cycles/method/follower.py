@@ -12,8 +12,8 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import Balance, left_out, unpacked
 from frbcli.cycles.method.continuation import (
     Equations,
@@ -38,9 +38,6 @@ from frbcli.cycles.method.floquet import HELPS, TRIVIAL, Multipliers, multiplier
 from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 MOST_HARMONICS = 80
 REFITS = 4  # of a fold with more harmonics

@@ -13,8 +13,8 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.cycles.method.continuation import (
     Equations,
     Place,
@@ -30,7 +30,6 @@ from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.machine import Machine
 from frbcli.equilibrium.coefficients import LEAST
 
-Array = NDArray[np.float64]
 Seek = Callable[[Equations, Place], Place | None]
 
 TAIL_SHARE = 10.0  # of the tail of cycles, which have more harmonics for their multipliers

@@ -10,8 +10,8 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import STRIDES
 from frbcli.cycles.method.continuation import Place, Strides, corrected, follow, halved_until, next_length, unit_vector
 from frbcli.cycles.method.cycle import largest, place_at_rest, resized_like
@@ -21,9 +21,6 @@ from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
 from frbcli.equilibrium.hopf import whirls
 from frbcli.rotor.order import first_largest
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 RISE = Strides(first=0.02, shortest=1e-6, longest=0.2, points=400)
 MOST = 50.0  # share up to which springs and dashpots are added

@@ -10,16 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
 from frbcli.cycles.parts.machine import Loads, Machine, film_loads
 from frbcli.film.kinds.samples import drag_factor
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 DIFFERENCE = 1e-6  # of displacements over the clearance, and of velocities over the largest one
 

@@ -12,12 +12,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.cycles.parts.machine import Machine
 from frbcli.equilibrium.linearised import first_order
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

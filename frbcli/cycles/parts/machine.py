@@ -20,6 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.rotor_parts import Part, parts_of
@@ -32,9 +33,6 @@ from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 NEAR = 0.1  # eccentricity at which the dashpots beside the films are taken from these
 

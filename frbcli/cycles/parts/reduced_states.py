@@ -13,14 +13,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.parts.linearised import StateSpace, state_space
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.rotor_parts import Part
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SLOW, SEEN = 1.0, 4.0  # frequencies over the largest speed up to which half of them lie, and the others
 FREQUENCIES, SPEEDS = 48, (0.0, 0.5, 1.0)  # how many, and at which speeds over the largest one

@@ -11,10 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.rotor.linear import LinearRotor
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 SMALLEST = 16  # degrees of freedom from which on two parts are solved faster than one
 ALIKE = 1e-9  # by which planes that count as the same may differ, relative

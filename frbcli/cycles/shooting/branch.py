@@ -10,14 +10,12 @@ from dataclasses import replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.cycles.branch import AT_REST, LEFT
 from frbcli.cycles.method.continuation import halved_until
 from frbcli.cycles.method.cycle import ASKED, FLIP, FOLD, TORUS
 from frbcli.cycles.shooting.shots import Shooting, Shot
-
-Array = NDArray[np.float64]
 
 FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
 MOST_POINTS = 150

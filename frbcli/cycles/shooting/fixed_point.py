@@ -18,12 +18,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.rotor.order import largest_first
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,)
 
 DIFFERENCE = 5e-3  # by which states and parameters are disturbed, at most: less blurs the images by the cells

@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable, unit_vector
 from frbcli.cycles.method.cycle import FOLD
@@ -27,8 +27,6 @@ from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.scene.forms.cells import cells_of
 from frbcli.scene.planning.plan import make_plan
-
-Array = NDArray[np.float64]
 
 RESOLVED = 0.5  # length of a slow motion of length 1 on other cells from which on they resolve it
 BESIDE = 0.5  # of the error of a neighbour: differences may change their sign between both

@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Truths
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
@@ -101,9 +102,9 @@ class PeriodMap:
     clearances: Array
     turned: Array
     begun: Array
-    held: NDArray[np.bool_]
+    held: Truths
     units: Array
-    limited: NDArray[np.bool_]
+    limited: Truths
 
     @property
     def slow(self) -> int:

@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.result import hertz
@@ -33,9 +34,6 @@ from frbcli.cycles.shooting.fixed_point import (
 from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
 from frbcli.equilibrium import hopf
 from frbcli.rotor.order import largest_first
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3

@@ -16,15 +16,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.locked import padded, shifted
 from frbcli.cycles.unbalance.synchronous import first_harmonics
 from frbcli.cycles.unbalance.two_frequencies import Torus
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 ANGLES, MOMENTS = 24, 512  # at which cycles are taken; of a beat
 FAINT = 1e-7  # of the clearance: harmonics of a guess that are left out
@@ -82,7 +80,7 @@ def _in_uniform_time(slope: Array) -> Array:
 
 def _torus(found: Complex, nu: float, omega: float) -> Torus:
     """found: (MOMENTS, H + 1, c): u of exp(i (h a + q alpha)), which is exp(i ((h - 2 q) a + q b))."""
-    kept: dict[tuple[int, int], NDArray[np.complex128]] = {(0, 0): found[0, 0]}
+    kept: dict[tuple[int, int], Complex] = {(0, 0): found[0, 0]}
     for q, by_order in zip(_orders(MOMENTS).astype(int), found, strict=True):
         for h in np.flatnonzero(np.abs(by_order).max(axis=1) > FAINT):
             j, k, value = int(h) - 2 * int(q), int(q), by_order[h]

@@ -7,9 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frbcli.arrays import Array
 from frbcli.cycles.method.cycle import ASKED, FOLD
 from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import Machine
@@ -20,7 +18,6 @@ from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, foll
 from frbcli.cycles.unbalance.two_frequencies import Torus
 from frbcli.cycles.unbalance.whirls import AtItsHeat, Chain, WhirlFound, free_whirl
 
-Array = NDArray[np.float64]
 Observer = Callable[[int, float, float], None]
 Tell = Callable[[UnbalancedWhirl], None]
 

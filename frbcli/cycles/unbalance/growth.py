@@ -9,15 +9,12 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.floquet import moments_within, multipliers, through_all, transitions
 from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.two_frequencies import Torus
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 PERIODS = 100  # of the whirl, and at least one of the beat between it and half of the rotor's, before an answer
 MOST_INTERVALS = 1_000_000

@@ -11,16 +11,13 @@ from __future__ import annotations
 import itertools
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
 from frbcli.cycles.method.cycle import Cycle, largest
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion, first_harmonics
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 ANGLES = 12  # at which theta is tried
 SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last

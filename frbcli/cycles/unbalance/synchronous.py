@@ -11,8 +11,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import Branch, follow_branch
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
@@ -23,9 +23,6 @@ from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 DIFFERENCE = 1e-6  # of the pace
 WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one

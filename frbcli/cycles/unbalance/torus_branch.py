@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import packed, unpacked
 from frbcli.cycles.method.continuation import (
     Equations,
@@ -32,9 +32,6 @@ from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import driven_motions
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 from frbcli.cycles.unbalance.two_frequencies import Linearised, Orders, Torus, left_out
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 STRIDES = Strides(first=0.03, shortest=1e-4, longest=0.2, points=60)
 DIFFERENCE = 1e-6  # of the pace

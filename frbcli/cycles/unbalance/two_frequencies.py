@@ -22,13 +22,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import as_real, packed, through, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.parts.machine import Loads, Machine, Transfer, driven_motions, film_loads, transfer
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 Orders = NDArray[np.int64]
 
 TAIL = 1e-6  # of the clearance: what a harmonic that is left out may have

@@ -8,8 +8,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import moments, motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.cycle import MOMENTS, Cycle, largest_of
@@ -20,9 +20,6 @@ from frbcli.cycles.unbalance.beats import beating
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 from frbcli.cycles.unbalance.two_frequencies import Orders, Torus, fitted, moments_of, of_cycle, samples, with_unbalance
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 AtItsHeat = Callable[[Array, Array, float], Machine]
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.elements import ThrustBearing
 from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
@@ -20,8 +20,6 @@ from frbcli.film.pads.mesh import PadMesh, pad_mesh
 
 if TYPE_CHECKING:
     from frbcli.elements.collar.heat import PadHeat
-
-Floats = NDArray[np.float64]
 
 COEFFICIENTS = "stiffness", "damping"
 OilAt = tuple[PadOil, float | None]  # of a film, and its temperature in K
@@ -46,13 +44,13 @@ class ThrustState:
     p_max: float
     stiffness: float
     damping: float
-    tilt_stiffness: Floats
-    tilt_damping: Floats
+    tilt_stiffness: Array
+    tilt_damping: Array
     viscosity: float
     temperature: float | None
     load_error: float
     coefficient_error: float
-    pressure: Floats
+    pressure: Array
 
 
 @dataclass(frozen=True)
@@ -168,6 +166,6 @@ def _errors(films: tuple[PadFilm, ...], coarse: tuple[PadFilm, ...]) -> tuple[fl
     return load, coefficients
 
 
-def _change(fine: Floats, coarse: Floats) -> float:
+def _change(fine: Array, coarse: Array) -> float:
     largest = float(np.abs(fine).max())
     return float(np.abs(fine - coarse).max()) / largest if largest else 0.0

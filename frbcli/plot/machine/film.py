@@ -6,14 +6,12 @@ from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
 from frbcli.bearing_tests.steady_film import FilmField
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.style import COLOURS, GREY, LEVEL_MAP, new_figure, plain_numbers, styled
-
-Array = NDArray[np.float64]
 
 BAR = 1e5
 FULL = 0.999  # oil fraction

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.model import altered
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import label_of, laws
@@ -19,7 +19,6 @@ from frbcli.scene.gate.gate import require
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
 
-Array = NDArray[np.float64]
 BAR = 1e5
 STEEPNESSES = (0.9, 0.95, 0.99, 0.999)  # x_1 beside that of the case
 DASHES = ((5, 1.5), (1.5, 1), (6, 1.5, 1.5, 1.5), (8, 2), (3, 1, 1, 1, 1, 1))

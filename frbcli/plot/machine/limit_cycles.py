@@ -8,9 +8,9 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 from scipy.interpolate import PchipInterpolator
 
+from frbcli.arrays import Array, Truths
 from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint, UnbalancedWhirl
 from frbcli.plot.spectra.run_track import RunTrack
 from frbcli.plot.style import (
@@ -30,7 +30,6 @@ from frbcli.plot.style import (
     styled,
 )
 
-Array = NDArray[np.float64]
 COLOURS = (BLUE, VERMILION, PURPLE, SKY)  # of branches
 RUN_COLOURS = (ORANGE, GREEN, "#8C564B", "#17BECF")  # of runs, which are none of the branches'
 UP, DOWN = "-", (0, (4, 1, 1, 1))  # lines of the ways of a run
@@ -200,7 +199,7 @@ def _mark_of(whirl: UnbalancedWhirl) -> str:
     return "locked" if whirl.locked else "unstable" if whirl.stable is False else ""
 
 
-def _line(axes: Axes, x: Array, y: Array, stable: NDArray[np.bool_], colour: str, label: str | None) -> None:
+def _line(axes: Axes, x: Array, y: Array, stable: Truths, colour: str, label: str | None) -> None:
     """A curve, solid where stable and dashed where not; a piece between the two belongs to the unstable part."""
     unstable = ~stable
     beside = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)

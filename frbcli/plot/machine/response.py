@@ -7,13 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
+from frbcli.arrays import Array
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response, larger_semi_axis
 from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_below, legend_beside, new_figure, styled
 
-Array = NDArray[np.float64]
 MICRO = 1e6
 STABLE, GROWING = "-", (0, (1, 1.5))  # lines of motions that are seen, and of those that a whirl hides
 GAP = (0, (4, 2))  # line of a clearance

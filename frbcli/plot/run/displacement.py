@@ -9,7 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.signals import SignalColumn, Values, joined, located, points
+from frbcli.analysis.signals import SignalColumn, joined, located, points
+from frbcli.arrays import Array
 from frbcli.plot.curves import draw_curves
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import MICRO, cut, heading, labels, motion
@@ -27,7 +28,7 @@ class Distance:
     def __len__(self) -> int:
         return len(self.x)
 
-    def __getitem__(self, where: slice) -> Values:
+    def __getitem__(self, where: slice) -> Array:
         return np.asarray(MICRO * np.hypot(self.x[where], self.y[where]))
 
 

@@ -8,13 +8,11 @@ from __future__ import annotations
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.results.records import TIME
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
-
-Values = NDArray[np.float64]
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels
 SHORTEST = 4  # samples of a span; with fewer, all are drawn
@@ -23,7 +21,7 @@ SHORTEST = 4  # samples of a span; with fewer, all are drawn
 class EnvelopeColumn(Protocol):
     """Values (n,) of which slices (m,) can be had: a signal, or what is computed of several."""
 
-    def __getitem__(self, part: slice, /) -> Values: ...
+    def __getitem__(self, part: slice, /) -> Array: ...
 
 
 class Envelope:
@@ -35,10 +33,10 @@ class Envelope:
     def __init__(self, count: int) -> None:
         stretch = count // (DRAWN_POINTS // 2)
         self._stretch = stretch if stretch >= SHORTEST else 1
-        self._kept: list[Values] = []
+        self._kept: list[Array] = []
         self._rest = np.empty((2, 0))
 
-    def add(self, place: Values, values: Values) -> None:
+    def add(self, place: Array, values: Array) -> None:
         """Take the next points: values (m,) at places (m,)."""
         points = np.concatenate([self._rest, np.stack([place, values])], axis=1)
         whole = max(points.shape[1] - 1, 0) // self._stretch * self._stretch  # the last point is for `points` to keep
@@ -48,7 +46,7 @@ class Envelope:
         self._kept.append(points[:, kept])
         self._rest = points[:, whole:]
 
-    def points(self) -> tuple[Values, Values]:
+    def points(self) -> tuple[Array, Array]:
         """Places and values (k,) of the line."""
         values = self._rest[1]
         whole = len(values) == self._stretch
@@ -57,7 +55,7 @@ class Envelope:
         return place, values
 
 
-def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = None) -> tuple[Values, Values]:
+def curve(run: Run, column: EnvelopeColumn, first: int = 0, last: int | None = None) -> tuple[Array, Array]:
     """Times and values (k,) that draw the samples of a column from `first` to before `last`, by default all."""
     last = len(run) if last is None else last
     line = Envelope(last - first)
@@ -76,7 +74,7 @@ def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, floa
     return lowest, highest
 
 
-def at_times(run: Run, column: EnvelopeColumn, times: Values) -> Values:
+def at_times(run: Run, column: EnvelopeColumn, times: Array) -> Array:
     """The values (k,) of a column at ascending times (k,) in s, on the line between the samples."""
     found = np.empty(len(times))
     for start, stop in pieces(0, len(run)):

@@ -8,15 +8,13 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
-from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
+from frbcli.arrays import Array
 from frbcli.plot.signals import MICRO, cut, ends, heading, labels, motion, shell
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
-
-Values = NDArray[np.float64]
 
 LAST_s = 0.1  # what is shown if no time is given
 ALL_DRAWN = 300_000  # samples of an orbit up to which every step is drawn
@@ -77,7 +75,7 @@ def _reach(x: Signal, y: Signal, first: int, last: int) -> float:
     return max(float(np.max(np.hypot(x[start:stop], y[start:stop]))) for start, stop in pieces(first, last))
 
 
-def visible_steps(x: Signal, y: Signal, first: int, last: int) -> tuple[Values, Values]:
+def visible_steps(x: Signal, y: Signal, first: int, last: int) -> tuple[Array, Array]:
     """x and y (k,) of an orbit from one sample to before another: of a long one only the steps that touch a part of the
     picture that no step before has touched, apart from each other by NaN."""
     if last - first <= ALL_DRAWN:

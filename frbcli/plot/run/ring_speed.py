@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import NDArray
 
 from frbcli.analysis.signals import joined, points
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case_text
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
@@ -22,8 +22,6 @@ from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
-
-Values = NDArray[np.float64]
 
 SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn
 ROOM = 1.15  # above the highest curve
@@ -92,9 +90,9 @@ class _Ratio:
         fastest = max(map(abs, extremes(rotor, 0, len(run))))
         return cls(run.signal(joined("ring_speed", name, "Hz")), rotor, SLOWEST * fastest)
 
-    def __getitem__(self, part: slice) -> Values:
+    def __getitem__(self, part: slice) -> Array:
         speed = np.abs(self.rotor[part])
-        ratio: Values = np.full(len(speed), np.nan)
+        ratio: Array = np.full(len(speed), np.nan)
         return np.divide(self.ring[part], speed, out=ratio, where=speed > self.least)
 
 

@@ -7,12 +7,10 @@ from typing import Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import NDArray
 
 from frbcli.analysis.spectra.spectrum import Spectrogram
+from frbcli.arrays import Array
 from frbcli.plot.style import BLUE, GREY
-
-Values = NDArray[np.float64]
 
 CURVES = 60
 HEIGHT = 0.25  # of a curve from the lowest to the highest level, relative to the depth of the stack
@@ -25,10 +23,10 @@ def draw_cascade(
     axes: Axes,
     found: Spectrogram,
     over: Literal["time", "speed"],
-    values: Values,
+    values: Array,
     limits: tuple[float, float],
     unit: str,
-    lines: list[tuple[str, Values]],
+    lines: list[tuple[str, Array]],
 ) -> None:
     """Curves over frequency, shifted up and to the right with time or speed; those in front hide those behind.
 
@@ -65,7 +63,7 @@ def draw_cascade(
     axes.set_ylabel("time in s" if over == "time" else "rotor speed in Hz")
 
 
-def _draw_frame(axes: Axes, depth: Values, shift: Values, width: float, span: float) -> None:
+def _draw_frame(axes: Axes, depth: Array, shift: Array, width: float, span: float) -> None:
     """Slanting lines of equal frequency: the ticks below belong to the foremost curve."""
     ticks = [tick for tick in MaxNLocator(8, steps=NICE).tick_values(0.0, width) if 0.0 <= tick <= width]
     for tick in ticks:

@@ -13,11 +13,10 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
 from frbcli.analysis.spectra.spectrum import Spectrogram
+from frbcli.arrays import Array
 from frbcli.plot.spectra.waterfall import LEVELS_dB, orders
 from frbcli.plot.style import LEVEL_MAP
 from frbcli.results.store import Run
-
-Values = NDArray[np.float64]
 
 ROWS, COLUMNS = 720, 900  # of the image, at most
 LOWEST_dB, STEP_dB = -120.0, 0.5  # of a level as one byte
@@ -29,12 +28,12 @@ class Levels:
     by LOWEST_dB and STEP_dB; image: PNG, a pixel each, frequencies upwards; lines: names, with _ before
     an index, and frequencies (m,) in Hz."""
 
-    time_s: Values
-    speed_Hz: Values
-    frequency_Hz: Values
+    time_s: Array
+    speed_Hz: Array
+    frequency_Hz: Array
     level: NDArray[np.uint8]
     image: bytes
-    lines: tuple[tuple[str, Values], ...]
+    lines: tuple[tuple[str, Array], ...]
 
 
 def levels(run: Run, signal: str, found: Spectrogram, levels_dB: tuple[float, float] = LEVELS_dB) -> Levels:
@@ -71,6 +70,6 @@ def _starts(count: int, most: int) -> NDArray[np.int64]:
     return np.arange(0, count, -(-count // most))
 
 
-def _means(values: Values, starts: NDArray[np.int64]) -> Values:
+def _means(values: Array, starts: NDArray[np.int64]) -> Array:
     sizes = np.diff(np.append(starts, len(values)))
     return np.asarray(np.add.reduceat(values, starts) / sizes, dtype=np.float64)

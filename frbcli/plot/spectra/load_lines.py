@@ -6,15 +6,13 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.plot.signals import case_tables
 from frbcli.results.store import Run
 from frbcli.scene.machine.elements import harmonics_of
-
-Values = NDArray[np.float64]
 
 
 class LoadLine(NamedTuple):
@@ -24,7 +22,7 @@ class LoadLine(NamedTuple):
     order: float
     frequency_Hz: float
 
-    def along(self, speed_Hz: Values) -> Values:
+    def along(self, speed_Hz: Array) -> Array:
         """(k,) Hz at rotor speeds (k,) in Hz."""
         return np.abs(self.order * speed_Hz + self.frequency_Hz)
 

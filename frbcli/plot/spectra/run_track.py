@@ -6,12 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
-
-Array = NDArray[np.float64]
 
 SPANS = 200  # of a run: longer than the periods of its whirl
 ECCENTRICITY, SPEED, TIME = "eccentricity", "speed_Hz", "time_s"

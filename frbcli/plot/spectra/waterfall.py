@@ -12,11 +12,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.ticker import LogLocator, ScalarFormatter
-from numpy.typing import NDArray
 
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectra.spectrum import waterfall as spectra
+from frbcli.arrays import Array
 from frbcli.plot.run.envelope import at_times, extremes
 from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
 from frbcli.plot.spectra.cascade import draw_cascade
@@ -27,7 +27,6 @@ from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 
 Over = Literal["time", "speed"]
-Values = NDArray[np.float64]
 
 LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
 ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
@@ -54,7 +53,7 @@ class LevelScale:
     limits: tuple[float, float] | None = None
     orders: tuple[float, ...] | None = None
 
-    def of(self, found: Spectrogram) -> tuple[Values, tuple[float, float], str]:
+    def of(self, found: Spectrogram) -> tuple[Array, tuple[float, float], str]:
         """Values (k, m), their limits and unit."""
         if not self.linear:
             return found.level_dB, self.limits or LEVELS_dB, "dB"
@@ -191,7 +190,7 @@ def draw_levels(
 
 def orders(
     run: Run, signal: str, found: Spectrogram, chosen: Sequence[float] | None = None
-) -> list[tuple[str, Values]]:
+) -> list[tuple[str, Array]]:
     """The synchronous line, those of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
     if chosen is not None:
         return [("ω" if order == 1.0 else f"{order:g} ω", order * found.speed_Hz) for order in chosen]
@@ -204,7 +203,7 @@ def orders(
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
 
 
-def _label_line(axes: Axes, across: Values, frequency: Values, label: str, limits: tuple[float, float]) -> None:
+def _label_line(axes: Axes, across: Array, frequency: Array, label: str, limits: tuple[float, float]) -> None:
     """Write the name of a line beside it, on the left of where it is highest yet well inside the picture; of a level
     line on the right of where that begins, away from rising ones, and small, since such lines lie close."""
     span = abs(across[-1] - across[0])

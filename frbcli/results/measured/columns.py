@@ -9,14 +9,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.errors import Fault, InputError, printable
 from frbcli.nearest import FEW, did_you_mean, nearest
 from frbcli.results.measured.delimited import without_unit
 from frbcli.results.records import LARGEST
-
-Values = NDArray[np.float64]
 
 LARGEST_FILE = 1024**3  # bytes
 EXPORTED = re.compile(r"time_(s)|speed_(Hz)|(?:journal|disk)(?:_\w+)?_[xy]_(m)")  # of `frb export`
@@ -33,7 +31,7 @@ class Columns:
     """
 
     path: Path
-    values: Mapping[str, Values]
+    values: Mapping[str, Array]
     rate: float | None = None
     units: Mapping[str, str] = field(default_factory=dict)
     lines: tuple[int, ...] | None = None
@@ -41,7 +39,7 @@ class Columns:
     numbers: Mapping[str, float] = field(default_factory=dict)
     shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
-    def __getitem__(self, name: str) -> Values:
+    def __getitem__(self, name: str) -> Array:
         """A column. Raises InputError if there is none of this name, or its values are not finite."""
         column = self.values[self.named(name)]
         with np.errstate(invalid="ignore"):

@@ -11,11 +11,12 @@ import h5py
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.results.measured.columns import LARGEST_FILE, Columns, Values
+from frbcli.arrays import Array
+from frbcli.results.measured.columns import LARGEST_FILE, Columns
 from frbcli.results.measured.delimited import MOST_COLUMNS
 
-Array = NDArray[Any]
-Leaf = tuple[str, "Array | str"]  # name and values in MATLAB's shape, or what they are where they are no numbers
+Numbers = NDArray[Any]
+Leaf = tuple[str, "Numbers | str"]  # name and values in MATLAB's shape, or what they are where they are no numbers
 
 DEEPEST = 8  # structs within structs
 MOST_VARIABLES = 10_000
@@ -27,7 +28,7 @@ def read_mat(path: Path) -> Columns:
     """Vectors, rows or columns, by their names; the columns of matrices, or their rows where they have more columns
     than rows, as NAME.1, NAME.2; the fields of structs as STRUCT.FIELD, of arrays of structs as STRUCT.1.FIELD, what
     stands in cells as NAME.1. A single number is one of `numbers`. Raises what scipy and h5py raise."""
-    values: dict[str, Values] = {}
+    values: dict[str, Array] = {}
     numbers: dict[str, float] = {}
     doubtful: dict[str, str] = {}
     shapes: dict[str, tuple[int, ...]] = {}
@@ -48,7 +49,7 @@ def read_mat(path: Path) -> Columns:
     return Columns(path, values, doubtful=doubtful, numbers=numbers, shapes=shapes)
 
 
-def _problem(found: Array) -> str:
+def _problem(found: Numbers) -> str:
     """Why numbers cannot be columns, nothing if they can."""
     if found.ndim > 2:
         return f"has {found.ndim} dimensions"
@@ -59,7 +60,7 @@ def _problem(found: Array) -> str:
     return ""
 
 
-def _columns(name: str, found: Values) -> dict[str, Values]:
+def _columns(name: str, found: Array) -> dict[str, Array]:
     """A vector, or the columns of a matrix; samples are along its longer side."""
     if found.ndim < 2 or 1 in found.shape:
         return {name: found.ravel()}
@@ -161,11 +162,11 @@ def _is_matlab_number(kind: str) -> bool:
     return kind in ("double", "single", "logical") or kind.removeprefix("u").startswith("int")
 
 
-def _numbers_7_3(value: Any) -> Array | str:
+def _numbers_7_3(value: Any) -> Numbers | str:
     """The values of a dataset in MATLAB's shape; HDF5 has its axes in the reverse order."""
     if value.nbytes > LARGEST_FILE:
         raise ValueError(f"{value.name} has more than {LARGEST_FILE // 1024**2} MB")
-    found: Array = value[()]
+    found: Numbers = value[()]
     if value.dtype.names == ("real", "imag"):
         return np.asarray(found["real"] + 1j * found["imag"]).T
     if not _is_number(value.dtype):

@@ -8,8 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
-from frbcli.results.measured.columns import LARGEST_FILE, Columns, Values, wrong_file
+from frbcli.results.measured.columns import LARGEST_FILE, Columns, wrong_file
 from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
 from frbcli.results.measured.mat import read_mat
 from frbcli.results.measured.uff import read_uff
@@ -60,7 +61,7 @@ def _csv(path: Path) -> Columns:
     return Columns(path, values, None, units, table.lines, doubtful)
 
 
-def _numbers(table: DelimitedTable, place: int) -> Values:
+def _numbers(table: DelimitedTable, place: int) -> Array:
     """A column, NaN where it holds no number."""
     import pandas as pd
 

@@ -9,8 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import Fault, InputError
-from frbcli.results.measured.columns import Columns, Values
+from frbcli.results.measured.columns import Columns
 
 FUNCTION, TIME_RESPONSE = 58, 1  # data set "function at nodal DOF", and its functions of time
 DIRECTIONS = {0: "", 1: "+X", -1: "-X", 2: "+Y", -2: "-Y", 3: "+Z", -3: "-Z",
@@ -41,7 +42,7 @@ def read_uff(path: Path) -> Columns:
         kinds = sorted({int(kind) for kind in file.get_set_types()})
         raise ValueError(f"it has no response over time (data set 58, function 1), but the data sets {kinds}")
     times = np.asarray(responses[0]["x"], dtype=np.float64)
-    values: dict[str, Values] = {TIME: times}
+    values: dict[str, Array] = {TIME: times}
     units: dict[str, str] = {}
     doubtful: dict[str, str] = {}
     for response in responses:
@@ -64,7 +65,7 @@ def _name(response: dict[str, Any], taken: set[str]) -> str:
     return next(each for each in (name, *(f"{name}.{k}" for k in range(2, len(taken) + 3))) if each not in taken)
 
 
-def _same(times: Values, others: Values) -> bool:
+def _same(times: Array, others: Array) -> bool:
     if len(times) != len(others) or len(times) < 2:
         return False
     return bool(np.max(np.abs(times - others)) <= SAME * abs(times[1] - times[0]))

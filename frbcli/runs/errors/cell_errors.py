@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Truths
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.cell_choice import gap_ratio
 from frbcli.solve.state import Array
@@ -37,7 +37,7 @@ class FewerCells:
     least: float = 0.0
     expected: float | None = None
 
-    def at(self, there: NDArray[np.bool_]) -> FewerCells:
+    def at(self, there: Truths) -> FewerCells:
         """These errors at some of the times only, (m,) whether at each time of the run."""
         return replace(self, samples=self.samples[there[: len(self.samples)].nonzero()])
 

@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.signals import Values
 from frbcli.analysis.uncertainty import NEAR, slow_uncertainties, with_uncertainties
+from frbcli.arrays import Array
 from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run
@@ -31,11 +31,11 @@ Record = dict[str, Any]
 class SecondRun:
     """A run that is in no file. signals: (n,) each, in the unit of its name; references, status: as of a run."""
 
-    signals: Mapping[str, Values]
+    signals: Mapping[str, Array]
     references: dict[str, float]
     status: str
 
-    def __getitem__(self, name: str) -> Values:
+    def __getitem__(self, name: str) -> Array:
         """The values of a signal."""
         return self.signals[name]
 
@@ -51,7 +51,7 @@ def second_run(march: March, run: Run, observe: Observer | None = None) -> Secon
         other = march.again(coarser_plan(march.case, march.plan))
     except NotConverged:
         return None
-    end_s, status, chunks = (1.0 + NEAR) * run.t_end_s, RUNNING, list[dict[str, Values]]()
+    end_s, status, chunks = (1.0 + NEAR) * run.t_end_s, RUNNING, list[dict[str, Array]]()
     while status == RUNNING and other.time <= end_s:
         status, signals = other.chunk()
         chunks.append(signals)

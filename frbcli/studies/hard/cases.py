@@ -10,8 +10,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.schema import Case
@@ -28,8 +28,6 @@ FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-co
 RUNS = {"runup": runup, "rundown": rundown}
 TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
 OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

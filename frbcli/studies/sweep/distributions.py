@@ -12,12 +12,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.errors import Fault, InputError
 from frbcli.studies.sweep.points import NUMBER, SOURCE, Settings, checked, split_values
 
-Values = NDArray[np.float64]
 Correlations = Mapping[tuple[str, str], float]
 
 FORMS = {"normal": "mean, deviation", "uniform": "low, high", "truncated": "mean, deviation, low, high"}
@@ -41,7 +40,7 @@ class Distribution:
     low: float = -np.inf
     high: float = np.inf
 
-    def at(self, shares: Values) -> Values:
+    def at(self, shares: Array) -> Array:
         """(n,) values below which shares (n,), between 0 and 1, of all values lie."""
         from scipy.special import ndtr, ndtri
 
@@ -121,7 +120,7 @@ def read_correlation(text: str) -> tuple[tuple[str, str], float]:
     return (pair[0], pair[1]), value
 
 
-def _factor(keys: Sequence[str], correlations: Correlations) -> Values:
+def _factor(keys: Sequence[str], correlations: Correlations) -> Array:
     """Lower triangle L with L L^T = the correlations."""
     matrix = np.eye(len(keys))
     for (one, other), value in correlations.items():

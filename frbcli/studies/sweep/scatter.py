@@ -8,15 +8,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.errors import Fault, InputError
 from frbcli.linear.threshold import STABLE, UNSTABLE
 from frbcli.studies.sweep.points import NUMBER
 from frbcli.studies.sweep.sweep import Sweep
 from frbcli.studies.sweep.task import FINISHED, NO_WHIRL, ONSET, THRESHOLD, SweepPoint
-
-Values = NDArray[np.float64]
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 SURE = 1.959964  # standard deviations of an interval of 95 %
@@ -48,7 +46,7 @@ class Scatter:
 
     count: int
     left_out: int
-    speeds_Hz: Values
+    speeds_Hz: Array
     percentiles: tuple[tuple[float, float], ...]
     sensitivities: tuple[Sensitivity, ...]
     explained: float
@@ -97,7 +95,7 @@ def whirl_speed(point: SweepPoint) -> float:
     return 0.0 if point.message.startswith(UNSTABLE) else math.nan
 
 
-def _sensitivities(found: Sweep, speeds: Values) -> tuple[tuple[Sensitivity, ...], float]:
+def _sensitivities(found: Sweep, speeds: Array) -> tuple[tuple[Sensitivity, ...], float]:
     from scipy.stats import spearmanr
 
     whirls = np.isfinite(speeds) & (speeds > 0.0)
@@ -115,7 +113,7 @@ def _sensitivities(found: Sweep, speeds: Values) -> tuple[tuple[Sensitivity, ...
     return tuple(Sensitivity(*row) for row in rows), explained
 
 
-def _numbers(points: Sequence[SweepPoint], key: str) -> Values:
+def _numbers(points: Sequence[SweepPoint], key: str) -> Array:
     read = (_LEADING.match(point.settings.get(key, "")) for point in points)
     return np.array([math.nan if one is None else float(one[1]) for one in read])
 
