@@ -8,8 +8,6 @@ from __future__ import annotations
 import importlib
 from typing import TYPE_CHECKING
 
-from frbcli.version import __version__
-
 if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
     from frbcli.analysis.measured import Measurement as Measurement
@@ -64,6 +62,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.kernels.warm_up import warm_up as warm_up
     from frbcli.studies.sweep.sweep import sweep as sweep
 
+
+__version__ = "0.1.0"
 
 _PUBLIC = {  # module, or module:attribute of another name
     "Case": "frbcli.case.schema",

@@ -15,9 +15,9 @@ from collections.abc import Sequence
 
 import click
 
+from frbcli import __version__
 from frbcli.cli.runs.memory import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
-from frbcli.version import __version__
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
 # the module is imported when its command is called

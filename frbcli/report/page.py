@@ -14,6 +14,7 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 from markupsafe import Markup
 
+from frbcli import __version__
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
 from frbcli.case.reading.listing import values
@@ -47,7 +48,6 @@ from frbcli.runs.errors.account import about_certainty, account
 from frbcli.runs.record.header import FILM_SIGNALS
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
-from frbcli.version import __version__
 
 MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for
