@@ -76,6 +76,7 @@ MORE = [
     (["bearing", "bearing", "--over", "eccentricity"], "bearing-bearing.png", "A bearing over its eccentricity."),
 ]  # fmt: skip
 LONGEST = 40  # lines of output on a page
+WIDTH = 80  # columns of a help: what a page shows without scrolling
 
 
 def main(target: Path, quick: bool) -> None:
@@ -139,7 +140,7 @@ def command_page(name: str, output: str, quick: bool) -> str:
     """Help, line, output and picture of one command."""
     command = frb.get_command(click.Context(frb), name)
     assert command is not None
-    context = click.Context(command, info_name=f"frb {name}", max_content_width=100, terminal_width=100)
+    context = click.Context(command, info_name=f"frb {name}", max_content_width=WIDTH, terminal_width=WIDTH)
     words, picture = SHOWN[name]
     line = " ".join(f'"{word}"' if " " in word or '"' in word else word for word in words)
     lines = output.rstrip().splitlines()

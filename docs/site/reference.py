@@ -13,6 +13,7 @@ import frbcli
 _SECTION = re.compile(r"^(\w+)\n-{3,}\n", re.MULTILINE)
 _SKIP = re.compile(r"  # doctest: \+SKIP$", re.MULTILINE)
 LISTED = ("Parameters", "Returns", "Raises")
+LINE = 60  # characters of a signature beside its name
 CASE = "jeffcott"
 SHORT = ["film.theory=short"]
 
@@ -24,8 +25,7 @@ def reference(pictures: Path | None = None) -> str:
     parts = ["# Python reference", "All names of `import frbcli`, in the order of the alphabet."]
     for name in sorted(set(frbcli.__all__) - {"__version__"}, key=str.lower):
         thing = getattr(frbcli, name)
-        signature = str(inspect.signature(thing)).replace("frbcli.", "") if inspect.isfunction(thing) else ""
-        parts.append(f"## {name}\n\n```python\nfrbcli.{name}{signature}\n```")
+        parts.append(f"## {name}\n\n```python\nfrbcli.{name}{_signature(thing)}\n```")
         parts += _page(inspect.cleandoc(thing.__doc__ or ""))
         if name in drawn:
             parts.append(f"![The picture of {name}](pictures/{drawn[name]})")
@@ -54,6 +54,17 @@ def draw_examples(pictures: Path) -> dict[str, str]:
     for name, drawing in draw.items():
         drawing().savefig(pictures / f"reference-{name}.png", dpi=110)
     return {name: f"reference-{name}.png" for name in draw}
+
+
+def _signature(thing: Any) -> str:
+    """Parameters and what a function returns, on a line each where one line is too long; nothing of other things."""
+    if not inspect.isfunction(thing):
+        return ""
+    told = inspect.signature(thing)
+    parameters = [str(one).replace("'", "") for one in told.parameters.values()]
+    end = str(told.return_annotation).strip("'")
+    line = f"({', '.join(parameters)}) -> {end}"
+    return line if len(line) < LINE else "(\n" + "".join(f"    {one},\n" for one in parameters) + f") -> {end}"
 
 
 def _page(words: str) -> list[str]:

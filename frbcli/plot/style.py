@@ -196,6 +196,20 @@ def legend_below(figure: Figure, *panels: Axes, columns: int = 3) -> None:
         figure.set_figheight(figure.get_figheight() + LEGEND_ROW * max(0, rows - 2))
 
 
+def narrowed(figure: Figure, width: float, columns: int) -> None:
+    """Give a picture another width in inches, its panels the shape that they had, and the legend below it so many
+    columns."""
+    rows = 0
+    for legend in list(figure.legends):
+        names = [text.get_text() for text in legend.get_texts()]
+        rows = math.ceil(len(names) / columns)
+        legend.remove()
+        curves = [curve for curve in legend.legend_handles if curve is not None]
+        figure.legend(curves, names, loc="outside lower center", ncols=columns, fontsize="small", frameon=False)
+    across, high = figure.get_size_inches()
+    figure.set_size_inches(width, high * width / across + LEGEND_ROW * max(0, rows - 2))
+
+
 def legend_above(axes: Axes) -> None:
     """A legend above a panel in one row, where it hides no curve and takes no width; none for one curve."""
     count = len(axes.get_legend_handles_labels()[0])

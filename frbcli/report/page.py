@@ -34,7 +34,7 @@ from frbcli.plot.run.summary import FEWEST_SAMPLES
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
 from frbcli.plot.spectra.levels import levels
 from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
-from frbcli.plot.style import Picture, picture
+from frbcli.plot.style import Picture, narrowed, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.speed_words import SpeedWords, speed_words
 from frbcli.report.waterfall import Waterfall, page_waterfall
@@ -45,7 +45,7 @@ from frbcli.results.files.write import write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.runs.errors.account import about_certainty, account
-from frbcli.runs.record.header import FILM_SIGNALS
+from frbcli.runs.record.header import FILM_SIGNALS, POWER
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
 
@@ -245,19 +245,17 @@ def _courses(run: Run) -> list[ShownRun]:
         figures.append((pin_figure([run]), "Angle of the rings with a pin, and its torque on them."))
     if any(name.startswith(OIL_CONTENT) for name in run.signals):
         figures.append((oil_content_figure([run]), "Oil fraction of the films."))
-    if any(name.startswith("temperature") for name in run.signals):
+    with_heat = any(name.startswith("temperature") for name in run.signals)
+    if with_heat:
         figures.append((heat_figure([run]), "Temperatures, viscosities, losses and side flows."))
     if any(name.startswith("axial") for name in run.signals):
         figures.append((axial_figure([run]), "Axial position, films and loss of the thrust bearing."))
     for kind, (quantity, _, _) in FILM_SIGNALS.items():
-        if any(name.startswith(quantity) for name in run.signals):
+        if any(name.startswith(quantity) for name in run.signals) and not (kind == POWER and with_heat):
             words = quantity.replace("_", " ")
             figures.append((film_signal_figure([run], kind), f"{words[:1].upper()}{words[1:]}."))
     for figure, _ in figures:
-        width, height = figure.get_size_inches()
-        figure.set_size_inches(NARROW, height * NARROW / width)
-        for legend in figure.legends:
-            legend.set_ncols(NARROW_COLUMNS)
+        narrowed(figure, NARROW, NARROW_COLUMNS)
     return [_shown(*figure) for figure in figures]
 
 

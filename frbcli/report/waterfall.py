@@ -92,7 +92,7 @@ def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedWords) 
         parts.append(line(LEFT - 4.0, up(f), LEFT, up(f), "tick"))
         parts.append(text(LEFT - 8.0, up(f) + 4.0, f"{f:g}", anchor="end"))
     parts.append(text(0.5 * (LEFT + right), HEIGHT - 8.0, "time in s"))
-    parts.append(text(right + 8.0, TOP - 8.0, f"rotor, {unit.unit}", "small", "start"))
+    parts.append(text(LEFT - 8.0, TOP - 8.0, f"rotor, {unit.unit}", "small", "end"))
     parts.append(
         element("text", "frequency in Hz", kind="label", text_anchor="middle",
                 transform=f"translate(16 {0.5 * (TOP + bottom):.0f}) rotate(-90)")

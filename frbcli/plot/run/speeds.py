@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Circle
+from numpy.typing import NDArray
+from scipy.signal import resample_poly
 
 from frbcli.analysis.signals import located, speed_at
 from frbcli.analysis.spectra.spectrum import Spectrogram
@@ -15,14 +18,19 @@ from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
 from frbcli.plot.spectra.waterfall import orders
 from frbcli.plot.style import BLUE, GREY, NotebookFigure, styled
 from frbcli.results.records import SPEED
-from frbcli.results.signals import pieces
+from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
+
+Values = NDArray[np.float64]
 
 TURNS = 12.0  # revolutions of an orbit
 LONGEST_s, SHORTEST_s = 0.2, 2e-3
 WIDTH, ROW = 7.2, 2.5  # inches
+FINE = 40.0  # points of a revolution: through fewer samples a curve would have corners
+BESIDE = 12  # samples on either side that values between samples need
 ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
 AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
+CLEAR = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}  # behind a name: lines of others
 CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one below the other, so far apart
 
 
@@ -51,8 +59,10 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
     speed = max(abs(speed_at(run, time_s)), 1e-9)
     begin, end = ends(run)
     until = min(max(time_s, begin + SHORTEST_s), end)
-    first, last = cut(run, max(begin, until - min(max(TURNS / speed, SHORTEST_s), LONGEST_s)), until)
-    x, y = (MICRO * part[first:last] for part in motion(run, signal))
+    span = min(max(TURNS / speed, SHORTEST_s), LONGEST_s)
+    first, last = cut(run, max(begin, until - span), until)
+    times = math.ceil(FINE * span * speed / (last - first))
+    x, y = (MICRO * between(part, first, last, times) for part in motion(run, signal))
     axes.plot(x, y, color=BLUE, linewidth=0.8)
     middle, reach = np.zeros(2), float(np.max(np.hypot(x, y)))
     room = shell(run, bearing_of(run, signal)) if located(run, signal)[0] == "journal" else None
@@ -68,6 +78,17 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
     axes.set_aspect("equal")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
+
+
+def between(part: Signal, first: int, last: int, times: int) -> Values:
+    """The samples of a motion from `first` to before `last`, and values between them, `times` as many: those of the
+    motion whose frequencies stay below half of the rate of the samples. At an end of the run, beyond which nothing is
+    known, the last few samples are left out."""
+    whole = part[max(first - BESIDE, 0) : min(last + BESIDE, len(part))]
+    if times <= 1 or len(whole) <= 4 * BESIDE:
+        return part[first:last]
+    rest = BESIDE * times
+    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - BESIDE - 1) * times + 1])
 
 
 def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, signal: str = "journal") -> None:
@@ -87,7 +108,7 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, si
             axes.axvline(at, color=GREY, linewidth=0.8, linestyle=(0, (2, 3)))
             lower = lower + LINE_pt if at - last < CLOSE * highest else 0.0
             axes.annotate(name, (at, 1.0), xycoords=axes.get_xaxis_transform(), xytext=(2, -2 - lower),
-                          textcoords="offset points", va="top", fontsize=8.0, color=GREY)  # fmt: skip
+                          textcoords="offset points", va="top", fontsize=8.0, color=GREY, bbox=CLEAR)  # fmt: skip
             last = at
     axes.set_xlabel("frequency in Hz")
     axes.set_ylabel("amplitude in µm")

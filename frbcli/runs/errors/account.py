@@ -68,8 +68,8 @@ def about_certainty(events: Sequence[Mapping[str, Any]], cost: Mapping[str, Any]
 def _of(run: Run) -> str:
     """The quantity that the error of the time integration is of."""
     if "length_m" not in run.references:
-        return "of the eccentricity"
-    return f"of displacements, over {1e6 * run.references['length_m']:.4g} um"
+        return "of the eccentricity, whole run"
+    return f"of displacements, over {1e6 * run.references['length_m']:.4g} um, whole run"
 
 
 def _compiled(cost: Mapping[str, Any]) -> list[tuple[str, str, str]]:
