@@ -6,9 +6,9 @@ so would each kernel above it: they would take twice as long to compile. Only th
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 from typing import Any
 
 from numba import types
@@ -19,10 +19,13 @@ from frbcli.compiled import Array, address_of, c_function, call_of, compiled
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, answer_all, solve_blocks, solve_known
 
 UNKNOWN_SIDES = 0
-ANY = 0, UNKNOWN_SIDES  # sizes that have no code of their own
-THREE, FOUR, FIVE, SIX, EIGHT, TEN = (0,) * 3, (0,) * 4, (0,) * 5, (0,) * 6, (0,) * 8, (0,) * 10
-TWELVE, FOURTEEN, SIXTEEN = (0,) * 12, (0,) * 14, (0,) * 16
-TILTED = FIVE  # right-hand sides of a film whose journal tilts
+TILTED = 5  # right-hand sides of a film whose journal tilts
+# Cells along that have code of their own, by the number of right-hand sides.
+WRITTEN_OUT = {len(USUAL): (3, 4, 5, 6, 8, 10), TILTED: (4, 5, 6, 8, 10, 12, 14, 16)}
+# Stand in `_known` for those of one size: cells along and right-hand sides, as tuples of as many, and their numbers.
+COLUMN: tuple[int, ...] = ()
+SIDES: tuple[int, ...] = ()
+CELLS, LAYERS = 0, 0
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
 
@@ -30,12 +33,18 @@ _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
 def ring_solver(k: int, sides: int = len(USUAL)) -> int:
     """Address of an elimination for columns of k cells with a number of right-hand sides, by default those of a film
     that shares no oil with others."""
-    return _address((k, sides) if (k, sides) in _LENGTHS else ANY)
+    return _address(k, sides) if k in WRITTEN_OUT.get(sides, ()) else _address()
 
 
 @cache
-def _address(size: tuple[int, int]) -> int:
-    return address_of(c_function(_LENGTHS.get(size, _any), _SIGNATURE, Path(__file__)))
+def _address(k: int = 0, sides: int = 0) -> int:
+    """Of one size, or by default of all that have no code of their own."""
+    made: Any = _any
+    if k:
+        own = {"COLUMN": (0,) * k, "SIDES": (0,) * sides, "CELLS": k, "LAYERS": k + sides}
+        made = FunctionType(_known.__code__, {**globals(), **own})
+        made.__qualname__ = f"_known_{k}_{sides}"  # by which numba keeps it
+    return address_of(c_function(made, _SIGNATURE, Path(__file__)))
 
 
 def _any(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
@@ -44,78 +53,8 @@ def _any(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
     solve_blocks(entries, carray(blocks, (m, k, k)), right, entries[0, 0], right[0, 0])
 
 
-def _three(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 3)), carray(fields, (m, 3, 6)), THREE, USUAL)
-
-
-def _four(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 4)), carray(fields, (m, 4, 7)), FOUR, USUAL)
-
-
-def _five(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 5)), carray(fields, (m, 5, 8)), FIVE, USUAL)
-
-
-def _six(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 6)), carray(fields, (m, 6, 9)), SIX, USUAL)
-
-
-def _eight(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 8)), carray(fields, (m, 8, 11)), EIGHT, USUAL)
-
-
-def _ten(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 10)), carray(fields, (m, 10, 13)), TEN, USUAL)
-
-
-def _four_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 4)), carray(fields, (m, 4, 9)), FOUR, TILTED)
-
-
-def _five_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 5)), carray(fields, (m, 5, 10)), FIVE, TILTED)
-
-
-def _six_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 6)), carray(fields, (m, 6, 11)), SIX, TILTED)
-
-
-def _eight_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 8)), carray(fields, (m, 8, 13)), EIGHT, TILTED)
-
-
-def _ten_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 10)), carray(fields, (m, 10, 15)), TEN, TILTED)
-
-
-def _twelve_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 12)), carray(fields, (m, 12, 17)), TWELVE, TILTED)
-
-
-def _fourteen_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 14)), carray(fields, (m, 14, 19)), FOURTEEN, TILTED)
-
-
-def _sixteen_tilted(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
-    solve_known(carray(stencil, (ENTRIES, m, 16)), carray(fields, (m, 16, 21)), SIXTEEN, TILTED)
-
-
-_LENGTHS: dict[tuple[int, int], Callable[..., None]] = {
-    (len(THREE), len(USUAL)): _three,
-    (len(FOUR), len(USUAL)): _four,
-    (len(FIVE), len(USUAL)): _five,
-    (len(SIX), len(USUAL)): _six,
-    (len(EIGHT), len(USUAL)): _eight,
-    (len(TEN), len(USUAL)): _ten,
-    (len(FOUR), len(TILTED)): _four_tilted,
-    (len(FIVE), len(TILTED)): _five_tilted,
-    (len(SIX), len(TILTED)): _six_tilted,
-    (len(EIGHT), len(TILTED)): _eight_tilted,
-    (len(TEN), len(TILTED)): _ten_tilted,
-    (len(TWELVE), len(TILTED)): _twelve_tilted,
-    (len(FOURTEEN), len(TILTED)): _fourteen_tilted,
-    (len(SIXTEEN), len(TILTED)): _sixteen_tilted,
-}
+def _known(m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
+    solve_known(carray(stencil, (ENTRIES, m, CELLS)), carray(fields, (m, CELLS, LAYERS)), COLUMN, SIDES)
 
 
 def _call_solver(typingctx, address, m, k, n, stencil, blocks, fields):  # type: ignore[no-untyped-def]
