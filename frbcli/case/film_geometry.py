@@ -56,12 +56,9 @@ class ClearanceStep(Model):
     clearance: Clearance = Field(description="radial, warm, from this time on")
 
 
-def _clearance_form(given: object) -> str:
-    return "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"
-
-
 AnyClearance = Annotated[
-    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")], Discriminator(_clearance_form)
+    Annotated[Clearance, Tag("(warm)")] | Annotated[ColdClearance, Tag("(cold)")],
+    Discriminator(lambda given: "(cold)" if isinstance(given, dict | ColdClearance) else "(warm)"),
 ]
 
 

@@ -63,12 +63,9 @@ class Grade(Model):
     grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and where they are from")
 
 
-def _viscosity_form(given: object) -> str:
-    return "(grade)" if isinstance(given, dict | Grade) else "(viscosity)"
-
-
 AnyViscosity = Annotated[
-    Annotated[Viscosity, Tag("(viscosity)")] | Annotated[Grade, Tag("(grade)")], Discriminator(_viscosity_form)
+    Annotated[Viscosity, Tag("(viscosity)")] | Annotated[Grade, Tag("(grade)")],
+    Discriminator(lambda given: "(grade)" if isinstance(given, dict | Grade) else "(viscosity)"),
 ]
 
 

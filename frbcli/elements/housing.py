@@ -21,7 +21,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.housing import KEY, SYMMETRIC_PLACE, Housing, shape
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.rotor.body import Array, Body
+from frbcli.rotor.body import Array, Body, free_body
 from frbcli.units import display
 
 NODE = "housing"  # the centre of mass, or all of the housing of a symmetric rotor
@@ -79,7 +79,7 @@ class HousingElement(MachineElement):
         carried = mass * np.eye(2, size)
         places = ((NODE, given.position), *((self.node(name), place) for name, place in self.bearings))
         nodes = tuple((name, np.vstack([at(place), tilts])) for name, place in places)
-        return _body(np.diag([mass, mass, *inertia][:size]), damping, stiffness, gravity, nodes, carried)
+        return free_body(np.diag([mass, mass, *inertia][:size]), nodes, gravity, carried, damping, stiffness)
 
     def _modal(self, gravity: float) -> Body:
         modes = self.given.modes
@@ -94,14 +94,4 @@ class HousingElement(MachineElement):
         masses = [each.mass * at(each.place) for each in self.given.masses]
         carried = sum(masses, np.zeros((2, len(modes)))) if masses else None
         nodes = tuple((self.node(name), at(name)) for name, _ in self.bearings or ((SYMMETRIC_PLACE, 0.0),))
-        return _body(np.eye(len(modes)), damping, np.diag(omega**2), gravity, nodes, carried)
-
-
-def _body(
-    mass: Array, damping: Array, stiffness: Array, gravity: float, nodes: tuple[tuple[str, Array], ...],
-    inertia: Array | None,
-) -> Body:  # fmt: skip
-    """A body without rotation and unbalance, with a weight as far as its inertia is known."""
-    nothing = np.zeros(len(mass))
-    load = nothing if inertia is None else -gravity * inertia[1]
-    return Body(mass, damping, np.zeros_like(mass), stiffness, load, nothing, nothing, nodes, inertia)
+        return free_body(np.eye(len(modes)), nodes, gravity, carried, damping, np.diag(omega**2))

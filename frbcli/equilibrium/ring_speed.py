@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_angle
-from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film import FilmForce, none_of
 from frbcli.film.roughness.rub_slopes import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, VALUE
 from frbcli.rotor.held import HeldRotor
 from frbcli.scene.films import turning_rings
@@ -151,9 +151,8 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
     rotor at omega rad/s; films: () where they put no force on their journals."""
     angles = np.zeros(system.ring_count)
     if system.pinned.any():
-        none = FilmForce(*(np.zeros((places.shape[1],) * size) for size in (1, 2, 2)))
         bodies = np.append(omega, np.zeros(system.ring_count))
-        torques, _, _ = ring_torques(system, bodies, places, films or (none,) * len(places))
+        torques, _, _ = ring_torques(system, bodies, places, films or (none_of(places.shape[1]),) * len(places))
         for ring in np.flatnonzero(system.pinned):
             rubbed = summit_torque(system, int(ring), omega, places, bodies[1:]) if system.rough_rings else 0.0
             angles[ring] = pin_angle(system.pins[ring], float(torques[ring]) + rubbed)
@@ -197,18 +196,11 @@ def rubbed_rings(system: System, bodies: Array, places: Array, films: tuple[Film
         (found,) = system.rubbing(i).slopes(motion[None])
         own, both = slice(c * i, c * i + 2), slice(F_X, F_Y + 1)
         forces[i, :2] = found[both, BY_SLIP:] @ shares[:, 1:]
-        summits = FilmForce(*(np.zeros((c,) * size) for size in (1, 2, 2)))
+        summits = none_of(c)
         summits.force[:2] = found[both, VALUE]
         summits.by_displacement[:2, :2] = found[both, BY_X:BY_V_X]
         summits.by_velocity[:2, :2] = found[both, BY_V_X:BY_SLIP]
-        alone.append(
-            FilmForce(
-                film.force - summits.force,
-                film.by_displacement - summits.by_displacement,
-                film.by_velocity - summits.by_velocity,
-                film.field,
-            )
-        )
+        alone.append(film.plus(summits, -1.0))
         for side, ring in enumerate(system.bodies[i].tolist()):
             if ring >= 0:
                 torque = found[ON_JOURNAL + side]

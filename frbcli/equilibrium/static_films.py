@@ -142,7 +142,8 @@ def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
     if plan.form.by_cells:
         own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
         return tuple((replace(plan, cells=cells), share_of_cells(cells, own)) for cells in coarser)
-    meshes = [DEFAULT_MESH if plan.theory == "short" else _finer(mesh) for _, mesh in plan.films]
+    finer = [Mesh(FINER * mesh.axial, FINER * mesh.circumferential, FINER) for _, mesh in plan.films]
+    meshes = [DEFAULT_MESH] * len(finer) if plan.theory == "short" else finer
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
 
@@ -151,10 +152,6 @@ def share_of_cells(cells: tuple[int, int], own: tuple[int, int], order: float = 
     """Share of a difference between results on their own cells and on fewer that is the error of the former, which
     falls with the order."""
     return float(1.0 / ((own[0] / cells[0]) ** order - 1.0))
-
-
-def _finer(mesh: Mesh) -> Mesh:
-    return Mesh(FINER * mesh.axial, FINER * mesh.circumferential, FINER)
 
 
 def _plan(case: Case) -> Plan:

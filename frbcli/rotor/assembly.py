@@ -71,7 +71,7 @@ def assembled(
         static_load=np.concatenate([body.static_load for body in bodies]),
         unbalance_cos=np.concatenate([body.unbalance_cos for body in bodies]),
         unbalance_sin=np.concatenate([body.unbalance_sin for body in bodies]),
-        journals=_stacked([relative(film) for film in films], size),
+        journals=np.array([relative(film) for film in films]) if films else np.zeros((0, len(PLANE), size)),
         multiplicity=np.array([film.count for film in films], dtype=np.float64),
         points=tuple((name, place[: len(PLANE)]) for name, place in nodes.items()),
     )
@@ -94,11 +94,6 @@ def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:
             found[name][: len(place), first : first + body.size] = place
         first += body.size
     return found
-
-
-def _stacked(maps: Sequence[Array], size: int) -> Array:
-    """(films, c, n) maps of all films, which see the same coordinates."""
-    return np.array(maps) if maps else np.zeros((0, len(PLANE), size))
 
 
 def _bordered(matrix: Array, other: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,37 +41,39 @@ class Body:
         return len(self.mass)
 
 
+def free_body(
+    mass: Array, nodes: tuple[tuple[str, Array], ...], gravity: float, inertia: Array | None,
+    damping: Array | None = None, stiffness: Array | None = None,
+) -> Body:  # fmt: skip
+    """A body without rotation and unbalance: mass (n, n) and, where it has any, damping and stiffness against the
+    ground. inertia: see Body; its weight is known as far as that is, gravity in m/s^2."""
+    nothing, none = np.zeros(len(mass)), np.zeros_like(mass)
+    return Body(
+        mass=mass,
+        damping=none if damping is None else damping,
+        gyroscopic=none,
+        stiffness=none if stiffness is None else stiffness,
+        static_load=nothing if inertia is None else 0.0 - gravity * inertia[1],
+        unbalance_cos=nothing,
+        unbalance_sin=nothing,
+        nodes=nodes,
+        inertia=inertia,
+    )
+
+
 def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, external_damping: float = 0.0) -> Body:
     """A body that moves in the plane and does not tilt: a ring, the mass of a support, a rigid rotor. mass in kg,
     gravity in m/s^2, unbalance in kg m, external_damping against the ground in N s/m. q = [x, y]."""
-    return Body(
-        mass=mass * np.eye(2),
-        damping=external_damping * np.eye(2),
-        gyroscopic=np.zeros((2, 2)),
-        stiffness=np.zeros((2, 2)),
-        static_load=np.array([0.0, -mass * gravity]),
-        unbalance_cos=np.array([unbalance, 0.0]),
-        unbalance_sin=np.array([0.0, unbalance]),
-        nodes=((node, np.eye(2)),),
-        inertia=mass * np.eye(2),
-    )
+    plane = np.eye(2)
+    body = free_body(mass * plane, ((node, plane),), gravity, mass * plane, external_damping * plane)
+    return replace(body, unbalance_cos=unbalance * plane[0], unbalance_sin=unbalance * plane[1])
 
 
 def tilting_ring(node: str, mass: float, tilt_inertia: float, gravity: float) -> Body:
     """A ring that moves and tilts about its centre of mass, its only node. mass in kg, tilt_inertia about a diameter in
     kg m^2, gravity in m/s^2. q = the COORDINATES."""
-    nothing = np.zeros((4, 4))
-    return Body(
-        mass=np.diag([mass, mass, tilt_inertia, tilt_inertia]),
-        damping=nothing,
-        gyroscopic=nothing,
-        stiffness=nothing,
-        static_load=np.array([0.0, -mass * gravity, 0.0, 0.0]),
-        unbalance_cos=np.zeros(4),
-        unbalance_sin=np.zeros(4),
-        nodes=((node, np.eye(4)),),
-        inertia=mass * np.eye(2, 4),
-    )
+    masses = np.diag([mass, mass, tilt_inertia, tilt_inertia])
+    return free_body(masses, ((node, np.eye(4)),), gravity, mass * np.eye(2, 4))
 
 
 def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, length: float, gravity: float) -> Body:
@@ -82,24 +84,15 @@ def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, lengt
     own, other = together + against, together - against
     plane = np.eye(2)
     first, second = np.hstack([plane, 0.0 * plane]), np.hstack([0.0 * plane, plane])
-    (x, y), nothing = (second - first) / length, np.zeros((4, 4))  # its slopes
-    return Body(
-        mass=np.kron(np.array([[own, other], [other, own]]), plane),
-        damping=nothing,
-        gyroscopic=nothing,
-        stiffness=nothing,
-        static_load=np.array([0.0, -0.5 * mass * gravity] * 2),
-        unbalance_cos=np.zeros(4),
-        unbalance_sin=np.zeros(4),
-        nodes=tuple((name, np.vstack([place, -y, x])) for name, place in zip(nodes, (first, second), strict=True)),
-        inertia=0.5 * mass * (first + second),
-    )
+    x, y = (second - first) / length  # its slopes
+    ends = tuple((name, np.vstack([place, -y, x])) for name, place in zip(nodes, (first, second), strict=True))
+    masses = np.kron(np.array([[own, other], [other, own]]), plane)
+    return free_body(masses, ends, gravity, 0.5 * mass * (first + second))
 
 
 def spin(inertia: float) -> Body:
     """The angle of a ring that turns, in rad, which no element between nodes acts on; inertia in kg m^2."""
-    one, none = np.eye(1), np.zeros((1, 1))
-    return Body(inertia * one, none, none, none, np.zeros(1), np.zeros(1), np.zeros(1), (), np.zeros((2, 1)))
+    return free_body(inertia * np.eye(1), (), 0.0, np.zeros((2, 1)))
 
 
 def jeffcott_rotor(

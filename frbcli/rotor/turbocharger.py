@@ -18,14 +18,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Wheel:
-    """A rigid body on the shaft. position in m; mass in kg; polar, diametral: inertias about the axis of rotation and
-    about a diameter in kg m^2; unbalance in kg m; phase: its angle on the rotor in rad."""
+    """A rigid body on the shaft. position in m; mass in kg; inertias about the axis of rotation and about a diameter in
+    kg m^2; unbalance in kg m; phase: its angle on the rotor in rad."""
 
     name: str
     position: float
     mass: float
-    polar: float
-    diametral: float
+    polar_inertia: float
+    diametral_inertia: float
     unbalance: float
     phase: float
 
@@ -47,8 +47,8 @@ def wheels_on_shaft(sections: Sequence[BeamSection], wheels: Sequence[Wheel], jo
     mass, polar = np.zeros((2, 2 * len(shaft.positions)))  # diagonals
     for wheel in wheels:
         v = 2 * shaft.node(wheel.position)
-        mass[v : v + 2] += wheel.mass, wheel.diametral
-        polar[v + 1] += wheel.polar
+        mass[v : v + 2] += wheel.mass, wheel.diametral_inertia
+        polar[v + 1] += wheel.polar_inertia
     heavier, turning = shaft.mass + diags_array(mass), shaft.polar + diags_array(polar)
     return replace(shaft, mass=heavier.tocsc(), polar=turning.tocsc())
 

@@ -4,7 +4,7 @@ the choice of one."""
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 from frbcli.case.course.time_tables import inputs_of
@@ -44,25 +44,13 @@ def _oil_faults(case: Case) -> Iterator[Fault]:
         yield Fault(KEY, coupling, None, problem, "Choose monolithic, co-simulation or auto.")
 
 
-def _on_cells(case: Case) -> str | None:
-    return case.film.coupling if form_of(case).by_cells else None
+def _where(holds: Callable[[Case], object]) -> Callable[[Case], str | None]:
+    """The coupling of a case of which something holds, see refusal."""
+    return lambda case: case.film.coupling if holds(case) else None
 
 
-def _over_time(case: Case) -> str | None:
-    limited = any(math.isfinite(film.supply.largest_flow) for film in case.films)
-    return case.film.coupling if limited or any(True for _ in inputs_of(case)) else None
-
-
-def _over_speed(case: Case) -> str | None:
-    return case.film.coupling if changes_with_speed(case) else None
-
-
-def _cartridge(case: Case) -> str | None:
-    return case.film.coupling if turning_cartridges(case) else None
-
-
-def _pin(case: Case) -> str | None:
-    return case.film.coupling if has_pins(case) else None
+def _over_time(case: Case) -> bool:
+    return any(math.isfinite(film.supply.largest_flow) for film in case.films) or any(True for _ in inputs_of(case))
 
 
 def _signals(case: Case) -> str | None:
@@ -85,7 +73,8 @@ SEMI = Coupling(
     rules=(
         WITHOUT_STATE,
         refusal(
-            (RUN,), KEY, _on_cells, "needs a film that is solved without iterations; this one is a finite-volume film",
+            (RUN,), KEY, _where(lambda case: form_of(case).by_cells),
+            "needs a film that is solved without iterations; this one is a finite-volume film",
             "Choose dynamic-static, co-simulation or auto.",
         ),
     ),
@@ -98,19 +87,21 @@ APART = Coupling(
     film_steps=2.0,
     rules=(
         refusal(
-            (RUN,), KEY, _over_speed,
+            (RUN,), KEY, _where(changes_with_speed),
             "solves a rotor with constant coefficients, and those of a bearing depend on the speed", "Write auto.",
         ),
         refusal(
-            (RUN,), KEY, _cartridge,
+            (RUN,), KEY, _where(turning_cartridges),
             "solves a rotor with constant coefficients, and a cartridge has gyroscopic moments by its own speed",
             "Write auto.",
         ),
         refusal(
-            (RUN,), KEY, _pin, "turns rings by the torques of their films alone, and one has a pin", "Write auto."
+            (RUN,), KEY, _where(has_pins), "turns rings by the torques of their films alone, and one has a pin",
+            "Write auto.",
         ),
         refusal(
-            (RUN,), KEY, _over_time, "takes the pressure and the temperatures of the supply as constant", "Write auto."
+            (RUN,), KEY, _where(_over_time),
+            "takes the pressure and the temperatures of the supply as constant", "Write auto.",
         ),
         refusal(
             (RUN,), "output.signals", _signals,

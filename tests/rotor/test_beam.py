@@ -161,11 +161,11 @@ def test_exact_gyroscopic_splitting_of_a_rigid_disk(polar: float) -> None:
     spring, arm, omega = 1e6, 0.05, 2 * math.pi * 500
     springs = np.stack([modes.at(end.position) for end in ends])
     found = whirl_modes(modes, springs, np.full(2, spring), omega)
-    split = np.roots([wheel.diametral, -polar * omega, -2 * spring * arm**2])
+    split = np.roots([wheel.diametral_inertia, -polar * omega, -2 * spring * arm**2])
     shift = math.sqrt(2 * spring / wheel.mass)
     assert np.sort(found.frequencies) == pytest.approx(sorted([*split, shift, -shift]), rel=1e-9)
     assert whirl_modes(modes, springs[:0], np.zeros(0), omega).frequencies == pytest.approx(
-        [omega * polar / wheel.diametral], rel=1e-6
+        [omega * polar / wheel.diametral_inertia], rel=1e-6
     )
 
 

@@ -23,10 +23,7 @@ class AxialGrooves(SpacedSupply):
     flow: LargestFlow = None
 
     divides: ClassVar[bool] = True
-
-    @property
-    def rectangular(self) -> bool:
-        return True
+    rectangular: ClassVar[bool] = True
 
     def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
         return tuple(Outline(at, 0.5 * width, 0.5 * self.opening_angle, 0.5 * width) for at in self.positions)

@@ -16,10 +16,7 @@ class NoSupply(OilSupply):
 
     plain: ClassVar[bool] = True
     feeds: ClassVar[bool] = False
-
-    @property
-    def rectangular(self) -> bool:
-        return True
+    rectangular: ClassVar[bool] = True
 
     @property
     def gap(self) -> tuple[str, str]:

@@ -80,6 +80,20 @@ class FilmForce:
     by_velocity: Array
     field: Array | None = None
 
+    def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
+        """This film with another force beside it, or without it."""
+        return FilmForce(
+            self.force + sign * other.force,
+            self.by_displacement + sign * other.by_displacement,
+            self.by_velocity + sign * other.by_velocity,
+            self.field,
+        )
+
+
+def none_of(coordinates: int) -> FilmForce:
+    """No force on a journal of so many coordinates."""
+    return FilmForce(*(np.zeros((coordinates,) * size) for size in (1, 2, 2)))
+
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
     """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.

@@ -10,7 +10,7 @@ import numpy as np
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film import FilmForce, none_of
 from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity, touch
 from frbcli.film.roughness.rub_slopes import COLUMNS, FOUND, rub_slopes
 
@@ -27,7 +27,7 @@ class Rubbing:
         """What the summits do to a journal at `place` (2,) in m with a velocity (2,) in m/s; slip: omega_J - omega_S,
         shell: omega_S, rad/s."""
         if self.surfaces is None:
-            return FilmForce(np.zeros(2), np.zeros((2, 2)), np.zeros((2, 2)))
+            return none_of(2)
         (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
         found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
         by_place, by_rate = (np.array(found[first : first + 4]).reshape(2, 2) for first in (2, 6))
@@ -37,13 +37,7 @@ class Rubbing:
         """A film and its summits, see force."""
         if self.surfaces is None:
             return film
-        own = self.force(place, rate, slip, shell)
-        return FilmForce(
-            film.force + own.force,
-            film.by_displacement + own.by_displacement,
-            film.by_velocity + own.by_velocity,
-            film.field,
-        )
+        return film.plus(self.force(place, rate, slip, shell))
 
     def pulled(self, place: Array, slip: float, shell: float) -> tuple[float, float, float]:
         """Torques in N m on the journal and on the shell, and the moment of the force on the journal about the middle

@@ -44,7 +44,8 @@ def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:
         ("takes {} of CPU time", cost.total_s, LONGEST_RUN_s, clock),
     ):
         if not amount <= most:
-            asked = _responsible(case, plan)
+            limited = (*_by_accuracy(case, plan), *_by_machine(case), *_by_speed(case))
+            asked = max(limited, key=lambda each: each.times)
             problem = f"{words.format(told(amount))}; {told(most)} is the limit."
             yield Fault(asked.key, asked.value, None, problem, asked.remedy)
             return
@@ -63,11 +64,6 @@ class _Limited:
     key: str
     value: str
     remedy: str
-
-
-def _responsible(case: Case, plan: Plan) -> _Limited:
-    """The largest demand, compared with usual cases."""
-    return max((*_by_accuracy(case, plan), *_by_machine(case), *_by_speed(case)), key=lambda asked: asked.times)
 
 
 def _by_accuracy(case: Case, plan: Plan) -> Iterator[_Limited]:

@@ -38,37 +38,9 @@ COMPARED = 6  # states of a run
 COUNT, POWER = 288, 1.4  # elements of the measured time of a solve, and the power of their number that it grows with
 
 
-def _always(_: Case) -> str:
-    return FORM
-
-
-def _with_heat(case: Case) -> str | None:
-    return None if case.heat is None else FORM
-
-
 def _ramp(case: Case) -> str | None:
     ramps = (place.geometry.supply.rise_time for place in film_places(case))
     return next((f"{ramp:g} s" for ramp in ramps if ramp > 0.0), None)
-
-
-def _steps(case: Case) -> str | None:
-    return "" if step_times(case) else None
-
-
-def _of_several_bearings(case: Case) -> str | None:
-    return None if case.rotor.symmetric else case.rotor.kind
-
-
-def _on_rings(case: Case) -> str | None:
-    return "floating-ring" if case.rotor.symmetric and rings(case) else None
-
-
-def _in_damper(case: Case) -> str | None:
-    return next((each.bearing for each in DamperElement.of(case)), None)
-
-
-def _turning_grid(case: Case) -> str | None:
-    return case.film.grid if case.film.grid == "half-speed" else None
 
 
 def _whirl_steepness(case: Case) -> str | None:
@@ -82,20 +54,20 @@ def _apart(case: Case) -> str | None:
 
 RULES = (
     refusal(
-        ALL, FORM_KEY, _with_heat,
+        ALL, FORM_KEY, lambda case: None if case.heat is None else FORM,
         "creates oil, which would carry away heat that no film has received: [thermal] would not balance",
         REMEDY,
     ),
     refusal(
-        SHEETS, FORM_KEY, _always,
+        SHEETS, FORM_KEY, lambda _: FORM,
         "creates oil, and the flows and losses of a sheet would depend on how much of it has been created", REMEDY,
     ),
     refusal(
-        (STABILITY,), FORM_KEY, _always,
+        (STABILITY,), FORM_KEY, lambda _: FORM,
         "creates oil without end, so that there is no steady film about which it could be linearised", REMEDY,
     ),
     refusal(
-        (SPEED_CYCLES, WHIRLS), FORM_KEY, _always,
+        (SPEED_CYCLES, WHIRLS), FORM_KEY, lambda _: FORM,
         "creates oil without end, so that no motion returns to the same film after one period", REMEDY,
     ),
     refusal(
@@ -107,21 +79,24 @@ RULES = (
         'Write film.two-phase.form = "conservative", or leave the tilt out.',
     ),
     refusal(
-        (RUN,), "bearing.clearance_steps", _steps,
+        (RUN,), "bearing.clearance_steps", lambda case: "" if step_times(case) else None,
         "changes the volume of the gap, and the published two-phase form does not balance the oil in it",
         'Write film.two-phase.form = "conservative".',
     ),
     refusal(
-        (RUN,), "rotor.kind", _of_several_bearings,
+        (RUN,), "rotor.kind", lambda case: None if case.rotor.symmetric else case.rotor.kind,
         "has two bearings, and the published form is solved for one film", REMEDY,
     ),
-    refusal((RUN,), "bearing.kind", _on_rings, "has two films, and the published form is solved for one", REMEDY),
     refusal(
-        (RUN,), "bearing.damper", _in_damper,
+        (RUN,), "bearing.kind", lambda case: "floating-ring" if case.rotor.symmetric and rings(case) else None,
+        "has two films, and the published form is solved for one", REMEDY,
+    ),
+    refusal(
+        (RUN,), "bearing.damper", lambda case: next((each.bearing for each in DamperElement.of(case)), None),
         "adds the film of a damper, and the published form is solved for one film", REMEDY,
     ),
     refusal(
-        (RUN,), "film.grid", _turning_grid,
+        (RUN,), "film.grid", lambda case: case.film.grid if case.film.grid == "half-speed" else None,
         "turns cells, and the published form is solved on elements that do not turn", 'Write "auto".',
     ),
     refusal(

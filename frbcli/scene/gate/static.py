@@ -12,7 +12,7 @@ from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupling_faults
-from frbcli.scene.films import HOUSING, FilmPlace, film_places, is_plain
+from frbcli.scene.films import HOUSING, film_places, is_plain
 from frbcli.scene.keys import cavitation_keys
 from frbcli.scene.speeds import default_speeds, keeps_oil
 from frbcli.scene.tilt import as_text
@@ -51,15 +51,13 @@ def _memory_faults(case: Case) -> Iterator[Fault]:
                 "clips the pressures of its forces and keeps oil: forces do not follow from the pressures of cells."
             )
             yield Fault(key, name, None, problem, "Take a law that does not clip.")
-        elif law.keeps_oil and any(_opens_in_turning(place) for place in film_places(case)):
+        elif law.keeps_oil and any(
+            place.feed_holes is not None or (not is_plain(place.geometry) and place.grid_body != HOUSING)
+            for place in film_places(case)
+        ):
             problem = "conserves the mass of the oil in a film whose openings turn, so that the oil is never at rest."
             remedy = "Supply it by a circumferential groove or by openings in the shell, or take half-sommerfeld."
             yield Fault(key, name, None, problem, remedy)
-
-
-def _opens_in_turning(place: FilmPlace) -> bool:
-    """Whether a film has openings in a body that turns."""
-    return place.feed_holes is not None or (not is_plain(place.geometry) and place.grid_body != HOUSING)
 
 
 ELASTIC_SHELL = 'let its shell give way, contact = {policy = "elastic", stiffness = "1e8 N/m"}, on which it rests'

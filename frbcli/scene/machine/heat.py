@@ -69,7 +69,8 @@ class _Builder:
         self._initial = initial
         self._start = [initial] * films
         at_start = float(self._oil_heat[0] + self._oil_heat[1] * initial)
-        self._capacity = [at_start * _volume(place.geometry) for place in self._places]
+        gaps = (place.geometry for place in self._places)
+        self._capacity = [at_start * (math.pi * gap.diameter * gap.width * gap.clearance) for gap in gaps]
         self._links: list[tuple[int, int, float, int]] = []
         self._rings: list[RingNodes] = []
         self._walls: list[tuple[int, float | OverTime]] = []
@@ -245,10 +246,6 @@ class _Builder:
         self._base[film] -= radius * (shell - journal) * at
         for nodes, rate in ((inside, -radius * journal), (outside, radius * shell)):
             self._expansions += [(film, node, rate / len(nodes)) for node in nodes]
-
-
-def _volume(film: FilmGeometry) -> float:
-    return math.pi * film.diameter * film.width * film.clearance
 
 
 def _concentric(case: Case, film: FilmGeometry) -> float:

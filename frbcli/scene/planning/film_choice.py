@@ -167,8 +167,9 @@ def _on_volumes(case: Case) -> bool:
         return True
     if not all_clipped(case):
         return table_obstacle(case) != ""
-    places = film_places(case)
-    return any(not _rectangular(place.geometry, len(places) > 1) for place in places)
+    films = [place.geometry for place in film_places(case)]
+    chained = len(films) > 1 and any(film.supply.divides for film in films)
+    return chained or any(film.lobes is not None or not film.supply.rectangular for film in films)
 
 
 def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
@@ -181,11 +182,6 @@ def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:
     if theory == "short":
         return CLOSED_FORM if equal else CLIPPED
     return TABLE if equal else FIELDS
-
-
-def _rectangular(film: FilmGeometry, several: bool) -> bool:
-    """Whether the gap is made of rectangles whose pressure is known along their edges."""
-    return film.lobes is None and film.supply.rectangular and not (several and film.supply.divides)
 
 
 def _mesh(form: FilmForm, slenderness: float, allowed: float) -> tuple[Mesh, float]:

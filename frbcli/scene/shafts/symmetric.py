@@ -58,16 +58,7 @@ class JeffcottShaft(Shaft):
     freedoms: ClassVar[int] = 4
 
     def body(self) -> Body:
-        rotor = self.rotor
-        return jeffcott_rotor(
-            rotor.mass,
-            rotor.journal_mass,
-            rotor.shaft_stiffness,
-            rotor.unbalance,
-            rotor.external_damping,
-            rotor.shaft_damping,
-            rotor.gravity,
-        )
+        return jeffcott_rotor(**self.rotor.model_dump(exclude={"kind"}))
 
     def undamped_body(self) -> Body:
         rotor = self.rotor

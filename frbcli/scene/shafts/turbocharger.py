@@ -65,15 +65,8 @@ class TurbochargerShaft(Shaft):
     def body(self) -> Body:
         rotor, free = self.rotor, self.free()
         modes = free.modes.lowest(free.kept)
-        return turbocharger_rotor(
-            modes,
-            free.wheels,
-            free.journals,
-            rotor.modal_damping,
-            rotor.external_damping,
-            rotor.gravity,
-            free.collars,
-        )
+        damping = rotor.modal_damping, rotor.external_damping
+        return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.collars)
 
     def undamped_body(self) -> Body:
         free = self.free()
@@ -86,17 +79,7 @@ class TurbochargerShaft(Shaft):
     @cached_property
     def _free(self) -> FreeShaft:
         case = self.case
-        sections = [
-            BeamSection(
-                part.length,
-                part.diameter,
-                part.inner_diameter,
-                part.density,
-                part.youngs_modulus,
-                part.poisson_ratio,
-            )
-            for part in case.shaft
-        ]
+        sections = [BeamSection(**dict(part)) for part in case.shaft]
         bearings = (*case.bearings, *case.elements)
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
         acting = case.thrust_bearings if case.axial is not None else ()
@@ -115,18 +98,8 @@ class TurbochargerShaft(Shaft):
     @property
     def _wheels(self) -> tuple[Wheel, ...]:
         """The disks of the case; those without a name are numbered."""
-        return tuple(
-            Wheel(
-                disk.name or str(number),
-                disk.position,
-                disk.mass,
-                disk.polar_inertia,
-                disk.diametral_inertia,
-                disk.unbalance,
-                disk.phase,
-            )
-            for number, disk in enumerate(self.case.disks, start=1)
-        )
+        named = enumerate(self.case.disks, start=1)
+        return tuple(Wheel(**{**dict(disk), "name": disk.name or str(number)}) for number, disk in named)
 
     @property
     def mass(self) -> float:
