@@ -53,6 +53,11 @@ class InputError(FrbError):
         super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_TOLD]) + more)
 
 
+def input_error(source: str, key: str, value: str, problem: str, remedy: str, line: int | None = None) -> InputError:
+    """The error of an input with one fault."""
+    return InputError(source, (Fault(key, value, line, problem, remedy),))
+
+
 class FrozenError(InputError, ValueError):
     """A part of a case was to be changed in place, or copied with changes that are not checked."""
 

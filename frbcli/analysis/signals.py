@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.nearest import did_you_mean
 from frbcli.results.records import TIME
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
@@ -130,7 +130,7 @@ def point_of(run: RunLike, node: str) -> str:
     if kind not in KINDS or name not in points(run.signals, kind):
         known = [joined(each, one) for each in KINDS for one in points(run.signals, each)]
         problem = "is not a point of the run."
-        raise InputError("signals", (Fault("signal", node, None, problem, did_you_mean(node, known)),))
+        raise input_error("signals", "signal", node, problem, did_you_mean(node, known))
     return joined(kind, name)
 
 

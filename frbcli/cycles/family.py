@@ -13,7 +13,7 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Equilibrium, between, settled
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.parts.other_meshes import other_films
-from frbcli.errors import Fault, InputError
+from frbcli.errors import InputError, input_error
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -76,7 +76,7 @@ def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float
     (first, unit), (last, other) = _number(key, low), _number(key, high)
     if unit != other or not first < last:
         problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
-        raise InputError(case.name or "case", (Fault(key, f"{low} to {high}", None, problem, remedy),))
+        raise input_error(case.name or "case", key, f"{low} to {high}", problem, remedy)
     return first, last, unit
 
 
@@ -84,7 +84,7 @@ def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, fl
     """value_range of a key that is followed, whose values are above zero. Raises InputError."""
     first, last, unit = value_range(case, key, low, high)
     if first <= 0.0:
-        raise InputError(case.name or "case", (Fault(key, low, None, "must be above 0 here.", "Begin above it."),))
+        raise input_error(case.name or "case", key, low, "must be above 0 here.", "Begin above it.")
     return first, last, unit
 
 
@@ -92,5 +92,5 @@ def _number(key: str, text: str) -> tuple[float, str]:
     """A number and its unit."""
     found = NUMBER.fullmatch(text.strip())
     if found is None or not math.isfinite(float(found[1])):
-        raise InputError(key, (Fault(key, text[:LONGEST_SHOWN], None, "is no number with a unit.", REMEDY),))
+        raise input_error(key, key, text[:LONGEST_SHOWN], "is no number with a unit.", REMEDY)
     return float(found[1]), found[2].strip()

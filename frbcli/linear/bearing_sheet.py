@@ -21,7 +21,7 @@ from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, plac
 from frbcli.equilibrium.ring_speed import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import NotConverged, input_error
 from frbcli.film.bearing_model.table import label_of
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
@@ -230,4 +230,4 @@ def _speeds(case: Case) -> tuple[float, ...]:
         return tuple(np.linspace(max(low, high / SPEEDS), high, SPEEDS).tolist())
     if case.motion is not None and case.motion.speed:
         return (abs(case.motion.speed),)
-    raise InputError(case.name or "case", (Fault("speed", "", None, "is missing.", "Give --speed, or add [speed]."),))
+    raise input_error(case.name or "case", "speed", "", "is missing.", "Give --speed, or add [speed].")

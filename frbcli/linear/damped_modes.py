@@ -15,7 +15,7 @@ from frbcli.equilibrium.dynamic_films import modes
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.response import larger_semi_axis
@@ -119,7 +119,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
         with advised(case):
             machine = StaticMachines(case, memory=True).at(2.0 * math.pi * speed_Hz)
     except NotConverged as none:
-        raise InputError(case.name or "case", (Fault("speed", f"{speed_Hz:g} Hz", None, str(none), ""),)) from none
+        raise input_error(case.name or "case", "speed", f"{speed_Hz:g} Hz", str(none), "") from none
     rotor = machine_rotor(machine)
     stations = shaft_of(case).stations(rotor)
     point = with_errors(point_at_rest(machine, speed_Hz), machine)

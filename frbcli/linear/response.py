@@ -28,7 +28,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, spread_table
 from frbcli.equilibrium.coefficients import LEAST, coefficients_of
 from frbcli.equilibrium.linearised import linearised
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, input_error
 from frbcli.film.parabola import summit
 from frbcli.html import Tabular
 from frbcli.linear.columns import RESPONSE_POINTS
@@ -215,7 +215,7 @@ def response(
     resting = [point for point in points if point.rests]
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
-        raise InputError(case.name or "case", (Fault("speed", "", None, problem, "Choose other speeds."),))
+        raise input_error(case.name or "case", "speed", "", problem, "Choose other speeds.")
     rotors = [point.rotor for point in resting if point.rotor is not None]
     found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
     motions, forces, journals = zip(*found, strict=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.plot.style import Picture
 
 PICTURES = {  # class of a result: module in this room, and its function
@@ -59,7 +59,7 @@ def picture(result: object) -> Picture:
     place = next((PICTURES[kind] for kind in kinds if kind in PICTURES), None)
     if place is None:
         problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
-        raise InputError("picture", (Fault(type(result).__name__, "", None, problem, remedy),))
+        raise input_error("picture", type(result).__name__, "", problem, remedy)
     module, _, name = place.partition(":")
     found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
     return found

@@ -23,7 +23,7 @@ from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-from frbcli.errors import Fault, InputError, printable
+from frbcli.errors import InputError, input_error, printable
 from frbcli.results.files.kinds import PICTURES
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
@@ -278,4 +278,4 @@ def _draw_png(figure: Figure, dpi: float, content: io.BytesIO) -> None:
 
 def refused(path: Path, problem: str, remedy: str) -> InputError:
     """Why a picture cannot be written."""
-    return InputError(f"picture {path}", (Fault(key="output", value="", line=None, problem=problem, remedy=remedy),))
+    return input_error(f"picture {path}", "output", "", problem, remedy)

@@ -19,7 +19,7 @@ from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
-from frbcli.errors import Fault, FrbError, InputError, printable
+from frbcli.errors import FrbError, InputError, input_error, printable
 from frbcli.plot.axial import axial_figure
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
@@ -291,4 +291,4 @@ def _text(environment: Environment, name: str) -> str:
 
 
 def _refuse(problem: str, remedy: str) -> InputError:
-    return InputError("report", (Fault("output", "", None, problem, remedy),))
+    return input_error("report", "output", "", problem, remedy)

@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import IO, Any
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import InputError, input_error
 from frbcli.results.files.kinds import TABLES
 from frbcli.results.files.tables import harmless_text
 from frbcli.results.files.write import written
@@ -102,4 +102,4 @@ FORMATS: dict[str, Callable[[Run, Path], None]] = {"csv": _write_csv, "parquet":
 
 
 def _refuse(key: str, problem: str, remedy: str) -> InputError:
-    return InputError("export", (Fault(key=key, value="", line=None, problem=problem, remedy=remedy),))
+    return input_error("export", key, "", problem, remedy)

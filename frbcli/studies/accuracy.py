@@ -14,7 +14,7 @@ from tempfile import TemporaryDirectory
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, InputError, NotConverged, input_error
 from frbcli.linear.stability import stability
 from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
@@ -230,11 +230,11 @@ def _until(case: Case, until: float | None) -> Case:
         return case
     if until <= case.output.step:
         problem = f"is not above the output step of {case.output.step:g} s."
-        raise InputError(case.name or "case", (Fault("--until", f"{until:g} s", None, problem, "Lengthen it."),))
+        raise input_error(case.name or "case", "--until", f"{until:g} s", problem, "Lengthen it.")
     if speed.times:
         problem = "ends a ramp, and speed.points are no ramp."
         remedy = "Leave the later points out of the case."
-        raise InputError(case.name or "case", (Fault("--until", f"{until:g} s", None, problem, remedy),))
+        raise input_error(case.name or "case", "--until", f"{until:g} s", problem, remedy)
     end = speed.start + (speed.end - speed.start) * until / speed.duration
     return _with(case, f"speed.to={end!r} Hz", f"speed.duration={until!r} s")
 

@@ -15,7 +15,7 @@ from frbcli.analysis.signals import bearing_clearance, joined, located
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.arrays import Array
 from frbcli.columns import Column, Shown, Table, named, spread_table
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.html import Tabular
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
@@ -126,7 +126,7 @@ def against_measured(run: Run, measurement: Run, signal: str = "journal") -> Aga
     if len(speeds) < FEWEST:
         own, other = (_range(each) for each in (run, measurement))
         problem = f"goes from {other}, and the run from {own}."
-        raise InputError("comparison", (Fault("--measured", "", None, problem, "Compare runs of the same speeds."),))
+        raise input_error("comparison", "--measured", "", problem, "Compare runs of the same speeds.")
     computed, measured = ridges(run, speeds, clearance, signal), ridges(measurement, speeds, clearance)
     point = joined(*located(run, signal))
     there = [event | {"point": point} for event in events_at(measurement, "journal", clearance)]

@@ -16,7 +16,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, InputError, NotConverged, input_error
 from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import laws, names
 from frbcli.html import Tabular
@@ -265,7 +265,7 @@ def make_variants(
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
         remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "
         remedy += f"--coupling {','.join(COUPLINGS)}, --thermal {','.join(THERMALS)}."
-        raise InputError(case.name or "case", (Fault("comparison", "", None, problem, remedy),))
+        raise input_error(case.name or "case", "comparison", "", problem, remedy)
     return variants
 
 
@@ -294,7 +294,7 @@ def _check_test(test: str) -> None:
         return
     kinematic = test in KINEMATIC_TESTS
     problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is not a test."
-    raise InputError("comparison", (Fault("--test", test, None, problem, f"There is: {', '.join(TESTS)}."),))
+    raise input_error("comparison", "--test", test, problem, f"There is: {', '.join(TESTS)}.")
 
 
 def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fault]:
@@ -332,7 +332,7 @@ def _check_own_models(case: Case, variant: Variant, its_case: Case) -> None:
     if variant.cavitation != case.film.cavitation and set(its_case.cavitations) != {variant.cavitation}:
         problem = "does not apply to all films: some have a model of their own."
         remedy = "Remove `cavitation` from the films of the bearing, or compare couplings only."
-        raise InputError(case.name or "case", (Fault("--cavitation", variant.cavitation, None, problem, remedy),))
+        raise input_error(case.name or "case", "--cavitation", variant.cavitation, problem, remedy)
 
 
 @contextmanager
@@ -346,5 +346,5 @@ def _directory(keep: str | Path | None) -> Iterator[Path]:
         Path(keep).mkdir(parents=True, exist_ok=True)
     except OSError as error:
         problem = f"cannot be made: {error.strerror}."
-        raise InputError("comparison", (Fault("--keep", str(keep), None, problem, "Choose another place."),)) from error
+        raise input_error("comparison", "--keep", str(keep), problem, "Choose another place.") from error
     yield Path(keep)

@@ -25,7 +25,7 @@ from frbcli.case.reading.listing import values as listed
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, FrbError, InputError
+from frbcli.errors import Fault, FrbError, InputError, input_error
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
 from frbcli.results.records import SPEED, TIME
@@ -171,7 +171,7 @@ class _Trial:
         if common < 2 * len(numbers):
             problem = f"has {common} speeds in common with the case, which are too few."
             remedy = "Run the case up as it was measured."
-            raise InputError(case.name, (Fault("--measured", "", None, problem, remedy),))
+            raise input_error(case.name, "--measured", "", problem, remedy)
         length = next(iter(measurement.references.values()))
         self.measured = ridges(measurement, self._speeds, length)
         self.count = 0
@@ -226,7 +226,7 @@ class _Trial:
 
     def _without_effect(self, key: str) -> InputError:
         problem = "changes nothing that is compared with the measurement: it cannot be found from it."
-        return InputError(self._case.name, (Fault("--vary", key, None, problem, "Leave it out."),))
+        return input_error(self._case.name, "--vary", key, problem, "Leave it out.")
 
 
 def _compared(measured: Ridges) -> tuple[Truths, Truths]:
@@ -298,7 +298,7 @@ def _largest(group: Array) -> float:
 def _numbers(case: Case, keys: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> list[Fitted]:
     """The numbers at first; raises InputError as `fit` does."""
     if not keys:
-        raise InputError(case.name, (Fault("--vary", "", None, "names no number.", "Write e.g. oil.viscosity."),))
+        raise input_error(case.name, "--vary", "", "names no number.", "Write e.g. oil.viscosity.")
     faults = [
         *(Fault("--vary", key, None, "is named more than once.", "Name it once.")
           for key in dict.fromkeys(keys) if keys.count(key) > 1),
@@ -320,16 +320,16 @@ def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
     if key not in known:
         alike = [name for name in known if name.rpartition(".")[2] == key.rpartition(".")[2]]
         remedy = did_you_mean(key, alike or known, "`frb check CASE --all` lists the keys.", 0.0 if alike else 0.7)
-        raise InputError(case.name, (Fault("--vary", key, None, "is no number of the case.", remedy),))
+        raise input_error(case.name, "--vary", key, "is no number of the case.", remedy)
     value = known[key].value
     if not isinstance(value, float) or not value > 0.0:
-        raise InputError(case.name, (Fault("--vary", key, None, "is not a number above zero.", "Vary other keys."),))
+        raise input_error(case.name, "--vary", key, "is not a number above zero.", "Vary other keys.")
     low, high = bounds or (value / SPAN, value * SPAN)
     if not low < high:
-        raise InputError(case.name, (Fault("--bounds", key, None, "has a lower bound that is not below the upper one.",
-                                           f"Write --bounds {key}=LOW,HIGH."),))  # fmt: skip
+        problem = "has a lower bound that is not below the upper one."
+        raise input_error(case.name, "--bounds", key, problem, f"Write --bounds {key}=LOW,HIGH.")
     if not 0.0 < low <= value <= high:
         problem = f"starts at {value:.6g} {known[key].unit}, which is not between its bounds."
         remedy = "Widen them, or change the case by --set."
-        raise InputError(case.name, (Fault("--bounds", key, None, problem, remedy),))
+        raise input_error(case.name, "--bounds", key, problem, remedy)
     return Fitted(key, known[key].unit, value, value, math.nan, low, high)

@@ -12,7 +12,7 @@ from frbcli.analysis.orders.revolutions import Tracked, track
 from frbcli.analysis.signals import RunLike, located, point_of
 from frbcli.analysis.spectra.spectrum import DIRECTIONS, Direction
 from frbcli.arrays import Array, Complex
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 
 REVOLUTIONS = 16  # of the window, by default: it parts orders that are a fifth from each other
 FEWEST, MOST = 3, 1024
@@ -41,7 +41,7 @@ class OrderTrack:
 
         direction: "x", "y" or "forward"; InputError for any other."""
         if direction not in DIRECTIONS:
-            raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
+            raise input_error("orders", "direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
         if direction == "forward":
             return self.forward
         against = np.conj(self.backward)
@@ -98,10 +98,10 @@ def order_tracks(
     wrong = [order for order in orders if not (math.isfinite(order) and 0.0 < order <= HIGHEST)]
     if wrong or not orders:
         value = ", ".join(f"{order:g}" for order in wrong)
-        raise _fault("order", value, f"is not between 0 and {HIGHEST:g}.", "Use e.g. 1 or 0.5.")
+        raise input_error("orders", "order", value, f"is not between 0 and {HIGHEST:g}.", "Use e.g. 1 or 0.5.")
     if not FEWEST <= revolutions <= MOST or int(revolutions) != revolutions:
         limits = f"Use {FEWEST} to {MOST} whole revolutions."
-        raise _fault("revolutions", f"{revolutions:g}", "is not a valid window length.", limits)
+        raise input_error("orders", "revolutions", f"{revolutions:g}", "is not a valid window length.", limits)
     point_of(run, signal)  # raises for none
     kind, name = located(run, signal)
     signs = [sign * order for order in orders for sign in (1.0, -1.0)]
@@ -110,13 +110,9 @@ def order_tracks(
     if len(motions[0]) == 0:
         turned = f"{turns.revolution[-1]:.3g}" if len(turns.revolution) else "no"
         problem = f"of {revolutions} revolutions is longer than the run, which makes {turned}."
-        raise _fault("window", "", problem, "Resume the run, or take a shorter window.")
+        raise input_error("orders", "window", "", problem, "Resume the run, or take a shorter window.")
     inside = slice(wanted[0].half, -wanted[0].half)
     return tuple(
         OrderTrack(order, signal, int(revolutions), turns.time_s[inside], turns.speed_Hz[inside], forward, backward)
         for order, forward, backward in zip(orders, motions[::2], motions[1::2], strict=True)
     )
-
-
-def _fault(key: str, value: str, problem: str, remedy: str) -> InputError:
-    return InputError("orders", (Fault(key=key, value=value, line=None, problem=problem, remedy=remedy),))

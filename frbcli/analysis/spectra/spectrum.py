@@ -18,7 +18,7 @@ from frbcli.analysis.signals import PIECE, SignalColumn, course, steepest_ramp
 from frbcli.analysis.spectra.smear import chirp_height
 from frbcli.analysis.spectra.windows import fast_length, hann
 from frbcli.arrays import Array, Complex
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 
 Direction = Literal["x", "y", "forward"]
 DIRECTIONS: tuple[Direction, ...] = ("x", "y", "forward")
@@ -167,9 +167,9 @@ def _spectra(
 
 def _check(direction: str, overlap: float) -> None:
     if direction not in DIRECTIONS:
-        raise _fault("direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
+        raise input_error("spectrum", "direction", direction, "is unknown.", f"Use one of {', '.join(DIRECTIONS)}.")
     if not 0.0 <= overlap < 1.0:
-        raise _fault("overlap", overlap, "is not a share of the window.", "Use 0 to 0.99.")
+        raise input_error("spectrum", "overlap", str(overlap), "is not a share of the window.", "Use 0 to 0.99.")
 
 
 def _samples(window_s: float, step: float, count: int) -> int:
@@ -177,7 +177,7 @@ def _samples(window_s: float, step: float, count: int) -> int:
     length = round(window_s / step) if np.isfinite(window_s) else 0
     if not FEWEST <= length <= count:
         limits = f"Use more than {FEWEST * step:g} s, up to {step * count:g} s."
-        raise _fault("window", f"{window_s:g} s", "does not fit the run.", limits)
+        raise input_error("spectrum", "window", f"{window_s:g} s", "does not fit the run.", limits)
     return length
 
 
@@ -220,16 +220,12 @@ def _step(time_s: SignalColumn) -> float:
     """The time between two samples in s; raises InputError if there is no such thing."""
     count = len(time_s)
     if count < 2:
-        raise _fault("time_s", "", "has fewer than two samples.", "Resume the run.")
+        raise input_error("spectrum", "time_s", "", "has fewer than two samples.", "Resume the run.")
     begin, end = float(time_s[0:1][0]), float(time_s[count - 1 : count][0])
     step = (end - begin) / (count - 1)
     pieces = ((first, time_s[first : first + PIECE]) for first in range(0, count, PIECE))
     off = (np.max(np.abs(piece - begin - step * np.arange(first, first + len(piece)))) for first, piece in pieces)
     rounding = ROUNDING * max(abs(begin), abs(end)) * float(np.finfo(float).eps)  # times since 1970 are large
     if not step > 0.0 or not all(deviation <= UNEVEN * step + rounding for deviation in off):
-        raise _fault("time_s", "", "is not evenly spaced.", "Use the run as frb wrote it.")
+        raise input_error("spectrum", "time_s", "", "is not evenly spaced.", "Use the run as frb wrote it.")
     return step
-
-
-def _fault(key: str, value: object, problem: str, remedy: str) -> InputError:
-    return InputError("spectrum", (Fault(key=key, value=str(value), line=None, problem=problem, remedy=remedy),))

@@ -24,7 +24,7 @@ from frbcli.cli.runs.transient import exit_code
 from frbcli.cli.studies.against import beside_measured
 from frbcli.cli.studies.measured import measured_options
 from frbcli.columns import table_of
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
@@ -119,12 +119,10 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
         ("--theory", set(wanted.theory) - {"finite"}, f"is not for a {test}, which solves the whole film."),
     ):
         if given:
-            raise InputError(case.name, (Fault(option, ",".join(given), None, problem, "Leave it out."),))
+            raise input_error(case.name, option, ",".join(given), problem, "Leave it out.")
     if case.film.bearing_model:
         problem = f"is one model in a {test}: there is nothing to compare it with."
-        raise InputError(
-            case.name, (Fault("film.theory", case.film.bearing_model, None, problem, f"Call `frb {test}`."),)
-        )
+        raise input_error(case.name, "film.theory", case.film.bearing_model, problem, f"Call `frb {test}`.")
     models = wanted.cavitation or names(law for law in laws() if law.cavitates)
     return run_test(case, test, models, outputs, terminal, compared=True) or 0
 

@@ -18,7 +18,7 @@ from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.cli.studies.scatter import of_machines
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -63,7 +63,7 @@ class Machines:
 
         if others:
             problem, remedy = "gives several values beside keys that scatter.", "Sweep each of its values by itself."
-            raise _fault("--set", "", problem, remedy)
+            raise input_error("sweep", "--set", "", problem, remedy)
         correlations = dict(map(read_correlation, self.correlations))
         return samples(distributions, self.samples, correlations, self.seed)
 
@@ -151,7 +151,7 @@ def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
         if distribution is None:
             others.append(setting)
         elif key.strip() in found:
-            raise _fault("--set", setting, "sets a key a second time.", "Give it one distribution.")
+            raise input_error("sweep", "--set", setting, "sets a key a second time.", "Give it one distribution.")
         else:
             found[key.strip()] = distribution
     return others, list(found.values())
@@ -182,9 +182,10 @@ def _axes(settings: Sequence[str]) -> tuple[list[str], list[dict[str, tuple[str,
                 fixed.append(part)
                 continue
             if key.strip() in seen:
-                raise _fault("--set", setting, "sets a key a second time.", "Write all its values in one --set.")
+                remedy = "Write all its values in one --set."
+                raise input_error("sweep", "--set", setting, "sets a key a second time.", remedy)
             if not all(values):
-                raise _fault("--set", setting, "has an empty value.", "Write e.g. --set key=v1,v2.")
+                raise input_error("sweep", "--set", setting, "has an empty value.", "Write e.g. --set key=v1,v2.")
             seen.add(key.strip())
             together[key.strip()] = values
         if together:
@@ -196,7 +197,8 @@ def _points(axes: Sequence[Mapping[str, Sequence[str]]], list_file: Path | None)
     from frbcli.studies.sweep.points import linked, product, read_list
 
     if list_file is None and not axes:
-        raise _fault("--set", "", "gives no key several values.", "Write e.g. --set key=v1,v2, or --list FILE.")
+        remedy = "Write e.g. --set key=v1,v2, or --list FILE."
+        raise input_error("sweep", "--set", "", "gives no key several values.", remedy)
     points: Sequence[Mapping[str, str]] = [{}] if list_file is None else read_list(list_file)
     for together in axes:
         points = product(points, linked(together))
@@ -254,7 +256,3 @@ def _exit_code(found: Sweep) -> int:
     if "interrupted" in statuses:
         return EXIT_CODES["interrupted"]
     return 0 if statuses == {"finished"} else ENDED_EARLY
-
-
-def _fault(key: str, value: str, problem: str, remedy: str) -> InputError:
-    return InputError("sweep", (Fault(key, value, None, problem, remedy),))

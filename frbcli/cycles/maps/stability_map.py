@@ -34,7 +34,7 @@ from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle, amplitude
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.cycles.unbalance.synchronous import synchronous_equations
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular
 
 BAUTIN, CUSP = "bautin", "cusp"
@@ -208,7 +208,7 @@ def _plane(case: Case, second: tuple[str, str, str], across: Across | None) -> M
         return SpeedPlane(family, (slowest, fastest), low / high)
     if across.key == key:
         problem, remedy = "is both numbers of the map.", "Name another key."
-        raise InputError(case.name or "case", (Fault(key, across.key, None, problem, remedy),))
+        raise input_error(case.name or "case", key, across.key, problem, remedy)
     least, most, other = positive_range(case, across.key, across.low, across.high)
     omega = 2.0 * math.pi * across.speed_Hz
     family = Family(case, key, high, unit, omega)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, input_error
 from frbcli.film.pads.geometry import LAWS
 from frbcli.units import display
 
@@ -37,4 +37,4 @@ def _beyond_play(case: Case, gaps: Sequence[float]) -> Iterator[Fault]:
 def no_gap(load: float, problem: str) -> InputError:
     """The error of a load in N that no gap carries."""
     remedy = "Give another load, or change the pads, the oil or the speed."
-    return InputError("case", (Fault("--load", f"{load:.6g} N", None, problem, remedy),))
+    return input_error("case", "--load", f"{load:.6g} N", problem, remedy)

@@ -11,7 +11,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.elements.collar.collar import BOTH, Collar, NotCarried, collar_of, collar_under
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.html import Tabular
 from frbcli.linear.thrust.columns import THRUST
 from frbcli.linear.thrust.faults import no_gap, require_sheet
@@ -126,4 +126,4 @@ def _speeds(case: Case) -> tuple[float, ...]:
     if case.given_speed is not None:
         return (max(abs(case.speed.start), abs(case.speed.end)),)
     problem, remedy = "is missing.", 'Give --speed, e.g. --speed "900 Hz", or add [speed].'
-    raise InputError(case.name or "case", (Fault("speed", "", None, problem, remedy),))
+    raise input_error(case.name or "case", "speed", "", problem, remedy)

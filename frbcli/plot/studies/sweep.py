@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.plot.style import BLUE, LEVEL_MAP, VERMILION, name_of_key, new_figure, styled
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
@@ -53,7 +53,7 @@ def sweep_figure(sweep: Sweep) -> Figure:
     """
     if not can_draw(sweep):
         problem, remedy = "needs one or two keys with several values, and a whirl.", "See its to_pandas()."
-        raise InputError("picture", (Fault("Sweep", "", None, problem, remedy),))
+        raise input_error("picture", "Sweep", "", problem, remedy)
     scales = _scales(sweep)
     with styled():
         subtitle = f"{KINDS[sweep.method][1]}, {len(sweep.points)} points"

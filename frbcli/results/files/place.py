@@ -8,7 +8,7 @@ import stat
 from collections.abc import Iterable
 from pathlib import Path
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import InputError, input_error
 from frbcli.results.files.kinds import Kind
 
 PART = ".part"  # ends the names of files that are being written
@@ -67,7 +67,7 @@ def require_places(files: Iterable[tuple[Path, Kind]], reads: Iterable[Path] = (
 
 def refused(path: Path, problem: str, remedy: str) -> InputError:
     """The error of a file that cannot be written."""
-    return InputError(f"file {path}", (Fault("output", "", None, problem, remedy),))
+    return input_error(f"file {path}", "output", "", problem, remedy)
 
 
 def real(path: Path) -> Path:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.errors import Fault, InputError, printable
+from frbcli.errors import InputError, input_error, printable
 from frbcli.nearest import FEW, did_you_mean, nearest
 from frbcli.results.measured.delimited import without_unit
 from frbcli.results.records import LARGEST
@@ -103,4 +103,4 @@ class Columns:
 
 def wrong_file(path: Path, problem: str, remedy: str) -> InputError:
     """The error of the file of a measurement."""
-    return InputError(f"measurement {path}", (Fault("file", "", None, problem, remedy),))
+    return input_error(f"measurement {path}", "file", "", problem, remedy)

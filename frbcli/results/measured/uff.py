@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.results.measured.columns import Columns
 
 FUNCTION, TIME_RESPONSE = 58, 1  # data set "function at nodal DOF", and its functions of time
@@ -29,7 +29,7 @@ def read_uff(path: Path) -> Columns:
     """
     if find_spec("pyuff") is None:
         remedy = "pip install frbcli[uff], or write the file as CSV or MAT."
-        raise InputError(f"measurement {path}", (Fault("file", "", None, "needs the library pyuff.", remedy),))
+        raise input_error(f"measurement {path}", "file", "", "needs the library pyuff.", remedy)
     import pyuff
 
     with warnings.catch_warnings():

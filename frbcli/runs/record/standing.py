@@ -6,7 +6,7 @@ from pathlib import Path
 
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError, RunFileError
+from frbcli.errors import InputError, RunFileError, input_error
 from frbcli.results.files.container import refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Run, read_run
@@ -79,4 +79,4 @@ def _otherness(command: str, case: Case, run: Run) -> str:
 
 
 def _refused(path: Path, option: str, problem: str, remedy: str) -> InputError:
-    return InputError(str(path), (Fault(option, str(path), None, problem, remedy),))
+    return input_error(str(path), option, str(path), problem, remedy)

@@ -14,8 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.errors import Fault, InputError
-from frbcli.studies.sweep.points import NUMBER, SOURCE, Settings, checked, split_values
+from frbcli.studies.sweep.points import NUMBER, Settings, checked, refused, split_values
 
 Correlations = Mapping[tuple[str, str], float]
 
@@ -63,19 +62,19 @@ def read_distribution(key: str, text: str) -> Distribution | None:
     read = [_VALUE.fullmatch(value) for value in split_values(inside)]
     wanted = FORMS[form].split(", ")
     if len(read) != len(wanted) or None in read:
-        raise _fault(key, text, "is not of its form.", f"Write {form}({FORMS[form]}), e.g. {EXAMPLE}.")
+        raise refused(key, text, "is not of its form.", f"Write {form}({FORMS[form]}), e.g. {EXAMPLE}.")
     given = dict(zip(wanted, ((float(one[1]), one[2].strip()) for one in read if one), strict=True))
     if given.get("deviation", (0.0, ""))[1] == "%":
         mean, unit = given["mean"]
         given["deviation"] = (0.01 * given["deviation"][0] * abs(mean), unit)
     units = {unit for _, unit in given.values()}
     if len(units) > 1:
-        raise _fault(key, text, "has several units.", "Write all of its numbers in one unit; a deviation may be in %.")
+        raise refused(key, text, "has several units.", "Write all of its numbers in one unit; a deviation may be in %.")
     found = Distribution(key, form, units.pop(), **{name: number for name, (number, _) in given.items()})
     if not found.low < found.high:
-        raise _fault(key, text, "has a lower limit that is not below the upper one.", "Exchange or correct them.")
+        raise refused(key, text, "has a lower limit that is not below the upper one.", "Exchange or correct them.")
     if form != "uniform" and not found.deviation > 0.0:
-        raise _fault(key, text, "has a deviation that is not above 0.", f"Write e.g. {EXAMPLE}.")
+        raise refused(key, text, "has a deviation that is not above 0.", f"Write e.g. {EXAMPLE}.")
     return found
 
 
@@ -94,7 +93,7 @@ def samples(
     keys = [one.key for one in distributions]
     if count < 2 or count > MOST_SAMPLES or count & (count - 1):
         near = min(MOST_SAMPLES, 1 << max(1, count - 1).bit_length())
-        raise _fault("--samples", str(count), "is not a power of 2, as a Sobol sequence needs.", f"Write {near}.")
+        raise refused("--samples", str(count), "is not a power of 2, as a Sobol sequence needs.", f"Write {near}.")
     factor = _factor(keys, correlations or {})
     shares = Sobol(len(keys), scramble=True, seed=seed).random(count)
     inner = np.clip(shares, 2.0**-33, 1.0 - 2.0**-33)  # 0 would lie at minus infinity
@@ -116,7 +115,7 @@ def read_correlation(text: str) -> tuple[tuple[str, str], float]:
         value = np.nan
     if len(pair) != 2 or not all(pair) or not -1.0 < value < 1.0:
         remedy = "Write KEY,KEY=NUMBER with a number between -1 and 1, e.g. a.clearance,b.clearance=0.8."
-        raise _fault("--correlation", text, "is no correlation of two keys.", remedy)
+        raise refused("--correlation", text, "is no correlation of two keys.", remedy)
     return (pair[0], pair[1]), value
 
 
@@ -128,14 +127,11 @@ def _factor(keys: Sequence[str], correlations: Correlations) -> Array:
         if strange or one == other:
             named = strange[0] if strange else one
             remedy = f"Name two of: {', '.join(keys)}."
-            raise _fault("--correlation", f"{one},{other}", f"names {named}, which does not scatter beside it.", remedy)
+            problem = f"names {named}, which does not scatter beside it."
+            raise refused("--correlation", f"{one},{other}", problem, remedy)
         matrix[keys.index(one), keys.index(other)] = matrix[keys.index(other), keys.index(one)] = value
     try:
         return np.asarray(np.linalg.cholesky(matrix))
     except np.linalg.LinAlgError:
         remedy = "Make them smaller, or give those of the other pairs too."
-        raise _fault("--correlation", "", "contradict each other: no variables have all of them.", remedy) from None
-
-
-def _fault(key: str, value: str, problem: str, remedy: str) -> InputError:
-    return InputError(SOURCE, (Fault(key, value, None, problem, remedy),))
+        raise refused("--correlation", "", "contradict each other: no variables have all of them.", remedy) from None

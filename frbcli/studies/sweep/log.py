@@ -14,9 +14,9 @@ from typing import Any
 
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
 from frbcli.results.files.kinds import SWEEP_LOG
 from frbcli.results.files.write import write
+from frbcli.studies.sweep.points import refused
 from frbcli.studies.sweep.task import UNDECIDED, SweepPoint
 
 Header = Mapping[str, Any]
@@ -32,11 +32,12 @@ def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
         known = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
         if known and not _same_sweep(_parsed(known[0]), json.loads(json.dumps(header)), case):
             remedy = "Choose another directory with -o, or remove this one."
-            raise _refuse(path, "belongs to another sweep, case or version.", remedy)
+            raise refused("--output", str(path), "belongs to another sweep, case or version.", remedy)
         done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
     except (OSError, UnicodeDecodeError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise _refuse(path, f"cannot be used: {reason}.", "Choose another directory with -o.") from error
+        remedy = "Choose another directory with -o."
+        raise refused("--output", str(path), f"cannot be used: {reason}.", remedy) from error
     lines = [json.dumps(header), *map(_line, done.values())]
     write(path, SWEEP_LOG, "".join(f"{line}\n" for line in lines))
     return tuple(done.values())
@@ -49,7 +50,7 @@ def append(path: Path, points: Sequence[SweepPoint]) -> None:
             file.writelines(f"{_line(point)}\n" for point in points)
     except OSError as error:
         remedy = "Free some space; the same command then resumes the sweep."
-        raise _refuse(path, f"cannot be written: {error.strerror}.", remedy) from error
+        raise refused("--output", str(path), f"cannot be written: {error.strerror}.", remedy) from error
 
 
 def _same_sweep(known: object, header: Header, case: Case) -> bool:
@@ -80,7 +81,3 @@ def _parsed(line: str) -> object:
         return json.loads(line)
     except (ValueError, RecursionError):
         return None
-
-
-def _refuse(path: Path, problem: str, remedy: str) -> InputError:
-    return InputError("sweep", (Fault("--output", str(path), None, problem, remedy),))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from frbcli.errors import Fault, InputError
+from frbcli.errors import Fault, InputError, input_error
 
 Settings = dict[str, str]  # key of the case -> value as text, as `--set` takes it
 
@@ -35,10 +35,10 @@ def _written_out(value: str) -> tuple[str, ...]:
         return (value,)
     low, low_unit, high, high_unit, count = found.groups()
     if low_unit and low_unit != high_unit:
-        raise InputError(SOURCE, (_fault("--set", f"{value}: has two units.", f"Write {low}..{high} {low_unit} / 6."),))
+        raise refused("--set", "", f"{value}: has two units.", f"Write {low}..{high} {low_unit} / 6.")
     if not 2 <= int(count) <= MOST_IN_RANGE:
         problem = f"{value}: is not a range of 2 to {MOST_IN_RANGE} values."
-        raise InputError(SOURCE, (_fault("--set", problem, f"Write e.g. {low}..{high} {high_unit} / 6."),))
+        raise refused("--set", "", problem, f"Write e.g. {low}..{high} {high_unit} / 6.")
     return tuple(f"{number:.10g} {high_unit}".rstrip() for number in np.linspace(float(low), float(high), int(count)))
 
 
@@ -49,7 +49,7 @@ def linked(axes: Mapping[str, Sequence[str]]) -> tuple[Settings, ...]:
     if len(set(counts.values())) > 1:
         told = ", ".join(f"{key} has {count}" for key, count in counts.items())
         problem = f"are linked, and have different numbers of values: {told}."
-        raise InputError(SOURCE, (_fault(", ".join(axes), problem, "Give each as many values."),))
+        raise refused(", ".join(axes), "", problem, "Give each as many values.")
     return tuple(dict(zip(axes, values, strict=True)) for values in zip(*axes.values(), strict=True))
 
 
@@ -71,8 +71,9 @@ def split_values(text: str, mark: str = ",") -> tuple[str, ...]:
 
 def grid(axes: Mapping[str, Sequence[object]]) -> tuple[Settings, ...]:
     """Every combination of the values of all keys; the last key changes fastest. Raises InputError if there is none."""
-    faults = [_fault(key, "has no value.", f"Write e.g. {key}=1,2.") for key, values in axes.items() if not values]
-    if faults:
+    empty = [key for key, values in axes.items() if not values]
+    if empty:
+        faults = (Fault(key, "", None, "has no value.", f"Write e.g. {key}=1,2.") for key in empty)
         raise InputError(SOURCE, tuple(faults))
     return checked(
         dict(zip(axes, values, strict=True)) for values in itertools.product(*(_texts(axis) for axis in axes.values()))
@@ -85,7 +86,7 @@ def product(points: Iterable[Mapping[str, str]], others: Iterable[Mapping[str, s
     twice = {key for point in points for key in point} & {key for other in others for key in other}
     if twice:
         remedy = "Set it in the list or by --set."
-        raise InputError(SOURCE, tuple(_fault(key, "is set twice.", remedy) for key in sorted(twice)))
+        raise InputError(SOURCE, tuple(Fault(key, "", None, "is set twice.", remedy) for key in sorted(twice)))
     return checked({**point, **other} for point in points for other in others)
 
 
@@ -95,9 +96,9 @@ def checked(points: Iterable[Mapping[str, object]]) -> tuple[Settings, ...]:
         dict(zip(point, _texts(point.values()), strict=True)) for point in itertools.islice(points, MOST_POINTS + 1)
     )
     if not taken or not any(taken):
-        raise InputError(SOURCE, (_fault("--set", "leaves nothing to change.", "Write e.g. --set key=v1,v2."),))
+        raise refused("--set", "", "leaves nothing to change.", "Write e.g. --set key=v1,v2.")
     if len(taken) > MOST_POINTS:
-        raise InputError(SOURCE, (_fault("--set", f"makes more than {MOST_POINTS} points.", "Take fewer values."),))
+        raise refused("--set", "", f"makes more than {MOST_POINTS} points.", "Take fewer values.")
     return taken
 
 
@@ -131,10 +132,10 @@ def _texts(values: Iterable[object]) -> list[str]:
     return [str(value).lower() if isinstance(value, bool) else str(value) for value in values]
 
 
-def _fault(key: str, problem: str, remedy: str) -> Fault:
-    return Fault(key, "", None, problem, remedy)
+def refused(key: str, value: str, problem: str, remedy: str, line: int | None = None) -> InputError:
+    """The error of a setting of a sweep."""
+    return input_error(SOURCE, key, value, problem, remedy, line)
 
 
 def _list_error(path: str | Path, line: int | None, problem: str) -> InputError:
-    remedy = "First line: keys; each further line: a value for each."
-    return InputError(SOURCE, (Fault("--list", str(path), line, problem, remedy),))
+    return refused("--list", str(path), problem, "First line: keys; each further line: a value for each.", line)

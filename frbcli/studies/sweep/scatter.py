@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.errors import Fault, InputError
+from frbcli.errors import input_error
 from frbcli.linear.threshold import STABLE, UNSTABLE
 from frbcli.studies.sweep.points import NUMBER
 from frbcli.studies.sweep.sweep import Sweep
@@ -62,7 +62,7 @@ def scatter(found: Sweep, below_Hz: float | None = None) -> Scatter:
     known = ~np.isnan(speeds)
     if not known.any():
         remedy = "The table gives the reason for each machine."
-        raise InputError("sweep", (Fault("--set", "", None, "no machine has a result.", remedy),))
+        raise input_error("sweep", "--set", "", "no machine has a result.", remedy)
     ordered = np.sort(speeds[known])
     limit = max(abs(found.case.speed.start), abs(found.case.speed.end)) if below_Hz is None else below_Hz
     share = float(np.mean(ordered < limit))

@@ -17,7 +17,7 @@ from typing import Any
 from frbcli import __version__
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, InputError
+from frbcli.errors import InputError
 from frbcli.html import Tabular
 from frbcli.results.files import tables
 from frbcli.results.files.kinds import TABLES
@@ -27,7 +27,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
 from frbcli.studies.sweep.columns import point_columns, reason
 from frbcli.studies.sweep.log import append, open_log
-from frbcli.studies.sweep.points import Settings, checked, grid
+from frbcli.studies.sweep.points import Settings, checked, grid, refused
 from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve
 from frbcli.studies.sweep.workers import Workers, check_workers, solved
 
@@ -140,7 +140,7 @@ def _cases(case: Case, settings: Sequence[Settings]) -> list[Case | InputError]:
 
 def _check_method(method: str) -> None:
     if method not in METHODS:
-        raise _refuse("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
+        raise refused("method", method, "is not known.", f"There are: {', '.join(METHODS)}.")
 
 
 def _tasks(
@@ -206,9 +206,9 @@ def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Pa
 def check_table_format(table_format: str) -> None:
     """Raises InputError if no table can be written so: before the work, not after."""
     if table_format not in TABLE_FORMATS:
-        raise _refuse("--format", table_format, "is not a format.", f"There are: {', '.join(TABLE_FORMATS)}.")
+        raise refused("--format", table_format, "is not a format.", f"There are: {', '.join(TABLE_FORMATS)}.")
     if table_format == "parquet" and find_spec("pyarrow") is None:
-        raise _refuse("--format", "parquet", "needs the library pyarrow.", "pip install frbcli[parquet], or use csv.")
+        raise refused("--format", "parquet", "needs the library pyarrow.", "pip install frbcli[parquet], or use csv.")
 
 
 def _case(case: Case, chosen: Settings) -> Case | InputError:
@@ -226,7 +226,7 @@ def _check_models(cases: Sequence[Case | InputError], workers: Workers) -> None:
     models = {each.film.bearing_model for each in cases if isinstance(each, Case)} - {""}
     if models and (workers.jobs != 1 or workers.backend != "loky"):
         problem = f"start processes that do not have the bearing model {min(models)} of this process."
-        raise _refuse("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
+        raise refused("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
 
 
 def _compile(tasks: Sequence[Task]) -> None:
@@ -249,8 +249,4 @@ def _make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
-        raise _refuse("--output", str(folder), f"cannot be made: {reason}.", "Choose another directory.") from error
-
-
-def _refuse(key: str, value: str, problem: str, remedy: str) -> InputError:
-    return InputError("sweep", (Fault(key, value, None, problem, remedy),))
+        raise refused("--output", str(folder), f"cannot be made: {reason}.", "Choose another directory.") from error

@@ -12,8 +12,8 @@ from typing import Any
 
 import joblib
 
-from frbcli.errors import Fault, InputError
 from frbcli.runs.record.interrupt import deaf
+from frbcli.studies.sweep.points import refused
 from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
 
 BACKENDS = ("loky", "dask")
@@ -37,18 +37,18 @@ class Workers:
 def check_workers(workers: Workers) -> None:
     """Raises InputError if there can be no such workers."""
     if workers.backend not in BACKENDS:
-        raise _refuse("--backend", workers.backend, "is not a backend.", f"There are: {', '.join(BACKENDS)}.")
+        raise refused("--backend", workers.backend, "is not a backend.", f"There are: {', '.join(BACKENDS)}.")
     if workers.backend == "dask" and find_spec("distributed") is None:
         remedy = "Install it: pip install frbcli[cluster]"
-        raise _refuse("--backend", "dask", "needs the library dask.distributed.", remedy)
+        raise refused("--backend", "dask", "needs the library dask.distributed.", remedy)
     if workers.backend != "dask" and workers.scheduler:
-        raise _refuse("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
+        raise refused("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
     if workers.jobs != -1 and workers.jobs < 1:
-        raise _refuse("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
+        raise refused("--jobs", str(workers.jobs), "is not a number of processes.", "Write 1 or more.")
     cores = joblib.cpu_count()
     if not workers.scheduler and workers.jobs > MOST_PER_CORE * cores:
         problem = f"are more processes than this machine can run: it has {cores} cores."
-        raise _refuse("--jobs", str(workers.jobs), problem, f"Write {cores}, or leave --jobs out.")
+        raise refused("--jobs", str(workers.jobs), problem, f"Write {cores}, or leave --jobs out.")
 
 
 def solved(tasks: Iterable[Task], workers: Workers) -> Generator[SweepPoint, None, None]:
@@ -120,10 +120,6 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
         client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
     except (OSError, ValueError) as error:
         remedy = "Start `dask scheduler` and `dask worker`, and give the scheduler's address."
-        raise _refuse("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
+        raise refused("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
     with client, joblib.parallel_config("dask", client=client):
         yield (KilledWorker,)
-
-
-def _refuse(option: str, value: str, problem: str, remedy: str) -> InputError:
-    return InputError("sweep", (Fault(option, value, None, problem, remedy),))
