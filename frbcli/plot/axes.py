@@ -18,8 +18,8 @@ from frbcli.plot.machine.bearing import draw_coefficient
 from frbcli.plot.machine.campbell import draw_frequencies
 from frbcli.plot.machine.response import draw_amplitude
 from frbcli.plot.run.eccentricity import draw_eccentricity
-from frbcli.plot.run.film_signals import draw_film_signal
 from frbcli.plot.run.orbit import LAST_s, draw_orbits
+from frbcli.plot.run.quantities import draw_quantity
 from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends
 from frbcli.plot.spectra.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
@@ -257,7 +257,7 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
     >>> ax = frbcli.draw_film_signal(run, "power")  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_film_signal(ax, [run], kind, part, over)
+    draw_quantity(ax, [run], kind, part, over)
     finish(ax, over)
     legend_beside(ax)
     return ax

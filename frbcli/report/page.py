@@ -20,14 +20,9 @@ from frbcli.analysis.signals import films
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable
-from frbcli.plot.axial import axial_figure
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
-from frbcli.plot.run.film_signals import film_signal_figure
-from frbcli.plot.run.heat import heat_figure
-from frbcli.plot.run.oil_content import SIGNAL as OIL_CONTENT
-from frbcli.plot.run.oil_content import oil_content_figure
-from frbcli.plot.run.pin import pin_figure
+from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
 from frbcli.plot.run.summary import FEWEST_SAMPLES
@@ -54,6 +49,12 @@ CHOSEN = 4  # moments of orbits and spectra, where none are asked for
 SPEEDS_NOTE = "Orbits of the last revolutions before a moment, and the spectrum about it."
 NARROW_COLUMNS = 2  # of the legends of narrow pictures
 NARROW = 4.9  # inches: the width of one of two pictures beside each other
+COURSES = {
+    "pin": "Angle of the rings with a pin, and its torque on them.",
+    "oil-content": "Oil fraction of the films.",
+    "heat": "Temperatures, viscosities, losses and side flows.",
+    "axial": "Axial position, films and loss of the thrust bearing.",
+}
 TEXTS = ("page.html", "style.css", "waterfall.js")
 
 
@@ -241,19 +242,12 @@ def _courses(run: Run) -> list[ShownRun]:
         figures = [(eccentricity_figure([run]), "Eccentricity.")]
     if any(name.startswith("ring_speed") for name in run.signals):
         figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
-    if any(name.startswith("pin_angle") for name in run.signals):
-        figures.append((pin_figure([run]), "Angle of the rings with a pin, and its torque on them."))
-    if any(name.startswith(OIL_CONTENT) for name in run.signals):
-        figures.append((oil_content_figure([run]), "Oil fraction of the films."))
-    with_heat = any(name.startswith("temperature") for name in run.signals)
-    if with_heat:
-        figures.append((heat_figure([run]), "Temperatures, viscosities, losses and side flows."))
-    if any(name.startswith("axial") for name in run.signals):
-        figures.append((axial_figure([run]), "Axial position, films and loss of the thrust bearing."))
-    for kind, (quantity, _, _) in FILM_SIGNALS.items():
-        if any(name.startswith(quantity) for name in run.signals) and not (kind == POWER and with_heat):
-            words = quantity.replace("_", " ")
-            figures.append((film_signal_figure([run], kind), f"{words[:1].upper()}{words[1:]}."))
+    films_told = {kind: f"{name[:1].upper()}{name[1:].replace('_', ' ')}." for kind, (name, *_) in FILM_SIGNALS.items()}
+    if any(name.startswith("temperature") for name in run.signals):
+        del films_told[POWER]  # it stands with the heat
+    for what, words in (COURSES | films_told).items():
+        if SUBJECTS[what].panels[0].signals(run):
+            figures.append((quantity_figure([run], what), words))
     for figure, _ in figures:
         narrowed(figure, NARROW, NARROW_COLUMNS)
     return [_shown(*figure) for figure in figures]

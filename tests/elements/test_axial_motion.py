@@ -14,7 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.collar.collar import collar_of
 from frbcli.elements.collar.motion import AxialMotion, axial_motion
 from frbcli.errors import InputError
-from frbcli.plot.axial import axial_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.scene.machine.rotor import collar_tilt, make_rotor
 from frbcli.scene.planning.profiles import run_up_profile
@@ -156,7 +156,7 @@ def test_run_records_its_axis(tmp_path: Path) -> None:
     assert again["thrust_loss_W"][-1] == pytest.approx(rest.torque * rest.omega, rel=1e-5)
     assert np.all(again["thrust_film_thickness_m"] <= rest.gap + 1e-10)
     assert run.status == "finished"
-    assert len(axial_figure([again]).axes) == 3
+    assert len(quantity_figure([again], "axial").axes) == 3
 
 
 def test_collar_that_tilts_onto_its_pads_ends_the_run(tmp_path: Path) -> None:

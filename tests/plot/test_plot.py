@@ -22,8 +22,8 @@ from frbcli.errors import InputError, RunFileError
 from frbcli.plot.run.displacement import displacement_figure
 from frbcli.plot.run.eccentricity import eccentricity_figure
 from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
-from frbcli.plot.run.oil_content import oil_content_figure
 from frbcli.plot.run.orbit import orbit_figure, visible_steps
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
@@ -195,8 +195,8 @@ def test_ring_speed_and_oil_content_need_their_signals(run: Run, ringed: Run) ->
     with pytest.raises(RunFileError, match="no ring that turns"):
         ring_speed_figure([run])
     with pytest.raises(RunFileError, match="no oil fraction"):
-        oil_content_figure([run])
-    (curve,) = oil_content_figure([ringed]).axes[0].get_lines()
+        quantity_figure([run], "oil-content")
+    (curve,) = quantity_figure([ringed], "oil-content").axes[0].get_lines()
     assert np.min(curve.get_ydata()) == np.min(ringed["oil_fraction_inner"])
 
 

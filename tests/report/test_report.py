@@ -23,7 +23,7 @@ from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.run.heat import heat_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.speeds import between
 from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
 from frbcli.plot.style import narrowed
@@ -286,7 +286,7 @@ def test_a_page_has_at_most_six_pages_of_a4(warm: Run, tmp_path: Path) -> None:
 
 def test_the_legend_of_a_narrow_picture_stays_in_it(warm: Run) -> None:
     """That of a run with heat has more names than any other."""
-    figure = heat_figure([warm])
+    figure = quantity_figure([warm], "heat")
     narrowed(figure, NARROW, NARROW_COLUMNS)
     figure.canvas.draw()
     (legend,) = figure.legends

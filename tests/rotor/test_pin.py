@@ -14,7 +14,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
 from frbcli.errors import FrbError, InputError
-from frbcli.plot.run.pin import pin_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.scene.gate.analysis import BEARING, RUN, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import faults
@@ -146,14 +146,14 @@ def test_a_run_has_angle_and_torque_of_its_pin(tmp_path: Path) -> None:
     (touch,) = (event for event in run.events if event["kind"] == "touch")
     assert touch["point"] == "ring"
     assert touch["t_s"] == pytest.approx(run["time_s"][np.argmax(run["pin_angle_rad"] > PLAYS / RADIUS)])
-    angle, torque = pin_figure([run]).axes[:2]
+    angle, torque = quantity_figure([run], "pin").axes[:2]
     assert "mrad" in angle.get_ylabel()
     assert "N mm" in torque.get_ylabel()
     other = frbcli.runup(case.with_settings({"bearing.pin": None}), tmp_path / "other.h5")
     assert "pin_angle_rad" not in other.signals
     assert not any(event["kind"] == "touch" for event in other.events)
     with pytest.raises(FrbError, match="no ring with a pin"):
-        pin_figure([other])
+        quantity_figure([other], "pin")
 
 
 def test_the_plan_names_the_pin() -> None:

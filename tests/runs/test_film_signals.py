@@ -11,7 +11,7 @@ import pytest
 import frbcli
 from frbcli.errors import InputError, RunFileError
 from frbcli.linear.bearing_sheet import bearing_sheet
-from frbcli.plot.run.film_signals import film_signal_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run, read_run
 from frbcli.runs import march
 from frbcli.runs import run as module
@@ -181,7 +181,7 @@ def test_what_a_run_cannot_record_is_refused(tmp_path: Path) -> None:
 
 def test_what_was_not_recorded_is_not_drawn(tmp_path: Path) -> None:
     run = run_of("jeffcott", tmp_path, SHORT, ["force"])
-    figure = film_signal_figure([run], "force")
+    figure = quantity_figure([run], "force")
     assert [axes.get_ylabel() for axes in figure.axes] == [f"force {a} in N" for a in "xy"]
     with pytest.raises(RunFileError, match=r"output\.signals"):
-        film_signal_figure([run], "power")
+        quantity_figure([run], "power")

@@ -17,7 +17,7 @@ from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import NotConverged
 from frbcli.materials.oils import OILS
-from frbcli.plot.run.heat import heat_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
@@ -307,8 +307,8 @@ def test_a_gap_that_heat_closes_before_the_start_is_told(tmp_path: Path) -> None
 
 
 def test_heat_of_a_run_is_printed_and_drawn(ring_run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert len(heat_figure([ring_run]).axes) == 4
-    assert len(heat_figure([ring_run, ring_run], over="speed").axes) == 4
+    assert len(quantity_figure([ring_run], "heat").axes) == 4
+    assert len(quantity_figure([ring_run, ring_run], "heat", over="speed").axes) == 4
     assert frb(["plot", str(ring_run.path), "--what", "heat", "-o", str(tmp_path / "heat.png")]) == 0
     assert (tmp_path / "heat.png").stat().st_size > 10_000
     capsys.readouterr()

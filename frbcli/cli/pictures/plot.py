@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 
 LAW = "law"  # of a case, the others of runs
 FILM_SIGNALS = ("force", "film-thickness", "power", "torque", "oil-flow", "tilt", "supply-pressure")
-CURVES = ("eccentricity", "ring-speed", "oil-content", "heat", "axial", "pin", *FILM_SIGNALS)
+QUANTITIES = ("oil-content", "heat", "axial", "pin", *FILM_SIGNALS)
+CURVES = ("eccentricity", "ring-speed", *QUANTITIES)
 MOVING = ("orbit", "film")
 SUBJECTS = (*CURVES, *MOVING, "displacement", "summary", LAW)
 
@@ -145,15 +146,11 @@ def _figure(
     what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, point: str | None
 ) -> Picture:
     """point: the point or film that is asked for."""
-    from frbcli.plot.axial import axial_figure
     from frbcli.plot.moving.films import film_moments_figure
     from frbcli.plot.run.displacement import displacement_figure
     from frbcli.plot.run.eccentricity import eccentricity_figure
-    from frbcli.plot.run.film_signals import film_signal_figure
-    from frbcli.plot.run.heat import heat_figure
-    from frbcli.plot.run.oil_content import oil_content_figure
     from frbcli.plot.run.orbit import orbit_figure
-    from frbcli.plot.run.pin import pin_figure
+    from frbcli.plot.run.quantities import quantity_figure
     from frbcli.plot.run.ring_speed import ring_speed_figure
     from frbcli.plot.run.summary import summary_figure
 
@@ -165,8 +162,6 @@ def _figure(
         return film_moments_figure(runs[0], point, *span)
     if what == "displacement":
         return displacement_figure(runs, point, *span)
-    if what in FILM_SIGNALS:
-        return film_signal_figure(runs, what, *span, over)
-    known = {"ring-speed": ring_speed_figure, "oil-content": oil_content_figure, "heat": heat_figure,
-             "axial": axial_figure, "pin": pin_figure}  # fmt: skip
-    return known.get(what, eccentricity_figure)(runs, *span, over)
+    if what in QUANTITIES:
+        return quantity_figure(runs, what, *span, over)
+    return (ring_speed_figure if what == "ring-speed" else eccentricity_figure)(runs, *span, over)

@@ -19,7 +19,7 @@ from frbcli.film.cells.balance.feed import feed_at, supply_line
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import steady_solution
 from frbcli.film.state import PASSED
-from frbcli.plot.run.film_signals import film_signal_figure
+from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.scene.machine.system import make_system
@@ -72,7 +72,7 @@ def test_the_pressure_of_the_supply_times_the_conductance_is_the_flow(tmp_path: 
     assert pressure[0] == pytest.approx(3e5, rel=1e-2)
     assert pressure.min() > 0.999 * pressure[-1]
     assert run.signals["supply_pressure_Pa"].unit == "Pa"
-    axes = film_signal_figure([run], "supply-pressure").axes[0]
+    axes = quantity_figure([run], "supply-pressure").axes[0]
     assert axes.lines[0].get_ydata()[-1] == pytest.approx(1e-5 * pressure[-1])  # type: ignore[index]
 
 
@@ -110,7 +110,7 @@ def test_a_journal_comes_to_rest_where_a_film_with_this_flow_carries_it(supply: 
     share = feed_at(film, steady_solution(film, motion).filling).share
     assert run["supply_pressure_Pa"][-1] == pytest.approx(1e5 + 2e5 * share, rel=1e-3)
     with pytest.raises(RunFileError, match="has not recorded supply pressure"):
-        film_signal_figure([full], "supply-pressure")
+        quantity_figure([full], "supply-pressure")
 
 
 def test_more_than_the_film_takes_is_a_run_at_the_pressure_of_the_supply(tmp_path: Path) -> None:
