@@ -6,7 +6,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from frbcli.case.course.time_tables import MOST_NUMBERS, TableKind, Unfit, read_table, read_tacho
+from frbcli.case.course.time_tables import MOST_NUMBERS, TableKind, read_table, read_tacho
+from frbcli.case.files.number_table import Refused
 from frbcli.case.reading.tables import Breach
 from frbcli.units import SPEED, ValueFault, quantity
 
@@ -34,7 +35,7 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
         written = _written(speed, folder)
         times, speeds = (_column(each, unit) for each, unit in zip(written, ("s", SPEED), strict=True))
         _check(times, speeds)
-    except Unfit as fault:
+    except Refused as fault:
         return data, [Breach(("speed", *given), *fault.args)]
     follows = {"from": speeds[0], "to": max(speeds, key=abs), "duration": times[-1]}
     found = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
@@ -65,30 +66,30 @@ def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
         return speed.get(TIMES), speed.get(SPEEDS)
     points = speed.get("points")
     if not isinstance(points, list) or any(not isinstance(each, list) or len(each) != 2 for each in points):
-        raise Unfit("is no list of times with speeds, nor the name of a file.", REMEDY)
+        raise Refused("is no list of times with speeds, nor the name of a file.", REMEDY)
     return [time for time, _ in points], [value for _, value in points]
 
 
 def _column(given: object, unit: str) -> list[float]:
     if not isinstance(given, list):
-        raise Unfit("needs as many times as speeds.", REMEDY)
+        raise Refused("needs as many times as speeds.", REMEDY)
     try:
         return [quantity(each, unit) for each in given]
     except ValueFault as fault:
-        raise Unfit(f"has a value that {fault.problem}", REMEDY) from None
+        raise Refused(f"has a value that {fault.problem}", REMEDY) from None
 
 
 def _check(times: Sequence[float], speeds: Sequence[float]) -> None:
     if len(times) != len(speeds) or not 2 <= len(times) <= MOST_NUMBERS // 2:
-        raise Unfit(f"has {len(times)} times and {len(speeds)} speeds.", f"Give 2 to {MOST_NUMBERS // 2} of both.")
+        raise Refused(f"has {len(times)} times and {len(speeds)} speeds.", f"Give 2 to {MOST_NUMBERS // 2} of both.")
     if times[0] != 0.0:
-        raise Unfit(f"begins at {times[0]:.9g} s, and a run at 0 s.", "Let the times count from the first.")
+        raise Refused(f"begins at {times[0]:.9g} s, and a run at 0 s.", "Let the times count from the first.")
     falling = next((row for row in range(1, len(times)) if not times[row] > times[row - 1]), 0)
     if falling:
-        raise Unfit(f"has the time {times[falling]:.9g} s in row {falling + 1}, not later than the row before.",
+        raise Refused(f"has the time {times[falling]:.9g} s in row {falling + 1}, not later than the row before.",
                     "Order the rows by rising times.")  # fmt: skip
     below = next((row for row, speed in enumerate(speeds) if speed < 0.0), -1)
     if below >= 0:
-        raise Unfit(f"has the speed {speeds[below]:.6g} Hz in row {below + 1}.", "Give speeds of 0 and above.")
+        raise Refused(f"has the speed {speeds[below]:.6g} Hz in row {below + 1}.", "Give speeds of 0 and above.")
     if max(speeds) == 0.0:
-        raise Unfit("has no speed above 0.", REMEDY)
+        raise Refused("has no speed above 0.", REMEDY)

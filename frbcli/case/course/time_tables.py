@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from frbcli.arrays import Array
+from frbcli.case.files.number_table import Refused, with_file
 from frbcli.case.model import Model
 from frbcli.case.quantities import SMALLEST, unit_of
 from frbcli.case.reading.lines import Path as Key
@@ -29,10 +30,6 @@ EVEN, MOSTLY = 0.01, 0.9  # share by which steps of time may differ, and share o
 FEWEST_EVEN = 20  # rows of a table in which gaps are sought
 SPARSE = 10.0  # times the interval that most rows of an uneven table do not exceed: a gap
 SUFFIX = re.compile(r"(.+)_([A-Za-z0-9]+)")  # of names such as time_s, as frb export writes them
-
-
-class Unfit(Exception):
-    """Problem and remedy of a file that cannot be taken."""
 
 
 @dataclass(frozen=True)
@@ -59,32 +56,23 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
     folder: that a relative path counts from. A table whose file has faults keeps the key.
     """
-    changed, found, count = dict(data), list[Breach](), 0
+    found, left = list[Breach](), MOST_NUMBERS
     for kind, wanted in KINDS.items():
-        for path, given in tables(data, kind):
-            name, key = given.get("file"), (*path, "file")
-            if not isinstance(name, str) or not name:
-                continue
-            if "over_time" in given:
-                found.append(Breach(key, "is given beside over_time.", "Keep one of the two."))
-                continue
-            try:
-                numbers = read_table(folder / name, wanted, MOST_NUMBERS - count)
-            except Unfit as fault:
-                found.append(Breach(key, *fault.args))
-                continue
-            count += sum(map(len, numbers.values()))
-            kept = {other: value for other, value in given.items() if other != "file"}
-            kept["over_time"] = {"source": name, **numbers}
-            if len(path) == 1:
-                changed[kind] = kept
-            else:
-                changed[kind] = [kept if place == path[1] else other for place, other in enumerate(changed[kind])]
-    return changed, found
+
+        def joined(name: str, kept: dict[str, Any], wanted: TableKind = wanted) -> dict[str, Any]:
+            nonlocal left
+            numbers = read_table(folder / name, wanted, left)
+            left -= sum(map(len, numbers.values()))
+            return {**kept, "over_time": {"source": name, **numbers}}
+
+        for path, _ in tables(data, kind):
+            data, faults = with_file(data, path, joined, ("over_time",))
+            found += faults
+    return data, found
 
 
 def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[str, list[float]]:
-    """The columns time, x and, where there are two, y of a file, in SI. Raises Unfit."""
+    """The columns time, x and, where there are two, y of a file, in SI. Raises Refused."""
     from frbcli.results.measured.reading import read_columns
 
     try:
@@ -94,39 +82,39 @@ def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[
         values = {"x": _values(columns, x, wanted)} | ({"y": _values(columns, y, wanted)} if y else {})
     except InputError as error:
         (fault,) = error.faults
-        raise Unfit(fault.problem, fault.remedy) from None
+        raise Refused(fault.problem, fault.remedy) from None
     found = {"time": time, **values}
     shortest, longest = min(map(len, found.values())), max(map(len, found.values()))
     if shortest != longest:
-        raise Unfit(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
+        raise Refused(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
     if longest * len(found) > most:
         problem = f"has {longest} rows of {len(found)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
-        raise Unfit(problem, "Cut it, or sample it at fewer times.")
+        raise Refused(problem, "Cut it, or sample it at fewer times.")
     _check_times(columns, time, list(values.values()))
     return {name: column.tolist() for name, column in found.items()}
 
 
 def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     """Times in s and speeds x in Hz of a column with so many pulses per revolution, a row for each revolution. Raises
-    Unfit."""
+    Refused."""
     import numpy as np
 
     from frbcli.analysis.orders.tacho import tacho_speed
     from frbcli.results.measured.reading import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:
-        raise Unfit(f"has {pulses} pulses per revolution.", "Write e.g. pulses = 1.")
+        raise Refused(f"has {pulses} pulses per revolution.", "Write e.g. pulses = 1.")
     try:
         columns = read_columns(path)
         signal, time = columns[name], _times(columns)
     except InputError as error:
         (fault,) = error.faults
-        raise Unfit(fault.problem, fault.remedy) from None
+        raise Refused(fault.problem, fault.remedy) from None
     _check_times(columns, time, [signal])
     try:
         speed = tacho_speed(time, signal, pulses)
     except ValueError as error:
-        raise Unfit(f'has a column "{name}" that {error}', "Give a signal with pulses as tacho.") from None
+        raise Refused(f'has a column "{name}" that {error}', "Give a signal with pulses as tacho.") from None
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
     rows = np.interp(np.arange(1.0, turned[-1]), turned, time)
     inside = rows[(rows > time[0]) & (rows < time[-1])]
@@ -155,7 +143,7 @@ def _times(columns: Columns) -> Array:
     rates = [value for name, value in columns.numbers.items() if name.lower() in RATES]
     rate = columns.rate or (rates[0] if rates else None)
     if rate is None or not rate > 0.0:
-        raise Unfit('has no column "time".', 'Call the column of its times "time" or "t"; a WAV needs none.')
+        raise Refused('has no column "time".', 'Call the column of its times "time" or "t"; a WAV needs none.')
     return np.arange(max(map(len, columns.values.values()), default=0)) / rate
 
 
@@ -171,9 +159,9 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
         return single[0], ""
     listed = ", ".join(f'"{name}"' for name in columns.values)
     if not wanted.y:
-        raise Unfit(f'has no column "{wanted.x[0]}".', f'Call it "{wanted.x[0]}". It has: {listed}.')
+        raise Refused(f'has no column "{wanted.x[0]}".', f'Call it "{wanted.x[0]}". It has: {listed}.')
     remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column beside the time. It has: {listed}.'
-    raise Unfit("has no columns of the values in x and y.", remedy)
+    raise Refused("has no columns of the values in x and y.", remedy)
 
 
 def _values(columns: Columns, name: str, wanted: TableKind) -> Array:
@@ -184,7 +172,7 @@ def _values(columns: Columns, name: str, wanted: TableKind) -> Array:
 
 
 def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
-    """SI value of a number in a column. Raises Unfit for a unit of something else."""
+    """SI value of a number in a column. Raises Refused for a unit of something else."""
     told = columns.unit(name) or ""
     suffix = SUFFIX.fullmatch(name)
     if not told.strip("-1 ") and suffix is None:
@@ -195,7 +183,7 @@ def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
         if not told.strip("-1 "):
             return float(number)  # the end of a name that is no unit
         problem = f'has "{told}" as unit of the column "{name}".'
-        raise Unfit(problem, f"Give it in {si} or a unit like it.") from None
+        raise Refused(problem, f"Give it in {si} or a unit like it.") from None
 
 
 def _check_times(columns: Columns, time: Array, values: Sequence[Array]) -> None:
@@ -204,12 +192,12 @@ def _check_times(columns: Columns, time: Array, values: Sequence[Array]) -> None
     import numpy as np
 
     if len(time) < 2:
-        raise Unfit("has fewer than two rows.", "Give the values at two times at least.")
+        raise Refused("has fewer than two rows.", "Give the values at two times at least.")
     steps = np.diff(time)
     if not np.all(steps > 0.0):
         row = int(np.argmin(steps > 0.0)) + 1
         problem = f"has the time {time[row]:.6g} s in {columns.row(row)}, not later than the row before."
-        raise Unfit(problem, "Order its rows by rising times, each once.")
+        raise Refused(problem, "Order its rows by rising times, each once.")
     if len(time) < FEWEST_EVEN:
         return
     usual = float(np.median(steps))
@@ -223,7 +211,7 @@ def _check_times(columns: Columns, time: Array, values: Sequence[Array]) -> None
     if np.any(wide):
         row = int(np.argmax(wide)) + 1
         problem = f"has a gap of {steps[row - 1]:.4g} s before {columns.row(row)}; {others}."
-        raise Unfit(problem, "Fill the gap, or cut the table there.")
+        raise Refused(problem, "Fill the gap, or cut the table there.")
 
 
 def _differ(values: Sequence[Array]) -> Any:
@@ -265,19 +253,14 @@ def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
     """
     found = list[Breach]()
     for path, wanted in _places(data):
-        given = _at(data, path)
-        name = given.get("file") if isinstance(given, dict) else None
-        if not isinstance(name, str) or not name:
-            continue
-        if len(given) > 1:
-            found.append(Breach((*path, "file"), "is given beside other keys.", "Keep the file alone."))
-            continue
-        try:
-            numbers = read_table(folder / name, wanted)
-        except Unfit as fault:
-            found.append(Breach((*path, "file"), *fault.args))
-        else:
-            data = _replaced(data, path, {"source": name, **numbers})
+
+        def numbers(name: str, kept: dict[str, Any], wanted: TableKind = wanted) -> dict[str, Any]:
+            if kept:
+                raise Refused("is given beside other keys.", "Keep the file alone.")
+            return {"source": name, **read_table(folder / name, wanted)}
+
+        data, faults = with_file(data, path, numbers)
+        found += faults
     return data, found
 
 
@@ -294,22 +277,3 @@ def _places(data: Mapping[str, Any]) -> Iterator[tuple[Key, TableKind]]:
     for path, _ in bearings:
         for within in ((), *((film,) for film in IN_A_BEARING)):
             yield (*path, *within, "supply", "pressure"), PRESSURE
-
-
-def _at(data: Any, path: Key) -> Any:
-    """What stands at a path, None where nothing does."""
-    for element in path:
-        try:
-            data = data[element]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return data
-
-
-def _replaced(data: Any, path: Key, value: Any) -> Any:
-    """`data` with another value at a path that it has."""
-    if not path:
-        return value
-    changed: Any = list(data) if isinstance(data, list) else dict(data)
-    changed[path[0]] = _replaced(data[path[0]], path[1:], value)
-    return changed

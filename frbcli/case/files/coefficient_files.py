@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.elements import AXES
-from frbcli.case.files.number_table import Columns, Refused, finite, number_table, text_of
+from frbcli.case.files.number_table import Columns, Refused, finite, number_table, text_of, with_file
 from frbcli.case.reading.tables import Breach, tables
 from frbcli.case.reading.toml import TomlFault, parse
 
@@ -34,30 +34,17 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
 
     folder: that a relative path counts from. A bearing whose file has faults keeps the key.
     """
-    changed, found = dict(data), list[Breach]()
+
+    def joined(name: str, kept: dict[str, Any]) -> dict[str, Any]:
+        return {**kept, "over_speed": {"source": name, **_with_units(_checked(_read(folder / name)))}}
+
+    found = list[Breach]()
     for path, bearing in tables(data, "bearing"):
-        name = bearing.get("file")
-        if bearing.get("kind") != "coefficients" or not isinstance(name, str) or not name:
-            continue
-        key = (*path, "file")
-        beside = [other for other in ("stiffness", "damping", "mass", "over_speed") if other in bearing]
-        if beside:
-            problem = f"is given beside {' and '.join(beside)}."
-            found.append(Breach(key, problem, "Keep the file, or the coefficients themselves."))
-            continue
-        try:
-            columns = _checked(_read(folder / name))
-        except Refused as fault:
-            found.append(Breach(key, *fault.args))
-            continue
-        kept = {other: value for other, value in bearing.items() if other != "file"}
-        kept["over_speed"] = {"source": name, **_with_units(columns)}
-        if len(path) == 1:
-            changed["bearing"] = kept
-        else:
-            changed["bearing"] = list(changed["bearing"])
-            changed["bearing"][path[1]] = kept
-    return changed, found
+        if bearing.get("kind") == "coefficients":
+            beside = ("stiffness", "damping", "mass", "over_speed")
+            data, faults = with_file(data, path, joined, beside, "Keep the file, or the coefficients themselves.")
+            found += faults
+    return data, found
 
 
 def _with_units(columns: Columns) -> dict[str, list[str]]:

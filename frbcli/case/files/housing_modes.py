@@ -9,11 +9,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from frbcli.case.files.number_table import Columns, Refused, number_table, text_of
+from frbcli.case.files.number_table import Columns, Refused, number_table, text_of, with_file
 from frbcli.case.reading.tables import Breach, number, table, tables
 from frbcli.case.rotor import OF_SECTIONS
 
-KEY = ("housing", "file")
 FREQUENCY, DAMPING = "frequency_Hz", "damping"
 AXES = ("_x", "_y")
 MOST_MODES = 200
@@ -30,21 +29,13 @@ def with_housing_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
 
     folder: that a relative path counts from. With faults the tables are returned unchanged.
     """
-    housing = table(data, "housing")
-    name = housing.get("file")
-    if not isinstance(name, str) or not name:
-        return data, []
-    if "modes" in housing:
-        return data, [Breach(KEY, "is given beside modes.", "Keep one of the two.")]
-    try:
+
+    def joined(name: str, kept: dict[str, Any]) -> dict[str, Any]:
         if Path(name).suffix.lower() in ROSS:
-            found = _of_ross(data, folder / name)
-        else:
-            found = {"modes": _modes(number_table(text_of(folder / name, FILE, COLUMNS), COLUMNS))}
-    except Refused as fault:
-        return data, [Breach(KEY, *fault.args)]
-    kept = {key: value for key, value in housing.items() if key != "file"}
-    return data | {"housing": {**found, **kept}}, []
+            return {**_of_ross(data, folder / name), **kept}
+        return {"modes": _modes(number_table(text_of(folder / name, FILE, COLUMNS), COLUMNS)), **kept}
+
+    return with_file(data, ("housing",), joined, ("modes",))
 
 
 def _of_ross(data: dict[str, Any], path: Path) -> dict[str, Any]:

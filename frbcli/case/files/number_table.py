@@ -1,12 +1,16 @@
-"""Columns of numbers out of a CSV file that a case names, with a line of their names above."""
+"""Files that a case names: their place in its tables, and columns of numbers out of a CSV with their names above."""
 
 from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Callable, Iterable
 from pathlib import Path
+from typing import Any
 
 from frbcli.case.quantities import LARGEST
+from frbcli.case.reading.lines import Path as Key
+from frbcli.case.reading.tables import Breach, at, replaced
 
 LARGEST_FILE = 4_194_304  # bytes
 SI = "Correct it; values are in SI units."
@@ -16,6 +20,26 @@ Columns = dict[str, list[float]]
 
 class Refused(Exception):
     """Problem and remedy of a file that cannot be read."""
+
+
+def with_file(
+    data: dict[str, Any], path: Key, joined: Callable[[str, dict[str, Any]], dict[str, Any]],
+    beside: Iterable[str] = (), remedy: str = "Keep one of the two.",
+) -> tuple[dict[str, Any], list[Breach]]:  # fmt: skip
+    """The tables of a case with what the file of one of them holds in place of its key `file`, and the fault, with
+    which it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; beside:
+    keys that the file stands in place of; remedy: where one of them is given, too."""
+    given = at(data, path)
+    name, key = given.get("file") if isinstance(given, dict) else None, (*path, "file")
+    if not isinstance(name, str) or not name:
+        return data, []
+    if both := [other for other in beside if other in given]:
+        return data, [Breach(key, f"is given beside {' and '.join(both)}.", remedy)]
+    try:
+        table = joined(name, {other: value for other, value in given.items() if other != "file"})
+    except Refused as fault:
+        return data, [Breach(key, *fault.args)]
+    return replaced(data, path, table), []
 
 
 def text_of(path: Path, meant: str, write: str) -> str:

@@ -18,6 +18,7 @@ from frbcli.case.model import Model
 from frbcli.case.reading import lines
 from frbcli.case.reading.settings import with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
+from frbcli.case.reading.tables import at
 from frbcli.case.reading.text import as_tables
 from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
@@ -309,14 +310,12 @@ def _dotted(path: lines.Path) -> str:
 
 def _shown(data: Any, path: lines.Path) -> str:
     """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
-    for element in path:
-        try:
-            data = data[element]
-        except (KeyError, IndexError, TypeError):
-            return ""
-    if isinstance(data, dict | list) or (isinstance(data, int) and data.bit_length() > LARGEST_SHOWN):
+    found = at(data, path)
+    if found is None or isinstance(found, dict | list):
         return ""
-    shown = f'"{data}"' if isinstance(data, str) else str(data).lower() if isinstance(data, bool) else str(data)
+    if isinstance(found, int) and found.bit_length() > LARGEST_SHOWN:
+        return ""
+    shown = f'"{found}"' if isinstance(found, str) else str(found).lower() if isinstance(found, bool) else str(found)
     return _printable(shown)
 
 

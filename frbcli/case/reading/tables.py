@@ -36,6 +36,25 @@ def table(data: Mapping[str, Any], key: str) -> dict[str, Any]:
     return found if isinstance(found, dict) else {}
 
 
+def at(data: Any, path: Path) -> Any:
+    """What stands at a path of nested tables and lists, None where nothing does."""
+    for element in path:
+        if isinstance(element, int):
+            data = data[element] if isinstance(data, list) and element < len(data) else None
+        else:
+            data = data.get(element) if isinstance(data, dict) else None
+    return data
+
+
+def replaced(data: Any, path: Path, value: Any) -> Any:
+    """`data` with another value at a path that it has."""
+    if not path:
+        return value
+    changed: Any = list(data) if isinstance(data, list) else dict(data)
+    changed[path[0]] = replaced(data[path[0]], path[1:], value)
+    return changed
+
+
 Located = tuple[Path, dict[str, Any]]  # a table with its path
 
 

@@ -13,6 +13,7 @@ from pydantic.fields import FieldInfo
 from frbcli.case.model import Model
 from frbcli.case.quantities import Count, Quantity
 from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import at
 from frbcli.case.rules.checks import Breach
 from frbcli.case.schema import Case
 from frbcli.nearest import did_you_mean, nearest
@@ -47,7 +48,7 @@ def objections(error: ValidationError, data: dict[str, Any]) -> Iterator[Breach]
     """Each error of the models in `data`, with the path of its key in the file."""
     details = [(_path(detail["loc"], data), detail) for detail in error.errors(include_url=False)]
     # a value that was taken over from another key is not present, and that key has the same fault
-    own = [(path, detail) for path, detail in details if detail["type"] == "missing" or is_present(path, data)]
+    own = [(path, detail) for path, detail in details if detail["type"] == "missing" or at(data, path) is not None]
     for path, detail in own or details:
         yield _breach(path, detail["loc"], detail["type"], {"input": detail["input"], **detail.get("ctx", {})})
 
@@ -64,18 +65,6 @@ def with_nearest_kinds(error: ValidationError, data: dict[str, Any]) -> dict[str
         close = _close(str(detail["ctx"]["tag"]), _kinds(detail["loc"]))
         table["kind"] = close or table["kind"]
     return guess
-
-
-def is_present(path: Path, data: Any) -> bool:
-    """Whether `data`, nested tables and lists, has something at `path`."""
-    for element in path:
-        if isinstance(element, int):
-            if not isinstance(data, list) or element >= len(data):
-                return False
-        elif not isinstance(data, dict) or element not in data:
-            return False
-        data = data[element]
-    return True
 
 
 def _path(loc: Sequence[str | int], data: Any) -> Path:
@@ -101,7 +90,7 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
             continue  # one quantity that stands for a matrix
         path = (*path, element)
         kind_seen = False
-        data = data[element] if is_present((element,), data) else None
+        data = at(data, (element,))
     return path
 
 

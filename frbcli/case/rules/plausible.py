@@ -9,7 +9,7 @@ from typing import Any
 
 from frbcli.case.quantities import LARGEST
 from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, Located, number, ring_films, table, tables
+from frbcli.case.reading.tables import Breach, Located, at, number, ring_films, table, tables
 from frbcli.case.rules.film_checks import warm_clearance
 from frbcli.film.operating import RING_SPEED, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import BRASS, STEEL
@@ -52,7 +52,7 @@ def implausible(data: Mapping[str, Any]) -> Iterator[Breach]:
         if doubt.name not in confirmed:
             doubts.setdefault(doubt.path, []).append(doubt)
     for path, found in doubts.items():
-        yield Breach(path, f"{'; '.join(doubt.problem for doubt in found)}.", _remedy(found, _at(data, path)))
+        yield Breach(path, f"{'; '.join(doubt.problem for doubt in found)}.", _remedy(found, at(data, path)))
 
 
 def _remedy(found: list[_Doubt], value: object) -> str:
@@ -71,8 +71,8 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
             if top is not None and diameter:
                 fastest = max(fastest, math.pi * diameter * top.value)
             growths = _ring_growths(end[0][1], end[1][1], top) if ends else _journal_growth(bearing, top)
-            for (at, film), growth in zip(end, growths, strict=True):
-                yield from _film((*path, *at), film, growth, top)
+            for (place, film), growth in zip(end, growths, strict=True):
+                yield from _film((*path, *place), film, growth, top)
         yield from _film((*path, "damper"), table(bearing, "damper"), 0.0, top)
     if top is not None and fastest > FASTEST_SURFACE:
         problem = f"gives a surface speed of the journal of {fastest:.4g} m/s, above {FASTEST_SURFACE:g} m/s"
@@ -128,9 +128,3 @@ def _size(values: Mapping[str, Any], key: str, unit: str) -> float | None:
     """The absolute value; None where it is no quantity and the models refuse it."""
     value = number(values, key, unit)
     return abs(value) if value is not None and abs(value) <= LARGEST else None
-
-
-def _at(data: Any, path: Path) -> object:
-    for element in path:
-        data = data[element]
-    return data
