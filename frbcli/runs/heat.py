@@ -23,13 +23,16 @@ from frbcli.solve.state import Array
 from frbcli.thermal.exchange import (
     BOOKS,
     CARRIED,
+    CHANGES,
     CLEARANCE,
     DISSIPATED,
     DRAG,
     FILM_ROWS,
+    FLOW,
     GIVEN,
     HOT,
     IN_FILMS,
+    POWER,
     REFERENCE,
     SHARE,
     SHARE_OF_SUPPLY,
@@ -40,6 +43,7 @@ from frbcli.thermal.model import clearances_at, viscosities_at
 from frbcli.thermal.steady import closed_gap
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
+AT_END = [POWER, FLOW]  # what the films did at the end of a step, from which the signals go on
 UNITS = ("K", "Pa*s", "m", "W", "m^3/s")
 
 
@@ -70,8 +74,10 @@ class RunHeat:
         """Go on with another machine, whose clearances have changed: all temperatures and the books stay the same."""
         if self._loop is None:
             return
-        state, self._heat = self._loop.state, heat_of(case, first)
-        self._loop, self.films = _lumped(case, system, self._heat)._replace(state=state), system.films.changeable()
+        before, self._heat = self._loop, heat_of(case, first)
+        loop = _lumped(case, system, self._heat)._replace(state=before.state, last=before.last)
+        loop.now[AT_END] = before.now[AT_END]
+        self._loop, self.films = loop, system.films.changeable()
 
     def warm(self, case: Case, plan: Plan, system: System) -> System:
         """The machine that was taken up, at the temperatures of now; the same without heat."""
@@ -113,12 +119,17 @@ class RunHeat:
 
     def snapshot(self) -> dict[str, Array]:
         """The arrays of a checkpoint."""
-        return {"heat": self._loop.state.copy()} if self._loop is not None else {}
+        if self._loop is None:
+            return {}
+        state, last, now = self._loop.state.copy(), self._loop.last.copy(), self._loop.now[AT_END].copy()
+        return {"heat": state, "heat_step": last, "heat_films": now}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up what a checkpoint holds. Raises WrongCheckpoint if it is not one of this run."""
         if self._loop is not None:
             self._loop.state[:] = array(checkpoint, "heat", self._loop.state.shape)
+            self._loop.last[:] = array(checkpoint, "heat_step", self._loop.last.shape)
+            self._loop.now[AT_END] = array(checkpoint, "heat_films", self._loop.now[AT_END].shape)
 
     def passed(self) -> dict[str, float]:
         """Heat in J so far, of one bearing each: dissipated by the films, carried away by the oil, taken by places of
@@ -181,6 +192,8 @@ def _lumped(case: Case, system: System, heat: Heat) -> LumpedHeat:
         model=arrays_of(model, viscosity, np.array(system.drags), heat.concentric, by_formula),
         ends=system.films.heat_ends(),
         state=state,
+        last=np.zeros(CHANGES + n),
+        ahead=np.zeros_like(state),
         now=now,
         gain=np.zeros(n),
     )

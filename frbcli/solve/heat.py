@@ -1,9 +1,8 @@
 """Heat in the time loop, compiled. Two kinds ride in it:
 
 - NoHeat: every film keeps its viscosity and clearance, and nothing is computed;
-- LumpedHeat: after each accepted step films, rings and walls take up what the films have dissipated in it, and
-  viscosities and clearances follow for the next one. Films settle in milliseconds, hundreds of steps, so that a
-  viscosity changes by some 1e-5 from step to step.
+- LumpedHeat: after each accepted step films, rings and walls take up what the films have dissipated in it. Each stage
+  of the next one has viscosities and clearances at the temperatures that go on as they have changed in the last step.
 
 Which of them a function means is decided by the type of the heat when the loop is compiled.
 """
@@ -13,24 +12,12 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, Array, compiled
-from frbcli.film.bearing_model.film import CLEARANCE as MODEL_CLEARANCE
-from frbcli.film.bearing_model.film import VISCOSITY as MODEL_VISCOSITY
-from frbcli.film.bearing_model.film import model_flow
-from frbcli.film.cells.balance.side_flow import side_flow
-from frbcli.film.cells.cell_ends import CellEnds
-from frbcli.film.cells.data import (
-    GIVEN_PRESSURE,
-    VolumeFilms,
-)
-from frbcli.film.rectangles.end_flow import end_flow
-from frbcli.film.state import OIL
-from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.kinds import CELLS, MODELS, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, MODELS, kind_of
+from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
 from frbcli.solve.stage.contact import feel
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
 from frbcli.solve.stage.rough_contact import rubbing
@@ -38,14 +25,19 @@ from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,
     BY_FORMULA,
+    CHANGES,
     CLEARANCE,
+    CLEARANCE_BEFORE,
     DRAG,
     ETA,
     FLOW,
+    FLOW_BEFORE,
     FORMULA,
     HOT,
     HOTTEST,
+    LENGTH,
     POWER,
+    POWER_BEFORE,
     REFERENCE,
     SCALE,
     SHARE,
@@ -69,11 +61,14 @@ class NoHeat(NamedTuple):
 
 class LumpedHeat(NamedTuple):
     """model: see HeatArrays; ends: of each film its EndFlow, or CellEnds; state (BOOKS + bodies + n,): what a run
-    carries on: books, speeds of rotor and rings, temperatures; now (FILM_ROWS, F); gain (n,)."""
+    carries on: books, speeds of rotor and rings, temperatures; last (CHANGES + n,): of its last step; ahead: a state
+    in a stage of the next; now (FILM_ROWS, F); gain (n,)."""
 
     model: HeatArrays
     ends: Any
     state: Array
+    last: Array
+    ahead: Array
     now: Array
     gain: Array
 
@@ -94,7 +89,8 @@ def columns_of(heat: Any) -> int:
 def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
     """Viscosities and clearances at the temperatures that the state has, before the loop goes on."""
     if isinstance(heat, LumpedHeat):
-        follow_temperatures(heat, films, rotor.drag, rotor.clearances, wet, False)
+        follow_temperatures(heat, films, rotor.drag, rotor.clearances, wet)
+        heat.now[CLEARANCE_BEFORE] = heat.now[CLEARANCE]
 
 
 class Taken(NamedTuple):
@@ -109,6 +105,14 @@ class Taken(NamedTuple):
     rough: Any
 
 
+def warm_stage(
+    heat: Any, films: Any, drag: Array, clearances: Array, wet: Array, bodies: Array, since: float
+) -> None:  # fmt: skip
+    """Viscosities and clearances <- those of a stage `since` s after the start of a step, in which rotor and rings have
+    the speeds `bodies`."""
+    raise NotImplementedError
+
+
 def carry_heat(
     heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array, taken: Taken,
     clearances: Array, drag: Array,
@@ -118,9 +122,24 @@ def carry_heat(
     raise NotImplementedError
 
 
-def write_heat(heat: Any, out_heat: Array, first: int, last: int) -> None:
-    """out_heat (rows, columns_of(heat)), rows from first up to last: temperatures and what the films do now."""
+def write_heat(heat: Any, out_heat: Array, first: int, last: int, until_end: float, every: float, step: float) -> None:
+    """out_heat (rows, columns_of(heat)), rows from first up to last: temperatures and what the films do, linear
+    over the step that was taken. until_end: time in s from the last row to the end of the step; every: from row to
+    row."""
     raise NotImplementedError
+
+
+@overload(warm_stage, jit_options=AS_KERNELS, inline="always")
+def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ignore[no-untyped-def]
+    if not have_heat(heat):
+        return lambda heat, films, drag, clearances, wet, bodies, since: None
+    if kind_of(films) in (CELLS, MODELS):
+        return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
+            heat, films, drag, clearances, wet, bodies, since
+        )
+    return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
+        heat, 0, drag, clearances, 0, bodies, since
+    )
 
 
 @overload(carry_heat, jit_options=AS_KERNELS, inline="always")
@@ -138,10 +157,26 @@ def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearan
 
 
 @overload(write_heat, jit_options=AS_KERNELS, inline="always")
-def _write_heat(heat, out_heat, first, last):  # type: ignore[no-untyped-def]
+def _write_heat(heat, out_heat, first, last, until_end, every, step):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
-        return lambda heat, out_heat, first, last: None
-    return lambda heat, out_heat, first, last: _write(heat.state, heat.now, heat.gain, out_heat, first, last)
+        return lambda heat, out_heat, first, last, until_end, every, step: None
+    return lambda heat, out_heat, first, last, until_end, every, step: _write(
+        heat.model.numbers, heat.state, heat.last, heat.now, out_heat, first, last, until_end, every, step
+    )
+
+
+@compiled()
+def _warm(
+    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Any, bodies: Array, since: float
+) -> None:  # fmt: skip
+    """warm_stage of LumpedHeat: the temperatures go on as in the last step."""
+    state, ahead, last, count = heat.state, heat.ahead, heat.last, bodies.shape[0]
+    ratio = since / last[LENGTH] if last[LENGTH] > 0.0 else 0.0
+    for b in range(count):
+        ahead[BOOKS + b] = bodies[b]
+    for i in range(heat.gain.shape[0]):
+        ahead[BOOKS + count + i] = state[BOOKS + count + i] + ratio * last[CHANGES + i]
+    _follow(heat, ahead, films, drag, clearances, wet, False)
 
 
 @compiled()
@@ -150,8 +185,8 @@ def _carry(
     clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
-    capacity, links, made, numbers, _ = heat.model
-    ends, state, now, gain = heat.ends, heat.state, heat.now, heat.gain
+    _, _, made, numbers, _ = heat.model
+    ends, state, last, now, gain = heat.ends, heat.state, heat.last, heat.now, heat.gain
     step, g, factor, contact_at, contact_stiffness, rough = taken
     count = clearances.shape[0]
     for b in range(bodies.shape[0]):
@@ -167,6 +202,7 @@ def _carry(
         summits = rubbing(rough, f, c, g, journal)
         f_x, f_y = journal[FORCE, x] - summits.f_x, journal[FORCE, y] - summits.f_y
         moved = e_x * f_y - e_y * f_x
+        now[POWER_BEFORE, f], now[FLOW_BEFORE, f] = now[POWER, f], now[FLOW, f]
         now[POWER, f] = drag[f] * drag_integral(films, work, f, d_x, d_y, factor) * slip * slip
         now[POWER, f] += 0.5 * moved * total - f_x * v_x - f_y * v_y + summits.power
         if numbers[BY_FORMULA] != 0.0:
@@ -175,18 +211,22 @@ def _carry(
             scale = now[SCALE, f] / now[SHARE_OF_SUPPLY, f]
             now[FLOW, f] = c * leaving(ends, films, work, f, d_x, d_y, r_x, r_y, total, scale)
         now[SHARE, f] = oil_share(films, work, f)
-    heat_step(capacity, links, made, numbers, now, step, state[BOOKS + bodies.shape[0] :], gain, state)
-    return int(_follow(heat, films, drag, clearances, wet, True))
+        if last[LENGTH] == 0.0:  # nothing is known before the first step
+            now[POWER_BEFORE, f], now[FLOW_BEFORE, f] = now[POWER, f], now[FLOW, f]
+    first = BOOKS + bodies.shape[0]
+    heat_step(heat.model, now, step, state[first:], heat.ahead[first:], last, gain, state)
+    return int(_follow(heat, state, films, drag, clearances, wet, True))
 
 
 @compiled(inline=True)
 def _follow(
-    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Any, moved: bool
+    heat: LumpedHeat, state: Array, films: Any, drag: Array, clearances: Array, wet: Any, ended: bool
 ) -> int:
-    """Viscosities, clearances and what follows from them <- those of the temperatures. moved: whether films keep the
-    volume of their oil. Returns OVERHEATED, with the film in the books, for one too hot or closed, else RUNNING."""
+    """Viscosities, clearances and what follows from them <- those of the temperatures of a state. ended: whether a step
+    has, in which films keep the volume of their oil. Returns OVERHEATED, with the film in the books of the state, for
+    one too hot or closed, else RUNNING."""
     capacity, _, made, numbers, growth = heat.model
-    ends, state, now, count = heat.ends, heat.state, heat.now, clearances.shape[0]
+    ends, now, count = heat.ends, heat.now, clearances.shape[0]
     bodies = state.shape[0] - BOOKS - capacity.shape[0]
     write_clearances(made, growth, bodies, state, now)
     for f in range(count):
@@ -197,8 +237,8 @@ def _follow(
         thicker, narrower = viscosity_at(numbers, temperature) / made[VISCOSITY, f], reference / c
         now[ETA, f], now[SCALE, f] = thicker * made[VISCOSITY, f], thicker * narrower * narrower
         drag[f] = made[DRAG, f] * thicker * narrower
-        if moved:
-            keep_oil(films, wet, f, clearances[f] / c)
+        if ended:
+            keep_oil(films, wet, f, now[CLEARANCE_BEFORE, f] / c)
         clearances[f] = c
         set_scale(ends, films, f, now, reference)
     return RUNNING
@@ -206,150 +246,30 @@ def _follow(
 
 @compiled()
 def follow_temperatures(
-    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Array, moved: bool
+    heat: LumpedHeat, films: Any, drag: Array, clearances: Array, wet: Array
 ) -> int:
-    """_follow, for a call from Python."""
-    return int(_follow(heat, films, drag, clearances, wet, moved))
+    """_follow for the state of a run between two steps, for a call from Python."""
+    return int(_follow(heat, heat.state, films, drag, clearances, wet, False))
 
 
 @compiled()
-def _write(state: Array, now: Array, gain: Array, out_heat: Array, first: int, last: int) -> None:
+def _write(
+    numbers: Array, state: Array, change: Array, now: Array, out_heat: Array, first: int, last: int, until_end: float,
+    every: float, step: float,
+) -> None:  # fmt: skip
     """write_heat of LumpedHeat."""
-    n, count = gain.shape[0], now.shape[1]
+    n, count = change.shape[0] - CHANGES, now.shape[1]
     begin = state.shape[0] - n
     for row in range(first, last):
-        for f in range(count):
-            out_heat[row, TOLD * f] = state[begin + f]
-            out_heat[row, TOLD * f + 1], out_heat[row, TOLD * f + 2] = now[ETA, f], now[CLEARANCE, f]
-            out_heat[row, TOLD * f + 3], out_heat[row, TOLD * f + 4] = now[POWER, f], now[FLOW, f]
-        for i in range(count, n):
-            out_heat[row, (TOLD - 1) * count + i] = state[begin + i]
-
-
-def leaving(
-    ends: Any, films: Any, work: Any, f: int, d_x: float, d_y: float, v_x: float, v_y: float, total: float,
-    scale: float,
-) -> float:  # fmt: skip
-    """Flow through the ends of film f over its clearance, m^2/s, see end_flow; total: omega_J + omega_S."""
-    raise NotImplementedError
-
-
-def oil_share(films: Any, work: Any, f: int) -> float:
-    """Share of the gap of film f that is oil."""
-    raise NotImplementedError
-
-
-def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
-    """The oil of film f and its rate, over the clearance, times `narrower`: the clearance before over that now."""
-    raise NotImplementedError
-
-
-@compiled()
-def _scale_oil(wet: Array, f: int, factor: float) -> None:
-    """keep_oil of films on cells."""
-    if factor != 1.0:
-        for layer in range(OIL, wet.shape[0]):  # oil and gas with their rates
-            for i in range(wet.shape[2]):
-                for j in range(wet.shape[3]):
-                    wet[layer, f, i, j] *= factor
-
-
-def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
-    """Films on cells <- pressures and law of film f at its scale, bearing models <- viscosity and clearance; tabulated
-    films are asked for scaled velocities."""
-    raise NotImplementedError
-
-
-@overload(leaving, jit_options=AS_KERNELS, inline="always")
-def _leaving(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: ignore[no-untyped-def]
-    if kind_of(films) == CELLS:
-        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
-            ends.units[f]
-            * side_flow(
-                films.films[f], films.ring[f], films.cells[f], work.states[f],
-                work.grids[f].x, work.grids[f].y, ends.far_open[f] != 0,
-            )
-        )  # fmt: skip
-    if kind_of(films) == MODELS:
-        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
-            model_flow(films[f], d_x, d_y, v_x, v_y, total) / films[f].parameters[MODEL_CLEARANCE]
-        )
-    return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: _flow_of(
-        ends, f, d_x, d_y, v_x + 0.5 * total * d_y, v_y - 0.5 * total * d_x, scale
-    )
-
-
-def _flow_of(ends: Any, f: int, d_x: float, d_y: float, w_x: float, w_y: float, scale: float) -> float:
-    """end_flow of film f of those whose outflow follows from w."""
-    raise NotImplementedError
-
-
-@overload(_flow_of, jit_options=AS_KERNELS, inline="always")
-def _flow_of_one(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
-    if isinstance(ends, types.UniTuple):
-        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[f], d_x, d_y, w_x, w_y, scale)
-    if len(ends) == 1:
-        return lambda ends, f, d_x, d_y, w_x, w_y, scale: end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
-
-    def several(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
-        if f == 0:
-            return end_flow(ends[0], d_x, d_y, w_x, w_y, scale)
-        return _flow_of(ends[1:], f - 1, d_x, d_y, w_x, w_y, scale)
-
-    return several
-
-
-@compiled()
-def _set_model(parameters: Array, now: Array, f: int) -> None:
-    """set_scale of bearing models."""
-    parameters[MODEL_VISCOSITY], parameters[MODEL_CLEARANCE] = now[ETA, f], now[CLEARANCE, f]
-
-
-@compiled()
-def _scale_cells(ends: CellEnds, films: VolumeFilms, f: int, now: Array, reference: float) -> None:
-    """Scaled pressures are those in Pa over 12 eta / psi^2: what is given in Pa falls with the scale, forces rise."""
-    scale = now[SCALE, f]
-    film, made = films.films[f], ends.films[f]
-    film.scales.cavitation, film.scales.ambient = made.scales.cavitation / scale, made.scales.ambient / scale
-    film.far.pressure, film.supply = made.far.pressure / scale, made.supply / scale
-    film.centrifugal = made.centrifugal / scale
-    film.force_scale, film.roughness = made.force_scale * scale, made.roughness * reference / now[CLEARANCE, f]
-    film.given = made.given * reference / now[CLEARANCE, f]
-    film.line = made.line * reference / now[CLEARANCE, f]
-    for p in range(ends.exponents.shape[1]):
-        if ends.exponents[f, p] != 0.0:
-            film.parameters[p] = made.parameters[p] * scale ** ends.exponents[f, p]
-    for i in range(films.cells.shape[2]):
-        for j in range(films.cells.shape[3]):
-            films.cells[f, GIVEN_PRESSURE, i, j] = ends.given[f, i, j] / scale
-    for q in range(films.feed_holes.shape[0]):
-        hole, at_first = films.feed_holes[q], ends.feed_holes[q]
-        if hole.film == f:
-            hole.pressure_scale = at_first.pressure_scale * scale
-            hole.flow_scale = at_first.flow_scale * now[CLEARANCE, f] / reference
-    for k in range(films.channels.shape[0]):  # filled with the oil of the outer film, or of a groove
-        channel = films.channels[k]
-        filled_from = channel.outer if channel.outer >= 0 else channel.inner
-        if films.feed_holes[filled_from].film == f:
-            channel.resistance = ends.resistance[k] * now[ETA, f]
-
-
-by_kind(
-    keep_oil,
-    inline=True,
-    others=lambda films, wet, f, narrower: None,
-    cells=lambda films, wet, f, narrower: _scale_oil(wet, f, narrower),
-)
-by_kind(
-    oil_share,
-    inline=True,
-    others=lambda films, work, f: 1.0,
-    cells=lambda films, work, f: oil_fraction(films.cells[f], work.states[f]),
-)
-by_kind(
-    set_scale,
-    inline=True,
-    others=lambda ends, films, f, now, reference: None,
-    models=lambda ends, films, f, now, reference: _set_model(films[f].parameters, now, f),
-    cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference),
-)
+        back = min((until_end + (last - 1 - row) * every) / step, 1.0)
+        for i in range(n):
+            temperature = state[begin + i] - back * change[CHANGES + i]
+            if i >= count:
+                out_heat[row, (TOLD - 1) * count + i] = temperature
+                continue
+            out_heat[row, TOLD * i], out_heat[row, TOLD * i + 1] = temperature, viscosity_at(numbers, temperature)
+            for column, at in enumerate((CLEARANCE, POWER, FLOW)):
+                before = (CLEARANCE_BEFORE, POWER_BEFORE, FLOW_BEFORE)[column]
+                out_heat[row, TOLD * i + 2 + column] = now[at, i] + back * (now[before, i] - now[at, i])
+    for f in range(count):
+        now[CLEARANCE_BEFORE, f] = now[CLEARANCE, f]

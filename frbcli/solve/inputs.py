@@ -1,7 +1,7 @@
 """Inputs over time in the time loop, compiled. Two kinds ride in it:
 
 - an empty tuple: a machine whose inputs stay as they are, for which nothing is computed;
-- Inputs: each step has the values in its middle.
+- Inputs: each step has the pressures in its middle and the temperatures at its end.
 
 With r times its gauge pressures a film has the pressures of the velocity w / r, r times as large: one table serves all
 pressures of a supply, as one serves all viscosities. Films on cells are given their pressures.
@@ -48,10 +48,15 @@ class Inputs(NamedTuple):
     ends: Any
 
 
-def set_inputs(inputs: Any, films: Any, heat: Any, t: float) -> None:
-    """Films and heat <- the inputs at the time t in s."""
+def set_inputs(inputs: Any, films: Any, heat: Any, t: float, step: float) -> None:
+    """Films and heat <- the inputs of a step from the time t in s on."""
     if isinstance(inputs, Inputs):
-        _set(inputs, films, heat, t)
+        _set(inputs, films, heat, t, step)
+
+
+def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
+    """Films <- the pressures of the step at the viscosities of a stage."""
+    raise NotImplementedError
 
 
 def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
@@ -60,10 +65,17 @@ def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
 
 
 @overload(set_inputs, jit_options=AS_KERNELS, inline="always")
-def _set_inputs(inputs, films, heat, t):  # type: ignore[no-untyped-def]
+def _set_inputs(inputs, films, heat, t, step):  # type: ignore[no-untyped-def]
     if getattr(inputs, "instance_class", None) is not Inputs:
-        return lambda inputs, films, heat, t: None
-    return lambda inputs, films, heat, t: _set(inputs, films, heat, t)
+        return lambda inputs, films, heat, t, step: None
+    return lambda inputs, films, heat, t, step: _set(inputs, films, heat, t, step)
+
+
+@overload(supply_warm, jit_options=AS_KERNELS, inline="always")
+def _supply_warm(inputs, films, heat):  # type: ignore[no-untyped-def]
+    if getattr(inputs, "instance_class", None) is not Inputs or not have_heat(heat):
+        return lambda inputs, films, heat: None
+    return lambda inputs, films, heat: _supply(inputs, films, heat)
 
 
 @compiled()
@@ -96,13 +108,18 @@ def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
 
 
 @compiled()
-def _set(inputs: Inputs, films: Any, heat: Any, t: float) -> None:
-    give_temperatures(inputs, heat, t)
-    now = heat.now
+def _set(inputs: Inputs, films: Any, heat: Any, t: float, step: float) -> None:
+    give_temperatures(inputs, heat, t + step)
     for i in range(inputs.pressures.shape[0]):
         f = inputs.pressures[i, 1]
-        gauge = value_at(inputs, inputs.pressures[i, 0], t) - inputs.ambient
+        gauge = value_at(inputs, inputs.pressures[i, 0], t + 0.5 * step) - inputs.ambient
         inputs.shares[f] = max(gauge / inputs.largest[f], inputs.least)
+    _supply(inputs, films, heat)
+
+
+@compiled()
+def _supply(inputs: Inputs, films: Any, heat: Any) -> None:
+    now = heat.now
     for f in range(inputs.shares.shape[0] if inputs.pressures.shape[0] > 0 else 0):
         share, scale = inputs.shares[f], 1.0
         if now.shape[0] > 0:

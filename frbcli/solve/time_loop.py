@@ -15,8 +15,8 @@ import numpy as np
 from frbcli.compiled import compiled
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
-from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
-from frbcli.solve.inputs import Inputs, set_inputs
+from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, warm_stage, write_heat
+from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
@@ -26,7 +26,19 @@ from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
 from frbcli.solve.stage.rough_contact import set_sliding
-from frbcli.solve.state import HISTORY, RUNNING, SOLVES, STEP_DONE, STUCK, Array, Control, LoopOutput, RotorData, State
+from frbcli.solve.state import (
+    HISTORY,
+    OUTPUTS,
+    RUNNING,
+    SOLVES,
+    STEP_DONE,
+    STUCK,
+    Array,
+    Control,
+    LoopOutput,
+    RotorData,
+    State,
+)
 from frbcli.solve.step import (
     UNSOLVED,
     begin_past,
@@ -59,12 +71,13 @@ class Own(NamedTuple):
 
 
 class Space(NamedTuple):
-    """All scratch of this loop; work: of the films, see make_work. In kernels its parts are taken by their names: of
-    tuples of tuples that are unpacked, numba releases the arrays too early."""
+    """All scratch of this loop; work: of the films, see make_work; heat: a kind of heat.py. In kernels its parts are
+    taken by their names: of tuples of tuples that are unpacked, numba releases the arrays too early."""
 
     scratch: Scratch
     work: Any
     own: Own
+    heat: Any
 
 
 def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: Any) -> Space:
@@ -78,7 +91,7 @@ def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: An
     if isinstance(rotor.inputs, Inputs) and len(rotor.inputs.pressures):
         scales, shares = rotor.inputs.scales, rotor.inputs.shares
     work = make_work(films, state.wet, stages, scales, shares)
-    return Space(make_scratch(rotor, state.numbers, stages), work, own)
+    return Space(make_scratch(rotor, state.numbers, stages), work, own, heat)
 
 
 @compiled()
@@ -111,7 +124,7 @@ def advance(
     Returns (status, rows written). The course of the steps does not depend on how often this is called.
     """
     space = make_space(rotor, films, state, tableau.times.shape[0], heat)
-    status, rows = _advance(rotor, films, tableau, control, state, space, budget, output, heat)
+    status, rows = _advance(rotor, films, tableau, control, state, space, budget, output)
     return int(status), int(rows)
 
 
@@ -121,7 +134,7 @@ def _solve_stage(
     step: float, piece: int,
 ) -> tuple[bool, float]:  # fmt: skip
     """Stage s of a step from t on in a piece of the speed profile: whether it is solved, and its speed."""
-    scratch, work, own = space.scratch, space.work, space.own
+    scratch, work, own, heat = space.scratch, space.work, space.own, space.heat
     numbers, q, v, wet, flows = state.numbers, state.q, state.v, state.wet, state.flows
     clearances, turning, spins, grids = rotor.clearances, rotor.turning, rotor.spins, work.grids
     weights, moments = tableau.stage, tableau.times
@@ -139,8 +152,10 @@ def _solve_stage(
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
     add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
-    guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
+    warm_stage(heat, films, rotor.drag, clearances, wet, rings.bodies, moments[s] * step)
+    supply_warm(rotor.inputs, films, heat)
+    guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
     turn_cones(rotor.cones, rings.bodies, s, s - 1, g, selection, at, stage_a, journal)
     set_speeds(turning, rings.bodies, rings.angles, journal, grids)
     set_sliding(control.rough, turning, rings.bodies)
@@ -180,10 +195,10 @@ def some_are_kept() -> bool:
 @compiled()
 def _advance(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
-    output: LoopOutput, heat: Any,
+    output: LoopOutput,
 ) -> tuple[int, int]:  # fmt: skip
     """advance with the arrays that it works in."""
-    work, own, scratch = space.work, space.own, space.scratch
+    work, own, scratch, heat = space.work, space.own, space.scratch, space.heat
     numbers, q, v, a, past_now, wet, flows, errors = state
     times, speeds, angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     clearances, weights, journal = rotor.clearances, tableau.stage, scratch.journal
@@ -196,7 +211,7 @@ def _advance(
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
-        set_inputs(rotor.inputs, films, heat, t + 0.5 * step)
+        set_inputs(rotor.inputs, films, heat, t, step)
         begin_past(past_now, own.past)
         begin_stages(v, a, stage_v, stage_a)
         g, solved, speed = gamma * step, True, 0.0
@@ -222,7 +237,8 @@ def _advance(
         taken = Taken(step, g, rotor.torque_terms[1], *contact)
         bodies = own.rings.bodies
         hot = carry_heat(heat, films, work, rotor.turning, journal, bodies, wet, taken, clearances, rotor.drag)
-        write_heat(heat, out_heat, before, written)
+        until_end = t_new - (numbers[OUTPUTS] - 1.0) * control.output_step
+        write_heat(heat, out_heat, before, written, until_end, control.output_step, step)
         numbers[STEP_DONE] = step
         move_on(q, v, a, q_new, stage_v, stage_a)
         keep_past(own.past, past_now)

@@ -41,7 +41,7 @@ def advance_watched(
 ) -> tuple[int, int]:  # fmt: skip
     """Advance the state, see advance of time_loop.py, and take notes."""
     space = make_space(rotor, films, state, tableau.times.shape[0], heat)
-    status, rows = _advance_watched(rotor, films, tableau, control, state, space, budget, output, heat, notes)
+    status, rows = _advance_watched(rotor, films, tableau, control, state, space, budget, output, notes)
     return int(status), int(rows)
 
 
@@ -92,7 +92,7 @@ def _note(
 @compiled(makes_arrays=True)
 def _advance_watched(
     rotor: RotorData, films: Any, tableau: Tableau, control: Control, state: State, space: Space, budget: int,
-    output: LoopOutput, heat: Any, notes: Notes,
+    output: LoopOutput, notes: Notes,
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
     noted, status, written, now = notes.now, RUNNING, 0, np.empty_like(notes.now)
@@ -100,7 +100,7 @@ def _advance_watched(
     for _ in range(budget):
         t, first = numbers[TIME], numbers[OUTPUTS] - written
         left = LoopOutput(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])
-        status, rows = _advance(rotor, films, tableau, control, state, space, each, left, heat)
+        status, rows = _advance(rotor, films, tableau, control, state, space, each, left)
         step = numbers[TIME] - t
         if step > 0.0:
             _note(rotor, films, space.work, q, a, flows, notes.far_open, now)

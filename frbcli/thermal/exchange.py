@@ -26,8 +26,12 @@ HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = r
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
 # Rows of what a film is now: power W, flow m^3/s, viscosity Pa s, clearance m, scale of its pressures over that of its
-# table, share of its gap that is oil, heat that its oil takes along W/K, share of its gauge supply pressure.
-POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, SHARE_OF_SUPPLY, FILM_ROWS = range(9)
+# table, share of its gap that is oil, heat that its oil takes along W/K, share of its gauge supply pressure; the first
+# two and the clearance at the start of the last step.
+POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, SHARE_OF_SUPPLY = range(8)
+POWER_BEFORE, FLOW_BEFORE, CLEARANCE_BEFORE, FILM_ROWS = range(8, 12)
+# What the last step has added to the books, its length in s, and then what it has added to the temperatures of n nodes.
+LENGTH, CHANGES = HOT, HOT + 1
 LONGEST = 0.2  # of the shortest time constant: an explicit step
 ITERATIONS, FURTHEST, SETTLED = 30, 30.0, 1e-9  # of a film in balance: the steps of Newton's method and its end, K
 
@@ -183,11 +187,12 @@ def balance_films(links: Array, films: Array, numbers: Array, now: Array, temper
 
 @compiled(makes_arrays=True)
 def _follow_implicitly(
-    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
+    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, begun: Array, ahead: Array,
     gain: Array,
 ) -> None:  # fmt: skip
-    """temperatures (n,) <- after a step by Euler's implicit formula; gain (n,): as write_rates has left it."""
-    n, count, balanced = temperatures.shape[0], films.shape[1], numbers[BALANCED] != 0.0
+    """ahead (n,) <- temperatures after a step of Euler's implicit formula from `begun`; gain (n,): of those that were
+    ahead, as write_rates has left it."""
+    n, count, balanced = ahead.shape[0], films.shape[1], numbers[BALANCED] != 0.0
     matrix, change = np.zeros((n, n)), np.zeros((n, 1))
     for f in range(count):
         source, heat = int(films[INLET, f]), now[OIL_HEAT, f]
@@ -209,39 +214,58 @@ def _follow_implicitly(
             for j in range(n):
                 matrix[i, j] = 1.0 if i == j else 0.0
         else:
-            matrix[i, i] += (held_share(films, now, i) if i < count else 1.0) * capacity[i] / step
-            change[i, 0] = gain[i]
+            stored = (held_share(films, now, i) if i < count else 1.0) * capacity[i] / step
+            matrix[i, i] += stored
+            change[i, 0] = gain[i] - stored * (ahead[i] - begun[i])
     solve_dense(matrix, change)
     for i in range(n):
-        temperatures[i] += change[i, 0]
+        ahead[i] += change[i, 0]
 
 
 @compiled(inline=True)
 def heat_step(
-    capacity: Array, links: Array, films: Array, numbers: Array, now: Array, step: float, temperatures: Array,
-    gain: Array, books: Array,
+    model: HeatArrays, now: Array, step: float, temperatures: Array, ahead: Array, last: Array, gain: Array,
+    books: Array,
 ) -> None:  # fmt: skip
-    """temperatures (n,) <- after a step in s in which the films dissipate and let out what `now` says; books (BOOKS,)
-    add up where the heat goes. gain: (n,) scratch.
+    """temperatures (n,) <- after a step in s, at whose end films of the temperatures `ahead` dissipate and let out what
+    `now` says; books (BOOKS,) add up where the heat goes. last (CHANGES + n,): of the step before, then of this one;
+    ahead, gain (n,): scratch.
 
-    An explicit step, or where that is not short against the time constants of all nodes, an implicit one, in which
-    nodes of little capacity are in balance: what one node loses is what others gain, to round-off.
+    The backward differentiation formula of second order for steps of any length is Euler's implicit formula for a
+    shorter step that begins where a share of the last change has led. What follows from it for temperatures holds for
+    the books, too: what one node loses is what others gain, to round-off. Rates are those of `ahead`, which
+    extrapolates the temperatures, or where a step is not short against the time constants of all nodes, those of its
+    end: nodes of little capacity are in balance then.
     """
-    balanced, count = numbers[BALANCED] != 0.0, films.shape[1]
+    capacity, links, films, numbers, _ = model
+    balanced, count, n = numbers[BALANCED] != 0.0, films.shape[1], temperatures.shape[0]
+    ratio = step / last[LENGTH] if last[LENGTH] > 0.0 else 0.0
+    share = ratio * ratio / (1.0 + 2.0 * ratio)
+    length = step * (1.0 + ratio) / (1.0 + 2.0 * ratio)
     if balanced:
-        balance_films(links, films, numbers, now, temperatures)
-    short = step * fastest(capacity, links, films, numbers, now, gain) <= LONGEST
-    carried, given = write_rates(capacity, links, films, numbers, now, temperatures, gain)
+        balance_films(links, films, numbers, now, ahead)
+    short = length * fastest(capacity, links, films, numbers, now, gain) <= LONGEST
+    carried, given = write_rates(capacity, links, films, numbers, now, ahead, gain)
+    dissipated = in_films = 0.0
+    for i in range(n):
+        change = share * last[CHANGES + i]
+        last[CHANGES + i] = temperatures[i]
+        if capacity[i] != math.inf and not (balanced and i < count):
+            temperatures[i] += change  # where Euler's formula begins
     if not short:
-        _follow_implicitly(capacity, links, films, numbers, now, step, temperatures, gain)
-        carried, given = _write_gains(capacity, links, films, numbers[MIXING], now, temperatures, gain)
-    books[CARRIED] += step * carried
-    books[GIVEN] += step * given
-    for i in range(temperatures.shape[0]):
+        _follow_implicitly(capacity, links, films, numbers, now, length, temperatures, ahead, gain)
+        carried, given = _write_gains(capacity, links, films, numbers[MIXING], now, ahead, gain)
+    for i in range(n):
         if i < count:
-            books[DISSIPATED] += step * now[POWER, i]
-            if not balanced:
-                books[IN_FILMS] += step * gain[i]
-        if short and capacity[i] != math.inf and not (balanced and i < count):
-            share = held_share(films, now, i) if i < count else 1.0
-            temperatures[i] += step * gain[i] / (share * capacity[i])
+            dissipated += now[POWER, i]
+            in_films += 0.0 if balanced else gain[i]
+        if not short or (balanced and i < count):
+            temperatures[i] = ahead[i]
+        elif capacity[i] != math.inf:
+            held = held_share(films, now, i) if i < count else 1.0
+            temperatures[i] += length * gain[i] / (held * capacity[i])
+        last[CHANGES + i] = temperatures[i] - last[CHANGES + i]
+    last[LENGTH] = step
+    for book, rate in ((DISSIPATED, dissipated), (CARRIED, carried), (GIVEN, given), (IN_FILMS, in_films)):
+        last[book] = share * last[book] + length * rate
+        books[book] += last[book]

@@ -56,6 +56,32 @@ def test_walls_that_store_next_to_nothing_run_as_those_that_store_little(wall: s
         assert run.error["heat_balance_relative"] < 1e-9  # type: ignore[operator]
 
 
+def warming(steps: int, path: Path) -> Run:
+    """A plain film that warms up at 40 Hz, with so many steps per revolution."""
+    fine = ("accuracy.tolerance=1e-6", f"accuracy.steps_per_revolution={steps}", "output.step=1ms")
+    return runup(single("rotor.gravity=9.81", "film.theory=short", *STILL, *at_speed(40.0, 0.1), *fine), path)
+
+
+def test_temperatures_are_of_second_order_in_the_step(tmp_path: Path) -> None:
+    """With viscosities of the step before the first of these has errors of 4e-2 K and 1e-4 of the clearance."""
+    exact, *runs = (warming(steps, tmp_path / f"{steps}.h5") for steps in (1280, 40, 80, 160))
+    for name, largest in (("temperature_K", 1e-3), ("eccentricity", 1e-5)):
+        errors = [float(np.abs(run[name] - exact[name]).max()) for run in runs]
+        assert errors[0] < largest
+        assert np.diff(np.log2(errors)) == pytest.approx(-2.0, abs=0.25)
+
+
+@pytest.mark.parametrize("films", ["states", "quasi-steady"])
+def test_a_warm_rotor_comes_to_rest(films: str, tmp_path: Path) -> None:
+    """Temperatures that go on as in the last step end where nothing moves any more."""
+    case = single("rotor.gravity=9.81", "film.theory=short", *STILL, *at_speed(40.0, 3.0), "output.step=1ms",
+                  "thermal.housing=75 degC", f"thermal.films={films}")  # fmt: skip
+    run = runup(case, tmp_path / "run.h5")
+    settled = run["time_s"] > 2.7
+    assert np.ptp(run["temperature_K"][settled]) < 1e-11
+    assert np.ptp(run["eccentricity"][settled]) < 1e-12
+
+
 # --- where a run settles ---------------------------------------------------------------------------------------------
 @pytest.mark.parametrize(
     ("settings", "duration"),

@@ -36,7 +36,19 @@ from frbcli.solve.stage.equations import (
 )
 from frbcli.solve.stage.inverse import LAG_SWEEPS, outdated, prepare
 from frbcli.solve.stage.loads import add_loads, prepare_loads
-from frbcli.solve.state import CONTACT, HISTORY, RUNNING, STEP, STUCK, Array, Control, LoopOutput, RotorData, State
+from frbcli.solve.state import (
+    CONTACT,
+    HISTORY,
+    OUTPUTS,
+    RUNNING,
+    STEP,
+    STUCK,
+    Array,
+    Control,
+    LoopOutput,
+    RotorData,
+    State,
+)
 from frbcli.solve.step import (
     SMALLEST_STEP,
     begin_stages,
@@ -216,10 +228,9 @@ def advance_in_turn(
     """Advance rotor and films that are solved apart, see advance of time_loop.py; the state comes from in_turn of
     runs/cosimulation.py.
 
-    Temperatures move on once in a macro step, by the power and the flow at its end: viscosities and clearances are
-    those of the macro step before. control.longest_step is the longest macro step. state.past: (3, 1 + 6 films + 3
-    rings) at the last macro times: time; the journals' displacements and velocities; the rings' angles and speeds; the
-    films' forces, the rings' torques.
+    Temperatures move on once in a macro step, by the power and the flow at its end. control.longest_step is the longest
+    macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times: time; the journals' displacements and
+    velocities; the rings' angles and speeds; the films' forces, the rings' torques.
     """
     stages = tableau.times.shape[0]
     begin_heat(heat, films, rotor, state.wet)
@@ -280,13 +291,14 @@ def _advance(
         largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], told.motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
-        if not films_follow(films, work, rotor, tableau, control, state, piece, told, journal, turning):
+        if not films_follow(films, work, rotor, tableau, control, state, heat, piece, told, exchange):
             return STUCK, written
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
         write_oil(films, work, out_oil, before, written)
         hot = _warm_up(heat, films, work, rotor, control, state, step, exchange)
-        write_heat(heat, output.heat, before, written)
+        until_end = t_new - (numbers[OUTPUTS] - 1.0) * control.output_step
+        write_heat(heat, output.heat, before, written, until_end, control.output_step, step)
         _ask_for_torques(films, work, rotor, control, aside, turning)
         move_on(q, v, a, q_new, stage_v, stage_a)
         _remember(past, t_new, told.motions[2], journal, turning.torque, given)

@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 from frbcli.compiled import Array, compiled
 from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import NEWTON_LIMIT, accept_films, begin_stage
-from frbcli.solve.ring_spin import Rings, set_speeds
+from frbcli.solve.heat import warm_stage
+from frbcli.solve.ring_spin import set_speeds
 from frbcli.solve.rotation import rotation
 from frbcli.solve.stage.equations import FORCE, X_0, U, lagrange
 from frbcli.solve.stage.journal_newton import forces
@@ -91,14 +92,15 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
 
 @compiled(makes_arrays=True)
 def films_follow(
-    films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, piece: int, told: Told,
-    journal: Array, rings: Rings,
+    films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, heat: Any, piece: int,
+    told: Told, exchange: Any,
 ) -> bool:  # fmt: skip
-    """Take the films through a macro step; FORCE is then theirs. Returns whether that succeeded."""
+    """Take the films through a macro step; FORCE is then theirs. exchange: see macro_step.py. Returns whether that
+    succeeded."""
     times, speeds, profile_angles = rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
     turning, clearances, numbers = rotor.turning, rotor.clearances, state.numbers
     weights, moments, order, tolerance = tableau.stage, tableau.times, float(tableau.error_order), control.tolerance
-    bodies, angles = rings.bodies, rings.angles
+    journal, bodies, angles = exchange.scratch.journal, exchange.rings.bodies, exchange.rings.angles
     remembers = numbers[FILMS_REMEMBER] != 0.0
     lagrange = told.times.copy()
     stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], told.times[1], told.times[2]
@@ -113,6 +115,7 @@ def films_follow(
             _, bodies[0], angles[0] = rotation(times, speeds, profile_angles, piece, t + reach)
             _move_journals(told, t + reach, g, journal, bodies, angles, lagrange)
             set_speeds(turning, bodies, angles, journal, work.grids)
+            warm_stage(heat, films, rotor.drag, clearances, state.wet, bodies, t + reach - told.times[1])
             lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
             begin_stage(films, work, state.wet, state.flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
             iterations = _solve_films(films, work, clearances, control, g, s, journal)
