@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 
 from pydantic import Discriminator, Field, Tag
 
-from frbcli.case.laws import Cavitation
+from frbcli.case.film_tables import Cavitation
 from frbcli.case.model import Model
 from frbcli.case.quantities import (
     Angle,

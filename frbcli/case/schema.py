@@ -21,9 +21,9 @@ from frbcli.case.course.motion import KinematicMotion
 from frbcli.case.course.speed import SpeedRamp
 from frbcli.case.elements import Axial, Element, ThrustBearings
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
+from frbcli.case.film_tables import Cavitation
 from frbcli.case.films.contact import Contact
 from frbcli.case.films.film_model import FilmModel
-from frbcli.case.laws import Cavitation
 from frbcli.case.model import Model, altered
 from frbcli.case.oil import Oil
 from frbcli.case.quantities import Label

@@ -1,53 +1,20 @@
-"""The film theories in a case file: those of the program, and the bearing models of this process with their keys."""
+"""Whether the films of a case can take a bearing model of this process, and the values that they give its keys."""
 
 from __future__ import annotations
 
 import math
 import re
-from functools import cache
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any
 
-from pydantic import Field, create_model
-from pydantic.fields import FieldInfo
-
-from frbcli.case.laws import declared
+from frbcli.case.film_tables import THEORIES, FilmTable, attribute
 from frbcli.case.model import Model
 from frbcli.errors import Fault, InputError
-from frbcli.film.bearing_model import table
 from frbcli.film.bearing_model.model import DIMENSIONS, BearingModel, wrong
 from frbcli.film.cavitation.law import Key
 from frbcli.film.cavitation.table import names as law_names
 
-SHIPPED = ("auto", "short", "finite")
-THEORY = "theory"  # the key that takes the name of a theory
 _NAME = re.compile("[a-z][a-z-]{0,39}")  # as pictures of a run read it
 _PARAMETER = re.compile("[a-z][a-z0-9_]{0,39}")
-
-if TYPE_CHECKING:
-    Theory = str
-else:
-    Theory = Literal[SHIPPED]
-
-
-class ModelTable(Model):
-    """A table [film.NAME], made from the keys of a bearing model."""
-
-
-def attribute(model: BearingModel) -> str:
-    """The attribute of a FilmModel that holds the table of a bearing model."""
-    return model.name.replace("-", "_")
-
-
-def adopt_models(film: type[Model]) -> None:
-    """Give the model of [film] the table of every bearing model that has keys and of no other, and its `theory` their
-    names. Models that hold it have to be rebuilt by the caller."""
-    fields = film.__pydantic_fields__
-    for name in [name for name, field in fields.items() if isinstance(field.default, ModelTable)]:
-        del fields[name]
-    fields |= {attribute(model): _field(model) for model in table.models() if model.keys}
-    names: Any = Literal[(*SHIPPED, *(model.name for model in table.models()))]
-    fields[THEORY].annotation = names
-    film.model_rebuild(force=True)
 
 
 def check_model(model: BearingModel, film: type[Model]) -> None:
@@ -62,9 +29,9 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
     others = {
         name: field
         for name, field in film.__pydantic_fields__.items()
-        if not isinstance(field.default, ModelTable)
+        if not isinstance(field.default, FilmTable)
     }  # fmt: skip
-    taken = {*SHIPPED, *law_names(), *others, *(field.alias for field in others.values())}
+    taken = {*THEORIES, *law_names(), *others, *(field.alias for field in others.values())}
     if {model.name, attribute(model)} & taken:
         raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
     if not isinstance(model.label, str) or not model.label.isprintable():
@@ -110,23 +77,3 @@ def _number(key: Key, value: float | str | None) -> float:
     if value is None:
         return math.nan
     return float(key.choices.index(str(value)) if key.choices else value)
-
-
-def __getattr__(name: str) -> Any:
-    """The model of the table of the bearing model of this name: where copies of a case find it."""
-    for model in table.models():
-        if attribute(model) == name and model.keys:
-            return _tables(model)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-
-
-@cache
-def _tables(model: BearingModel) -> type[ModelTable]:
-    entries, name = declared(model.keys), attribute(model)
-    return create_model(name, __base__=ModelTable, __doc__=model.meaning, __module__=__name__, **entries)
-
-
-def _field(model: BearingModel) -> FieldInfo:
-    made = _tables(model)
-    alias = None if attribute(model) == model.name else model.name
-    return FieldInfo.from_annotated_attribute(made, Field(default=made(), alias=alias))

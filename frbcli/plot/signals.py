@@ -11,8 +11,8 @@ from typing import Any
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
+from frbcli.case.film_tables import THEORIES
 from frbcli.case.reading.toml import TomlFault, parse
-from frbcli.case.theories import SHIPPED as THEORIES
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes

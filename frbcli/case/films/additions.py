@@ -5,11 +5,11 @@ from __future__ import annotations
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.elements import CoefficientsBearing
 from frbcli.case.film_geometry import RingFilm
+from frbcli.case.film_tables import adopt
 from frbcli.case.films.film_model import FilmModel
-from frbcli.case.laws import adopt
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.damper import Damper
-from frbcli.case.theories import adopt_models, check_model
+from frbcli.case.theories import check_model
 from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation import table
@@ -37,7 +37,7 @@ def add_law(law: type[Law]) -> None:
     if any(model.name == getattr(law, "name", None) for model in bearing_models.models()):
         raise ValueError(f"{law.__name__} has the name of a bearing model, {law.name}; choose another one")
     table.add(law)
-    _adopt_laws()
+    _adopt()
 
 
 def remove_law(name: str) -> None:
@@ -59,13 +59,7 @@ def remove_law(name: str) -> None:
     >>> frbcli.remove_law("mine")  # doctest: +SKIP
     """
     table.remove(name)
-    _adopt_laws()
-
-
-def _adopt_laws() -> None:
-    adopt(FilmModel, (RingFilm, Damper))
-    for holder in (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, Case):
-        holder.model_rebuild(force=True)
+    _adopt()
 
 
 def add_bearing(model: BearingModel) -> None:
@@ -88,7 +82,7 @@ def add_bearing(model: BearingModel) -> None:
     """
     check_model(model, FilmModel)
     bearing_models.add(model)
-    _adopt_bearings()
+    _adopt()
 
 
 def remove_bearing(name: str) -> None:
@@ -110,9 +104,10 @@ def remove_bearing(name: str) -> None:
     >>> frbcli.remove_bearing("damper")  # doctest: +SKIP
     """
     bearing_models.remove(name)
-    _adopt_bearings()
+    _adopt()
 
 
-def _adopt_bearings() -> None:
-    adopt_models(FilmModel)
-    Case.model_rebuild(force=True)
+def _adopt() -> None:
+    adopt(FilmModel, (RingFilm, Damper))
+    for holder in (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, Case):
+        holder.model_rebuild(force=True)

@@ -6,10 +6,8 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from frbcli.case.laws import Cavitation, adopt, attribute
+from frbcli.case.film_tables import THEORIES, Cavitation, Theory, adopt, attribute
 from frbcli.case.model import Model
-from frbcli.case.theories import SHIPPED as THEORIES
-from frbcli.case.theories import Theory
 from frbcli.film.cavitation.table import law_named
 
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
-from frbcli.case.theories import SHIPPED as THEORIES
+from frbcli.case.film_tables import THEORIES
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import curve
