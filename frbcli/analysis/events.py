@@ -28,7 +28,7 @@ from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, trac
 from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, window_step_s
 from frbcli.analysis.signals import RunLike, joined, pieces, points
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
-from frbcli.analysis.spectra.windows import hann
+from frbcli.analysis.spectra.spectrum import hann
 from frbcli.arrays import Array, Complex
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",

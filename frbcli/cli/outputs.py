@@ -43,7 +43,7 @@ class Outputs:
         """Write those of a result, and return their paths as parts of a JSON document. what: the name of the picture in
         the text; picture: in place of that of the result."""
         if self.csv is not None:
-            from frbcli.results.files.tables import write_table
+            from frbcli.results.files.write import write_table
 
             write_table(found.to_pandas(), self.csv)
             terminal.result(f"table: {self.csv}")

@@ -6,23 +6,35 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
 from frbcli.cycles.faults import check
 from frbcli.cycles.heat import WarmFollower, warm_walk
-from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.changing import ChangingFollower, by_difference, kept
+from frbcli.cycles.method.continuation import Place, Unreachable
 from frbcli.cycles.method.cycle import HOPF
-from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.equilibria import (
+    Equilibrium,
+    OverSpeed,
+    at_rest,
+    equations,
+    equilibrium,
+    place_between,
+    resting_along,
+    resting_curve,
+)
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
-from frbcli.cycles.over_speed import changing_walk
+from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.branches import whirls_with_unbalance
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
+from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
@@ -150,3 +162,50 @@ def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles
     met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
     missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
     return replace(found, notes=(*found.notes, *missing))
+
+
+class ChangingSpeed:
+    """The course of such a machine over the speed of its rotor in rad/s, see SpeedCourse. pace: its fastest speed."""
+
+    def __init__(self, system: System, fastest: float) -> None:
+        self.pace, self.system = fastest, system
+        self.machine_at = kept(self._machine_at)
+
+    def _machine_at(self, share: float) -> Machine:
+        """The machine with the coefficients of a speed over the pace."""
+        return make_machine(self.system_at(share * self.pace), self.pace)
+
+    def system_at(self, value: float) -> System:
+        """The system with the coefficients of a speed."""
+        return replace(self.system, rotor=self.system.rotor.at(value))
+
+    def machine(self, value: float) -> Machine:
+        """As EquilibriumCourse says."""
+        return self.machine_at(value / self.pace)
+
+    def equations(self, y: Array) -> tuple[Array, Array]:
+        """As SpeedCourse says."""
+        return by_difference(self.machine_at, equations, y)
+
+    def equilibrium(self, place: Place) -> Equilibrium:
+        """As SpeedCourse says."""
+        machine = self.machine_at(float(place.y[-1]))
+        return equilibrium(machine, state_space(machine), place)
+
+    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+        """As EquilibriumCourse says."""
+        return replace(self.equilibrium(place_between(self, low, high, value)), omega=value, value=value)
+
+
+def changing_walk(
+    case: Case, plan: Plan, system: System, slowest: float, fastest: float, asked: Sequence[float] = ()
+) -> Walk:
+    """What the diagram of a rotor with such coefficients goes over, between two speeds in rad/s. Raises NotConverged
+    without a resting position at the fastest one, and Unreachable."""
+    course = ChangingSpeed(system, fastest)
+    near = at_rest(course.machine_at(1.0), resting_position(course.system_at(fastest), fastest))
+    resting = resting_along(course, near, slowest, fastest)
+    others = [(ChangingSpeed(other.system(case), fastest), other.share) for other in other_films(plan)]
+    meshes = tuple(OtherMesh(its, ChangingFollower(its.machine_at, slowest, fastest), share) for its, share in others)
+    follower = ChangingFollower(course.machine_at, slowest, fastest, asked)
+    return over_speed(course, resting, follower, meshes, why_no_error(plan))

@@ -13,7 +13,7 @@ PICTURES = {  # class of a result: module in this room, and its function
     "BearingSheet": "machine.bearing:bearing_figure",
     "Comparison": "studies.compare:comparison_figure",
     "CriticalMap": "machine.critical_map:critical_map_figure",
-    "DampedModes": "machine.shapes:shapes_figure",
+    "DampedModes": "machine.modes:shapes_figure",
     "Fit": "spectra.ridges:fit_figure",
     "KinematicTest": "machine.history:kinematic_figure",
     "LimitCycles": "machine.limit_cycles:limit_cycles_figure",

@@ -19,8 +19,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of, symbols_at
-from frbcli.report.element_symbols import FLAT, HIGH, height, stack
-from frbcli.report.svg import box, curve, drawing, element, line, text
+from frbcli.report.svg import FLAT, HIGH, box, curve, drawing, element, height, line, stack, text
 from frbcli.scene.films import HOUSING as STILL
 from frbcli.scene.films import film_places
 from frbcli.scene.shafts.table import shaft_of

@@ -3,21 +3,28 @@
 from __future__ import annotations
 
 import itertools
+import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from importlib.util import find_spec
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 from frbcli.errors import InputError, input_error
-from frbcli.results.files.kinds import TABLES
-from frbcli.results.files.tables import harmless_text
-from frbcli.results.files.write import written
+from frbcli.results.files.kinds import ROSS, TABLES
+from frbcli.results.files.write import harmless_text, write, written
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 LINES = 50_000  # of CSV that are made at a time
 MOST_COMPRESSED = 4_000_000  # samples of a column of MAT
+
+COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
+           for letter, name, unit in (("k", "stiffness", "N_m"), ("c", "damping", "N_s_m"))
+           for axes in ("xx", "xy", "yx", "yy")}  # fmt: skip
 
 
 def export_run(run: Run, path: str | Path, table_format: str) -> Path:
@@ -103,3 +110,29 @@ FORMATS: dict[str, Callable[[Run, Path], None]] = {"csv": _write_csv, "parquet":
 
 def _refuse(key: str, problem: str, remedy: str) -> InputError:
     return input_error("export", key, "", problem, remedy)
+
+
+def ross_files(path: Path, films: Sequence[str]) -> dict[str, Path]:
+    """The file of each film: `path` for one alone; for several its name with that of the film, since ROSS loads one
+    bearing from a file and passes over any other."""
+    if len(films) == 1:
+        return {films[0]: path}
+    return {film: path.with_name(f"{path.stem}-{film}{path.suffix}") for film in films}
+
+
+def write_ross(table: pd.DataFrame, path: Path) -> None:
+    """A TOML table of one film: node n (to be set there), kxx to cyy in N/m and N s/m over the frequency in rad/s.
+
+    table: the rows of the film in BearingSheet.to_pandas over speed; states that were not found are left out. Raises
+    InputError if the file cannot be written.
+    """
+    found = table[table["status"] == "resting"].sort_values("speed_Hz")
+    name = table["film"].iloc[0] or "bearing"
+    lines = [f'["BearingElement_{name}"]', "n = 0", f'tag = "{name}"']
+    lines += [f"{name} = {_numbers(found[column])}" for name, column in COLUMNS.items()]
+    lines.append(f"frequency = {_numbers(2.0 * math.pi * found['speed_Hz'])}")
+    write(path, ROSS, "\n".join(lines) + "\n")
+
+
+def _numbers(values: pd.Series) -> str:
+    return f"[{', '.join(repr(float(value)) for value in values)}]"

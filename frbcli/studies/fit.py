@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -24,7 +25,7 @@ from frbcli.arrays import Array, Truths
 from frbcli.case.reading.listing import values as listed
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import Fault, FrbError, InputError, input_error
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
@@ -32,7 +33,6 @@ from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import require
-from frbcli.studies.fit_columns import FITTED
 
 SPAN = 3.0  # factor by which a number may move either way, if no bounds are given
 STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by
@@ -333,3 +333,36 @@ def _number(case: Case, key: str, bounds: tuple[float, float] | None) -> Fitted:
         remedy = "Widen them, or change the case by --set."
         raise input_error(case.name, "--bounds", key, problem, remedy)
     return Fitted(key, known[key].unit, value, value, math.nan, low, high)
+
+
+def _in_units(number: Any, value: float) -> str:
+    from frbcli.units import display  # of the library of units, which is slow to import
+
+    return display(float(f"{value:.5g}"), number.unit) if number.unit else f"{value:.5g}"
+
+
+def _error(number: Any) -> str:
+    return "at a bound" if number.at_bound else f"{100.0 * number.error / number.value:.2g} %"
+
+
+def _bounds(number: Any) -> str:
+    return f"{_in_units(number, number.low)} to {_in_units(number, number.high)}"
+
+
+# Of a Fitted; the terminal shows each number in a unit of its own
+FITTED = (
+    Column("key", "", "key of the case", shown=(Shown("key"),)),
+    Column("unit", "", "unit of the numbers, SI"),
+    Column("start", "", "value of the case"),
+    Column("value", "", "value that was found"),
+    Column("error", "", "standard error"),
+    Column("low", "", "lower bound"),
+    Column("high", "", "upper bound"),
+    Column("at_bound", "", "whether the value lies at a bound, so that the error means nothing", flat=False),
+    *(Column(head, "", "", value, shown=(Shown(head),), key="", flat=False) for head, value in (
+        ("at first", lambda number: _in_units(number, number.start)),
+        ("found", lambda number: _in_units(number, number.value)),
+        ("error", _error),
+        ("between", _bounds),
+    )),
+)  # fmt: skip

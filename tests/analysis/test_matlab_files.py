@@ -272,7 +272,7 @@ def test_a_universal_file_without_responses_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_universal_file_asks_for_its_library(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("frbcli.results.measured.uff.find_spec", lambda _: None)
+    monkeypatch.setattr("frbcli.results.measured.reading.find_spec", lambda _: None)
     (tmp_path / "run.uff").write_text("-1", encoding="utf-8")
     with pytest.raises(InputError, match=r"pip install frbcli\[uff\]"):
         read_columns(tmp_path / "run.uff")

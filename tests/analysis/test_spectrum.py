@@ -10,9 +10,15 @@ import pytest
 
 from frbcli.analysis import signals
 from frbcli.analysis.spectra import spectrum
-from frbcli.analysis.spectra.smear import chirp_height
-from frbcli.analysis.spectra.spectrum import Direction, FLOOR_dB, Spectrogram, waterfall, window_length
-from frbcli.analysis.spectra.windows import fast_length
+from frbcli.analysis.spectra.spectrum import (
+    Direction,
+    FLOOR_dB,
+    Spectrogram,
+    chirp_height,
+    fast_length,
+    waterfall,
+    window_length,
+)
 from frbcli.errors import InputError
 
 CLEARANCE = 35e-6

@@ -22,7 +22,7 @@ print(*sorted(heavy & set(sys.modules)))
 # In such a process, numba with the functions that it has of numpy, and of these one that asks for a BLAS
 MULTIPLIES = """
 import sys
-from frbcli.cli.libraries import prepare_libraries
+from frbcli.cli.process import prepare_libraries
 prepare_libraries()
 import numba, numpy
 one = numba.njit(lambda x: x + 1.0)
@@ -35,7 +35,7 @@ assert scipy.linalg.eigh(numpy.eye(2))[0].tolist() == [1.0, 1.0]
 # In such a process, how matplotlib tells a class of its own to take its properties, and a picture
 DRAWS = """
 import sys
-from frbcli.cli.libraries import prepare_libraries
+from frbcli.cli.process import prepare_libraries
 if sys.argv[1] == "prepared":
     prepare_libraries()
 import matplotlib.artist

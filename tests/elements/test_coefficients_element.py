@@ -463,7 +463,7 @@ def test_a_csv_is_linear_between_its_speeds_and_constant_beyond(tmp_path: Path) 
 
 def test_the_file_of_a_bearing_sheet_and_a_csv_give_the_same(tmp_path: Path) -> None:
     from frbcli.linear.bearing_sheet import bearing_sheet
-    from frbcli.results.ross import write_ross
+    from frbcli.results.export import write_ross
 
     sheet = bearing_sheet(in_film(), [40.0, 80.0, 120.0])
     frame = sheet.to_pandas()

@@ -47,11 +47,11 @@ from frbcli.scene.machine.operating import FILM_OPERATION
 from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.comparison_columns import HEAT, VARIANT
-from frbcli.studies.fit_columns import FITTED
-from frbcli.studies.hard.columns import HARD_CASE, HARD_RESULT
-from frbcli.studies.ladder_columns import LADDER
+from frbcli.studies.fit import FITTED
+from frbcli.studies.hard.cases import HARD_CASE, HARD_RESULT
+from frbcli.studies.ladder import LADDER
 from frbcli.studies.onset_spread import ONSET_RUNS
-from frbcli.studies.sweep.columns import point_columns
+from frbcli.studies.sweep.sweep import point_columns
 
 
 def of_pandas(columns: Columns) -> Columns:

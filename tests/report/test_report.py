@@ -27,9 +27,9 @@ from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.speeds import between
 from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
 from frbcli.plot.style import narrowed
-from frbcli.report.element_symbols import SYMBOLS
 from frbcli.report.page import NARROW, NARROW_COLUMNS, report
 from frbcli.report.sketch import film_sketches, rotor_sketch
+from frbcli.report.svg import SYMBOLS
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 

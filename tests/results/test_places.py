@@ -30,8 +30,7 @@ from frbcli.errors import InputError
 from frbcli.plot.moving.orbits import animate_orbits
 from frbcli.results.files.kinds import PAGE, TABLES
 from frbcli.results.files.lock import locked
-from frbcli.results.files.tables import harmless_text, write_table
-from frbcli.results.files.write import write, written
+from frbcli.results.files.write import harmless_text, write, write_table, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup

@@ -13,7 +13,7 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import BEFORE_WHIRL, quiet_until, summed
+from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FilmErrors, quiet_until, summed
 from frbcli.runs.errors.fewer_cells import (
     SAFETY,
     SAFETY_OF_OPENINGS,
@@ -21,7 +21,6 @@ from frbcli.runs.errors.fewer_cells import (
     SAFETY_OF_RINGS_AT_REST,
     on_fewer_cells,
 )
-from frbcli.runs.errors.film_error import FilmErrors
 from frbcli.runs.run import runup
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.machine.system import make_system
@@ -30,8 +29,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
-from frbcli.studies.differences import difference
-from frbcli.studies.verify import verify
+from frbcli.studies.differences import difference, verify
 
 SHORT_RUN = ("speed.duration=0.3 s", "speed.to=30 Hz", "output.step=1e-3 s")
 

@@ -24,7 +24,7 @@ import numpy as np
 
 from frbcli.analysis import signals
 from frbcli.analysis.signals import RunLike
-from frbcli.analysis.spectra.windows import fast_length, hann
+from frbcli.analysis.spectra.spectrum import fast_length, hann
 from frbcli.arrays import Array, Complex
 
 CELLS = 32  # per revolution

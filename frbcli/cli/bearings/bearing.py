@@ -111,14 +111,14 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     """The file for ROSS of each film, if they are asked for."""
     if ross is None:
         return {}
-    from frbcli.results.ross import ross_files
+    from frbcli.results.export import ross_files
     from frbcli.scene.films import bearing_films
 
     return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
 def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Path]) -> None:
-    from frbcli.results.ross import write_ross
+    from frbcli.results.export import write_ross
 
     table = found.to_pandas()
     for film, path in elements.items():

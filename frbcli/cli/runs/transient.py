@@ -16,16 +16,17 @@ from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
-from frbcli.cli.studies.onset_spread import spread_shown
 from frbcli.columns import table_of
 from frbcli.errors import FrbError
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
+    from frbcli.cli.common import Terminal
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer
     from frbcli.scene.costs.cost import ExpectedCost
+    from frbcli.studies.onset_spread import OnsetSpread
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -184,7 +185,7 @@ def _watch(terminal: Terminal, shown: Display) -> Observer:
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     """The change in a finer run, as text and as part of the JSON document."""
-    from frbcli.studies.verify import verify
+    from frbcli.studies.differences import verify
 
     try:
         with display(terminal) as shown:
@@ -246,3 +247,45 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
         for sentence in about_certainty(events, run.cost):
             terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))
+
+
+def spread_shown(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
+    """The ensemble as text, and as part of the JSON document."""
+    from frbcli.studies.onset_spread import onset_spread
+
+    try:
+        with display(terminal) as shown:
+
+            def watch(number: int, count: int, progress: Progress) -> None:
+                shown.redraw(f"run {number} of {count}\n{progress_line(progress)}")
+
+            found = onset_spread(case, run, watch)
+    except KeyboardInterrupt:
+        terminal.remark("Interrupted before all runs of the onset had ended.")
+        return {"status": "interrupted"}
+    if found is None:
+        terminal.result("No whirl begins in this run: its onset has no spread.")
+        return {"status": "no-onset"}
+    _show(found, terminal)
+    low, high = found.interval_Hz
+    return {
+        "status": "finished",
+        "onset_Hz": found.onset_Hz,
+        "threshold_Hz": found.threshold_Hz,
+        "lowest_Hz": low,
+        "highest_Hz": high,
+        "cpu_s": found.cpu_s,
+        "runs": found.table().documents(),
+    }
+
+
+def _show(found: OnsetSpread, terminal: Terminal) -> None:
+    low, high = found.interval_Hz
+    table = found.table()
+    rows = [("this run", f"{found.onset_Hz:.1f}"), *table.cells()]
+    if found.threshold_Hz is not None:
+        rows.append(("linear threshold of stability", f"{found.threshold_Hz:.1f}"))
+    terminal.table("onset of the first whirl", table.heads(), rows)
+    most = f"{high:.1f} Hz" if math.isfinite(high) else "the end of a run without one"
+    told = f"The onset lies between {low:.1f} Hz and {most} ({found.cpu_s:.3g} s of CPU time). {found.note}".strip()
+    terminal.sentence(told)

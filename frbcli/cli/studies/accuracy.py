@@ -51,7 +51,7 @@ def command(
 
 
 def _document(found: AccuracyLadder) -> dict[str, Any]:
-    from frbcli.studies.ladder_columns import RESULT, RUNG
+    from frbcli.studies.ladder import RESULT, RUNG
 
     (coarser,), (reference,) = documents(RUNG, [found.coarser]), documents(RESULT, [found.reference])
     reference |= _stated(found.reference) | {"compared_with": coarser, "change": reference.pop("error")}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, beside, here
 from frbcli.cli.options import (
     cavitation_option,
     coupling_option,
@@ -19,17 +19,19 @@ from frbcli.cli.options import (
     thermal_option,
 )
 from frbcli.cli.outputs import OutputOptions, outputs_options
-from frbcli.cli.progress import computing
+from frbcli.cli.progress import computing, display
 from frbcli.cli.runs.transient import exit_code
-from frbcli.cli.studies.against import beside_measured
-from frbcli.cli.studies.measured import measured_options
-from frbcli.columns import table_of
+from frbcli.cli.studies.measured import measured_options, run_of
+from frbcli.columns import documents, table_of
 from frbcli.errors import input_error
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.case.schema import Case
+    from frbcli.studies.against import AgainstMeasured
     from frbcli.studies.compare import Comparison
+
+KINDS = ("critical-speed", "self-excited", "onset", "offset", "lock-in")
 
 
 @dataclass(frozen=True)
@@ -142,3 +144,43 @@ def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
             terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
     if found.status != "finished":
         terminal.result(f"Not all models were run: {' '.join(found.message.split()) or found.status}")
+
+
+def beside_measured(
+    terminal: Terminal, run_file: Path, file: Path, measurement: Measurement | None, signal: str,
+    outputs: OutputOptions,
+) -> None:  # fmt: skip
+    """Tables, picture and JSON of a run and a measurement."""
+    from frbcli.results.store import read_run
+    from frbcli.studies.against import DEVIATIONS, against_measured
+
+    places = outputs.check(beside(run_file, "-measured.png"))
+    with display(terminal):
+        found = against_measured(read_run(run_file), run_of(file, measurement), signal)
+    _tell(terminal, found)
+    terminal.emit(
+        {
+            "command": "compare",
+            "run": run_file,
+            "measured": file,
+            "events": {"computed": found.computed_events, "measured": found.measured_events},
+            "deviations": documents(DEVIATIONS, found.deviations()),
+            **places.write(terminal, found),
+        }
+    )
+
+
+def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
+    from frbcli.studies.against import DEVIATIONS
+
+    rows = []
+    for kind in KINDS:
+        speeds = [
+            next((event["speed_Hz"] for event in events if event["kind"] == kind), None)
+            for events in (found.computed_events, found.measured_events)
+        ]
+        if any(speed is not None for speed in speeds):
+            rows.append((kind, *("-" if speed is None else f"{speed:.1f} Hz" for speed in speeds)))
+    where = found.point.replace("_", " ")
+    terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
+    terminal.show("ridges", table_of(DEVIATIONS, found.deviations()))

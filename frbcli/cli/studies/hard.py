@@ -9,8 +9,7 @@ from frbcli.cli.common import Terminal
 from frbcli.cli.progress import display
 from frbcli.columns import table_of
 from frbcli.errors import INTERRUPTED
-from frbcli.studies.hard.cases import HardResult, run_hard_cases
-from frbcli.studies.hard.columns import HARD_CASE, LIST
+from frbcli.studies.hard.cases import HARD_CASE, LIST, HardResult, run_hard_cases
 
 NOT_AS_LISTED = 1  # a hard case that ends otherwise than the list says is a bug
 EXPLANATION = (

@@ -22,7 +22,6 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.parts.films import smooth_films
 from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
@@ -350,3 +349,16 @@ def _moved_by(machine: Machine, load: int, order: int, omega: float) -> Complex:
         dynamic = part.dynamic(np.array([1j * omega * order]), omega)[0]
         moved[: 2 * machine.film_count] += part.seen @ (part.basis.T @ np.linalg.solve(dynamic, part.others[:, load]))
     return moved
+
+
+def smooth_films(system: System) -> tuple[FilmData, ...]:
+    """The films of a system; those on cells tabulated as the mean over the angle of their openings."""
+    outside = (int(body) for body in system.bodies[:, 1])
+    return system.films.smooth([_ring_share(system, i, ring) if ring >= 0 else 0.0 for i, ring in enumerate(outside)])
+
+
+def _ring_share(system: System, film: int, ring: int) -> float:
+    """The speed of a ring over omega_J + omega_S of the film inside of it, concentric."""
+    drags = np.array(system.drags)
+    ratio = drags[film] / drags[np.any(system.bodies == ring, axis=1)].sum()
+    return float(ratio / (1.0 + ratio))

@@ -1,30 +1,33 @@
-"""The waterfall: spectra of a run over time or rotor speed."""
+"""The waterfall: spectra of a run over time or rotor speed, with lines of its harmonic loads; and its older,
+three-dimensional form, the cascade: spectra as curves behind each other."""
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
-from matplotlib.ticker import LogLocator, ScalarFormatter
+from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectra.spectrum import waterfall as spectra
 from frbcli.arrays import Array
+from frbcli.case.reading.load import load_case_text
+from frbcli.errors import InputError
 from frbcli.plot.run.envelope import at_times, extremes
-from frbcli.plot.signals import MICRO, bearing_of, clearance, ends, heading, motion
-from frbcli.plot.spectra.cascade import draw_cascade
-from frbcli.plot.spectra.load_lines import load_lines
-from frbcli.plot.style import LEVEL_MAP, new_figure, styled
+from frbcli.plot.signals import MICRO, bearing_of, case_tables, clearance, ends, heading, motion
+from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, new_figure, styled
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
+from frbcli.scene.machine.elements import harmonics_of
 
 Over = Literal["time", "speed"]
 
@@ -39,6 +42,12 @@ FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a pictur
 SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
 UNKNOWN_m = 1.0  # stands for the clearance of a measurement without one, whose amplitudes are drawn in µm
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
+
+CURVES = 60
+HEIGHT = 0.25  # of a curve from the lowest to the highest level, relative to the depth of the stack
+SHEAR = 0.22  # how far the last curve stands to the right, relative to the frequency axis
+NICE = [1, 2, 5, 10]  # steps of the ticks
+ABOVE_CURVES = 10 + CURVES
 
 
 @dataclass(frozen=True)
@@ -244,3 +253,90 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
     if not parts:
         raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
     return [("", parts[0][1])] if len(parts) == 1 else parts
+
+
+def draw_cascade(
+    axes: Axes,
+    found: Spectrogram,
+    over: Literal["time", "speed"],
+    values: Array,
+    limits: tuple[float, float],
+    unit: str,
+    lines: list[tuple[str, Array]],
+) -> None:
+    """Curves over frequency, shifted up and to the right with time or speed; those in front hide those behind.
+
+    values (k, m) and their limits in a unit: heights of the curves; lines: label and frequency (m,) in Hz of each line
+    to draw on the floor, e.g. the rotor speed.
+    """
+    depth = found.time_s if over == "time" else found.speed_Hz
+    span = float(np.ptp(depth)) or 1.0
+    width = float(found.frequency_Hz[-1])
+    shift = SHEAR * width * (depth - depth[0]) / span
+    height = HEIGHT * span / (limits[1] - limits[0])
+    chosen = np.unique(np.linspace(0, len(depth) - 1, min(CURVES, len(depth))).round().astype(int))
+    for layer, place in enumerate(chosen[::-1], start=10):
+        curve = depth[place] + height * (np.clip(values[:, place], *limits) - limits[0])
+        frequency = found.frequency_Hz + shift[place]
+        axes.fill_between(frequency, depth[place], curve, facecolor="white", edgecolor="none", zorder=layer)
+        axes.plot(frequency, curve, color=BLUE, linewidth=0.7, zorder=layer)
+    for label, frequency in lines:
+        axes.plot(frequency + shift, depth, color="black", linewidth=0.8, linestyle=(0, (2, 3)), zorder=ABOVE_CURVES)
+        axes.annotate(
+            label,
+            (frequency[-1] + shift[-1], depth[-1]),
+            xytext=(4, 1),
+            textcoords="offset points",
+            zorder=ABOVE_CURVES,
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
+        )
+    _draw_frame(axes, depth, shift, width, span)
+    right = width + shift[-1]
+    axes.plot([right] * 2, [depth[-1], depth[-1] + HEIGHT * span], color="black", linewidth=1.5)
+    axes.annotate(f"{limits[1] - limits[0]:.3g} {unit}", (right, depth[-1] + HEIGHT * span / 2), (-4, 0),
+                  textcoords="offset points", ha="right", va="center")  # fmt: skip
+    axes.set_xlabel("frequency in Hz")
+    axes.set_ylabel("time in s" if over == "time" else "rotor speed in Hz")
+
+
+def _draw_frame(axes: Axes, depth: Array, shift: Array, width: float, span: float) -> None:
+    """Slanting lines of equal frequency: the ticks below belong to the foremost curve."""
+    ticks = [tick for tick in MaxNLocator(8, steps=NICE).tick_values(0.0, width) if 0.0 <= tick <= width]
+    for tick in ticks:
+        axes.plot([tick, tick + shift[-1]], [depth[0], depth[-1]], color=GREY, linewidth=0.4, alpha=0.6)
+    axes.grid(False)
+    axes.set_xticks(ticks)
+    bottom, top = depth[0], depth[0] + (1.02 + HEIGHT) * span
+    axes.set_ylim(bottom, top)
+    depths = MaxNLocator(7, steps=NICE).tick_values(bottom, bottom + span)
+    axes.set_yticks([tick for tick in depths if bottom <= tick <= bottom + span])
+    axes.set_xlim(0.0, (width + shift[-1]) * 1.02)
+    axes.margins(0.0)
+
+
+class LoadLine(NamedTuple):
+    """Frequency of a load: order times the rotor speed, and frequency_Hz beside it."""
+
+    name: str
+    order: float
+    frequency_Hz: float
+
+    def along(self, speed_Hz: Array) -> Array:
+        """(k,) Hz at rotor speeds (k,) in Hz."""
+        return np.abs(self.order * speed_Hz + self.frequency_Hz)
+
+
+def load_lines(run: Run) -> tuple[LoadLine, ...]:
+    """One line for each frequency of the harmonic loads of the case of a run beside the rotor speed itself."""
+    if not run.case_text or not {"force", "base"} & case_tables(run).keys():
+        return ()
+    try:
+        loads = harmonics_of(load_case_text(run.case_text, name=run.case_name))
+    except InputError:  # a case of another version: its spectra stand without the lines
+        return ()
+    found = {}
+    for load in loads:
+        order, frequency = abs(load.order), abs(load.frequency) / (2.0 * math.pi)
+        if not load.synchronous:
+            found[order, frequency] = LoadLine(f"{order:g} ω" if order else f"{frequency:g} Hz", order, frequency)
+    return tuple(found.values())

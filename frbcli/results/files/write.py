@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import secrets
 import shutil
 import stat
@@ -15,11 +16,19 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
 
-from frbcli.results.files.kinds import Kind
+from frbcli.errors import printable
+from frbcli.results.files.kinds import TABLES, Kind
 from frbcli.results.files.place import TOKEN, part_of, real, refused, wrong_place
 
+if TYPE_CHECKING:
+    import pandas as pd
+
 REMEDY = "Choose another place with -o."
+
+# A spreadsheet takes what begins so for a formula, but for a number with a unit
+FORMULA = re.compile(r"[=@]|[+-](?![\d.][\w.,%°µΩ·*/^ ]*$)")
 
 
 @contextmanager
@@ -76,3 +85,22 @@ def _pour(content: Path, target: Path) -> None:
         os.set_blocking(descriptor, True)
     with content.open("rb") as source, open(descriptor, "wb") as stream:
         shutil.copyfileobj(source, stream)
+
+
+def write_table(table: pd.DataFrame, path: Path) -> None:
+    """Write a table as CSV, with texts that do nothing in a spreadsheet or a terminal. Raises InputError as `written`
+    does."""
+    harmless = table.rename(columns=harmless_text)
+    for place, kind in enumerate(harmless.dtypes):
+        if kind.kind not in "fiub":
+            harmless.isetitem(place, harmless.iloc[:, place].map(harmless_text))
+    with written(path, TABLES["csv"]) as part:
+        harmless.to_csv(part, index=False, lineterminator="\n")
+
+
+def harmless_text(cell: Any) -> Any:
+    """A cell without control characters; a text that a spreadsheet would compute begins with an apostrophe."""
+    if not isinstance(cell, str):
+        return cell
+    text = printable(cell)
+    return f"'{text}" if FORMULA.match(text.lstrip()) else text

@@ -6,8 +6,10 @@ import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
+from operator import attrgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 
@@ -15,19 +17,30 @@ from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
 from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Column, Shown, Table, named, short_number, table_of
 from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
-from frbcli.studies.hard.columns import HARD_RESULT
 from frbcli.studies.hard.worker import DIED, HUNG, Worker
 
 FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-converged", "error"
 RUNS = {"runup": runup, "rundown": rundown}
 TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
 OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
+
+LIST = "list"  # table of the terminal
+
+# Of a HardCase
+HARD_CASE = (
+    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
+    Column("topic", "", "topic"),
+    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
+    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
+    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
+    Column("why", "", "cause of that end", flat=False),
+)
 
 
 @dataclass(frozen=True)
@@ -220,3 +233,26 @@ def _unexpected(result: HardResult) -> list[str]:
 
 def _bounded(error: float, reported: float | None) -> bool:
     return reported is not None and error <= reported
+
+
+def _end(result: Any) -> str:
+    return result.status if result.status == result.hard.end else f"{result.status}, not {result.hard.end}"
+
+
+# Of a HardResult
+HARD_RESULT = (
+    *named(HARD_CASE[:-1], "", attrgetter("hard")),
+    Column("status", "", "how it ended"),
+    Column("end", "", "", _end, shown=(Shown("end"),), key="", flat=False),
+    Column("ok", "", "whether it ended as the list says"),
+    Column("message", "", "why it ended early", flat=False),
+    Column("events", "", "kinds of events with their films", flat=False),
+    Column("error", "", "deviation from the reference", shown=(Shown("error", short_number),),
+           more="largest of the eccentricities until a whirl begins or the run ends; relative of a force"),
+    Column("reported", "", "error that the run or test states", shown=(Shown("stated", short_number),)),
+    Column("certain", "", "uncertainty of the reference"),
+    Column("until", "s", "end of the comparison", attrgetter("until_s")),
+    Column("cpu", "s", "CPU time", attrgetter("cpu_s"), shown=(Shown("CPU s", ".1f"),)),
+    Column("problems", "", "deviations from the list", lambda result: "; ".join(result.problems), key=""),
+    Column("problems", "", "deviations from the list, as a list", flat=False),
+)  # fmt: skip
