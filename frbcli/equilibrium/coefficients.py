@@ -93,12 +93,20 @@ def settled_force(
     found = system.force(i, place, np.zeros_like(place), total, near, slip)
     if not system.remembering[i]:
         return found
-    step = DIFFERENCE * (system.clearances[i] - float(np.hypot(*system.felt(i, place))))
-    pace = step * max(abs(total), 1.0)
-    by_displacement, by_velocity = np.empty((2, 2)), np.empty((2, 2))
-    for column, unit in enumerate(np.eye(2)):
+    size = len(place)
+
+    def moved(motion: Array) -> Array:
+        """(stations,) displacements in m along the film of a motion (c,)."""
+        seen = system.films.seen(np.tile(motion, (system.films.count, 1)))
+        return np.asarray(np.hypot(*seen.reshape(system.films.count, -1, 2)[i].T))
+
+    gap = system.clearances[i] - float(moved(system.felt(i, place)).max())
+    by_displacement, by_velocity = np.empty((size, size)), np.empty((size, size))
+    for column, unit in enumerate(np.eye(size)):
+        step = DIFFERENCE * gap / float(moved(unit).max())
+        pace = step * max(abs(total), 1.0)
         ahead, behind = (
-            system.force(i, place + side * step * unit, np.zeros(2), total, None, slip).force for side in (1.0, -1.0)
+            system.force(i, place + side * step * unit, 0.0 * unit, total, None, slip).force for side in (1.0, -1.0)
         )
         by_displacement[:, column] = (ahead - behind) / (2.0 * step)
         ahead, behind = (

@@ -1,7 +1,9 @@
 """Machines at rest whose films keep their oil: the dynamic stiffness of the films, and eigenvalues of machine and oil.
 
-The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of P^T Z(s) P, by nonlinear inverse iteration from the
-eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py).
+The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of L Z(s) P, by nonlinear inverse iteration from the
+eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
+motion of the machine onto that of the journals, and of the angles of rings onto the angle by which journal and shell
+turn together; L maps forces onto the machine, and their moments onto the rings.
 
 How a film answers depends on where its fronts lie between its cells: fronts cross cells one at a time, and the
 derivative jumps. So Z is the mean over PLACES of the cells. Its error is of first order in the size of the cells:
@@ -11,12 +13,13 @@ MESHES extrapolates two sizes, and the difference to the finer one is the expect
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.equilibrium.ring_speed import memoryless
 from frbcli.film.cells.dynamic_stiffness import (
     DynamicStiffness,
     dynamic_stiffness,
@@ -24,22 +27,20 @@ from frbcli.film.cells.dynamic_stiffness import (
     weighted,
     without_memory,
 )
-from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linearised import LinearFilm, linear_film, lying
-from frbcli.film.cells.mesh.grid import run_grid
+from frbcli.film.cells.linearised import LinearFilm
+from frbcli.film.kinds.contract import LinearOf
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.rotor.linear import LinearRotor
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
-MESHES = (((96, 12), 2.0), ((48, 6), -1.0))  # cells around and along, with their weights in the extrapolation
+# Cells around, and along a half of the width, with their weights in the extrapolation.
+MESHES = (((96, 12), 2.0), ((48, 6), -1.0))
 PLACES = 8  # of the cells, over one cell
 PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
-NO_STIFFNESS = without_memory(np.zeros((2, 2)), np.zeros((2, 2)))
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 
 
@@ -47,66 +48,90 @@ EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 class DynamicFilm:
     """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
     exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
-    the oil, but for `exact`."""
+    the oil, but for `exact`. Its coordinates are those of its journal, and beside rings the angle by which journal and
+    shell turn together (`turns`)."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
     one: DynamicStiffness
+    summits: DynamicStiffness
     exact: LinearFilm | None = None
-    summits: DynamicStiffness = NO_STIFFNESS
+
+    def oil_at(self, frequency: float) -> tuple[Array, Array]:
+        """Stiffness and damping (c, d) at a frequency in rad/s, above 0, without the summits."""
+        z = self.own.at(1j * frequency)[0] - self.summits.at(1j * frequency)[0]
+        return z.real, z.imag / frequency
 
     def on(self, summits: FilmForce) -> DynamicFilm:
-        """The film with the summits of rough surfaces beside it, which have no memory."""
-        more = without_memory(-summits.by_displacement, -summits.by_velocity)
+        """The film with the summits of rough surfaces beside it, which have no memory, and whose friction does not
+        follow the angle by which journal and shell turn together."""
+        still = np.zeros((len(summits.force), self.own.place.shape[1] - len(summits.force)))
+        more = without_memory(*(np.hstack([each, still]) for each in memoryless(summits)))
         own, fine, one = (weighted([(each, 1.0), (more, 1.0)]) for each in (self.own, self.fine, self.one))
-        return DynamicFilm(own, fine, one, self.exact, more)
+        return DynamicFilm(own, fine, one, more, self.exact)
 
 
-def dynamic_film(film: VolumeFilm, place: Array, total: float, omega: float) -> DynamicFilm:
-    """A film that keeps its oil, its journal at rest at `place` (2,) in m. total: omega_J + omega_S; omega: speed of
-    the rotor, rad/s. Raises NotConverged."""
+def dynamic_film(
+    film: Callable[[tuple[int, int]], LinearOf], place: Array, total: float, omega: float, turns: bool = False
+) -> DynamicFilm:
+    """A film that keeps its oil, its journal at rest at `place` (c,) in m and rad. film: on any cells, see
+    Films.linear; total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises
+    NotConverged."""
     frequencies = [share * abs(omega) for share in PROJECTED]
     means: list[DynamicStiffness] = []
     begun: list[tuple[DynamicStiffness, LinearFilm]] = []
     for cells, _ in MESHES:
-        mesh = VolumeFilm(film.section, run_grid(film.section, cells), film.law, film.scales.reference)
+        on_cells = film(cells)
         parts: list[tuple[DynamicStiffness, float]] = []
         start: Array | None = None
         for number in range(PLACES):
-            linear = linear_film(lying(mesh, number / PLACES), place, total, start)
+            linear = on_cells(number / PLACES, place, total, start)
             start = linear.field
+            linear = linear.turning() if turns else linear
             parts.append((dynamic_stiffness(linear, frequencies), 1.0 / PLACES))
             begun.append((parts[-1][0], linear))
         means.append(weighted(parts))
     own = weighted([(mean, weight) for mean, (_, weight) in zip(means, MESHES, strict=True)])
-    return DynamicFilm(own, means[0], *begun[0])
+    one, exact = begun[0]
+    return DynamicFilm(own, means[0], one, _nothing(one), exact)
 
 
-def constant_film(force: FilmForce) -> DynamicFilm:
-    """A film without memory: stiffness and damping of its force at all frequencies."""
-    same = without_memory(-force.by_displacement, -force.by_velocity)
-    return DynamicFilm(same, same, same)
+def constant_film(force: FilmForce, place: Array, turns: bool = False) -> DynamicFilm:
+    """A film without memory: stiffness and damping of its force at all frequencies; turns: see DynamicFilm."""
+    same = without_memory(*memoryless(force, place if turns else None))
+    return DynamicFilm(same, same, same, _nothing(same))
+
+
+def _nothing(film: DynamicStiffness) -> DynamicStiffness:
+    """No film, of as many coordinates."""
+    return without_memory(np.zeros_like(film.place), np.zeros_like(film.rate))
 
 
 @dataclass(frozen=True)
 class Oscillator:
     """A machine of n degrees of freedom on its films: mass, damping with the gyroscopic term, stiffness (n, n); maps
-    (films, 2, n) onto the journals, multiplicity (films,)."""
+    journals (films, d, n), P, and pushes (films, n, c), L; turning: see LinearRotor.
+
+    The coordinates of what turns are the speeds, so that nothing is at rest at any angle: theirs are `at` and the
+    shapes of motions."""
 
     mass: Array
     damping: Array
     stiffness: Array
     journals: Array
-    multiplicity: Array
+    pushes: Array
+    turning: tuple[int, ...] = ()
 
     def at(self, s: complex, films: Sequence[DynamicStiffness]) -> tuple[Complex, Complex]:
         """(n, n) what multiplies the motion exp(s t), and its derivative by s."""
         matrix: Complex = np.asarray(self.mass * s * s + self.damping * s + self.stiffness, dtype=complex)
         slope: Complex = np.asarray(2.0 * s * self.mass + self.damping, dtype=complex)
-        for many, journal, film in zip(self.multiplicity, self.journals, films, strict=True):
+        for push, journal, film in zip(self.pushes, self.journals, films, strict=True):
             z, by_s = film.at(s)
-            matrix = matrix + many * (journal.T @ z @ journal)
-            slope = slope + many * (journal.T @ by_s @ journal)
+            matrix, slope = matrix + push @ z @ journal, slope + push @ by_s @ journal
+        spins = list(self.turning)
+        matrix[:, spins] /= s
+        slope[:, spins] = (slope[:, spins] - matrix[:, spins]) / s
         return matrix, slope
 
     def starts(self, films: Sequence[DynamicStiffness]) -> list[tuple[complex, Complex]]:
@@ -120,24 +145,22 @@ class Oscillator:
         own[:n, n : 2 * n] = np.eye(n)
         own[n : 2 * n, :n], own[n : 2 * n, n : 2 * n] = -self.stiffness, -self.damping
         begin = 2 * n
-        for many, journal, film, count in zip(self.multiplicity, self.journals, films, sizes, strict=True):
+        for push, journal, film, count in zip(self.pushes, self.journals, films, sizes, strict=True):
             oil = slice(begin, begin + count)
             begin += count
-            own[n : 2 * n, :n] -= many * (journal.T @ film.place @ journal)
-            own[n : 2 * n, n : 2 * n] -= many * (journal.T @ film.rate @ journal)
-            own[n : 2 * n, oil] = -many * (journal.T @ film.left)
+            own[n : 2 * n, :n] -= push @ film.place @ journal
+            own[n : 2 * n, n : 2 * n] -= push @ film.rate @ journal
+            own[n : 2 * n, oil] = -push @ film.left
             own[oil, :n], own[oil, n : 2 * n] = film.right_place @ journal, film.right_rate @ journal
             own[oil, oil], rate[oil, oil] = -np.eye(count), np.diag(film.delays)
-        values, shapes = eig(own, rate)
+        spins = np.array(self.turning, dtype=np.int64)
+        kept = np.delete(np.arange(size), spins)
+        own, rate = (each[np.ix_(kept, kept)] for each in (own, rate))
+        values, states = eig(own, rate)
+        shapes = np.zeros((size, len(kept)), dtype=complex)
+        shapes[kept] = states
+        shapes[spins] = shapes[n + spins]
         return [(complex(values[i]), shapes[:n, i]) for i in np.flatnonzero(np.isfinite(values))]
-
-
-def oscillator(rotor: LinearRotor, omega: float) -> Oscillator:
-    """The machine at omega rad/s without its films."""
-    here = rotor.at(omega)
-    return Oscillator(
-        here.mass, here.damping + omega * here.gyroscopic, here.stiffness, here.journals, here.multiplicity
-    )
 
 
 def modes(
@@ -187,5 +210,9 @@ def _iterated(
 def _trusted(film: DynamicFilm, s: complex) -> bool:
     if film.exact is None:
         return True
-    exact = stiffness_at(film.exact, s) + film.summits.at(s)[0]
-    return bool(np.abs(film.one.at(s)[0] - exact).max() < TRUSTED * np.abs(exact).max())
+    exact, own = stiffness_at(film.exact, s) + film.summits.at(s)[0], film.one.at(s)[0]
+    sizes = [math.sqrt(np.abs(exact[first : first + 2, first : first + 2]).max()) for first in range(0, len(exact), 2)]
+    rows = np.repeat(sizes, 2)  # of displacements, and of tilts
+    angle = np.abs(exact[:, len(rows) :] / rows[:, None]).max(axis=0)  # by which both surfaces turn
+    scale = np.outer(rows, np.append(rows, angle))
+    return bool(np.abs((own - exact) / scale).max() < TRUSTED * np.abs(exact / scale).max())

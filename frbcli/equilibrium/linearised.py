@@ -1,12 +1,12 @@
 """The machine linearised at rest: its matrices on films of eight coefficients each, and its state matrix.
 
 The speeds of rings follow small motions, as the torques of films and summits have them: friction falls steeply with
-them where a ring sticks. Around films that keep oil, which is linearised for one speed, they stand. A ring with a pin
-leans on it, so that small motions see a spring and a damper, without play.
+them where a ring sticks. A ring with a pin leans on it, so that small motions see a spring and a damper, without play.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -14,43 +14,74 @@ from numpy.typing import NDArray
 
 from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.coefficients import FilmsAtRest
-from frbcli.equilibrium.ring_speed import SUM, by_total, ring_torques, rubbed_rings, torque_by_rates
-from frbcli.rotor.linear import LinearRotor, without_spins
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
+from frbcli.equilibrium.ring_speed import memoryless, ring_torques, rubbed_rings, turns_by_moment
+from frbcli.film.rectangles.film import none_of
+from frbcli.rotor.linear import LinearRotor, with_precession
 from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
 
 
-def rotor_at_rest(system: System, omega: float, ring_speeds: Array, at_rest: FilmsAtRest) -> LinearRotor:
-    """The machine at omega rad/s without its films. The angles of its rings are degrees of freedom and see the torques
-    of their films and summits; of rings with a pin its spring and its damper, too. Around films that keep oil rings
-    without a pin turn with ring_speeds (rings,) in rad/s."""
-    follow = np.full(system.ring_count, not system.remembers) | system.pinned
-    rotor = without_spins(system.rotor, ring_speeds, follow)
-    rings = np.flatnonzero(follow)
-    if not len(rings):
+def rotor_at_rest(
+    system: System, omega: float, ring_speeds: Array, at_rest: FilmsAtRest,
+    oil: Sequence[tuple[Array, Array]] | None = None,
+) -> LinearRotor:  # fmt: skip
+    """The machine at omega rad/s without its films, its rings turning with ring_speeds (rings,) in rad/s. The angles of
+    its rings are degrees of freedom and see the torques of their films and summits; of rings with a pin its spring and
+    its damper, too.
+
+    oil: stiffness and damping (c, c + 1) of the films without their summits, see turns_by_moment, by which they turn
+    the rings and follow them; by default as films without memory have them."""
+    rotor = with_precession(system.rotor, ring_speeds)
+    if not system.ring_count:
         return rotor
     places, bodies = at_rest.position.journals, np.append(omega, at_rest.position.ring_speeds)
-    rubbed = rubbed_rings(system, bodies, places, at_rest.forces)
-    _, by_speeds, by_places = ring_torques(system, bodies, places, rubbed.films)
-    by_speeds, by_places = by_speeds + rubbed.torques_by_speed, by_places + rubbed.torques
-    by_rates = torque_by_rates(system, places, rubbed.films) + rubbed.torques_by_rate
-    journals = rotor.journals.reshape(-1, rotor.size)
-    angles = np.arange(rotor.size - len(rings), rotor.size)
+    rubbed = rubbed_rings(system, bodies, places)
+    films = tuple(film.plus(summits, -1.0) for film, summits in zip(at_rest.forces, rubbed.summits, strict=True))
+    if oil is None:
+        oil = [memoryless(*each) for each in zip(films, places, strict=True)]
+    constant = tuple(replace(none_of(len(film.force)), force=film.force) for film in films)
+    _, by_speeds, by_places = ring_torques(system, bodies, places, constant)
+    journals, angles = rotor.journals.reshape(-1, rotor.size), np.array(system.spins)
     stiffness, damping = rotor.stiffness.copy(), rotor.damping.copy()
-    stiffness[angles] -= by_places[rings] @ journals
-    damping[angles] -= by_rates[rings] @ journals
-    damping[np.ix_(angles, angles)] -= by_speeds[np.ix_(rings, rings)]
-    held = np.flatnonzero(system.pinned[rings])
-    if len(held):
-        pins = system.pins[rings[held]]
-        stiffness[angles[held], angles[held]] += pins[:, STIFFNESS]
-        damping[angles[held], angles[held]] += pins[:, DAMPING]
-    for i, (many, force) in enumerate(zip(rotor.multiplicity, rubbed.films, strict=True)):
-        turned = np.outer(by_total(force, places[i]), system.turning[i, SUM, 1 + rings])
-        damping[:, angles] -= many * rotor.journals[i].T @ (turned + rubbed.forces_by_speed[i][:, rings])
-    turning = tuple(angles[~system.pinned[rings]].tolist())
-    return replace(rotor, stiffness=stiffness, damping=damping, turning=turning)
+    stiffness[angles] -= (by_places + rubbed.torques) @ journals
+    damping[angles] -= rubbed.torques_by_rate @ journals
+    damping[np.ix_(angles, angles)] -= by_speeds + rubbed.torques_by_speed
+    for ring in np.flatnonzero(system.pinned):
+        stiffness[angles[ring], angles[ring]] += system.pins[ring, STIFFNESS]
+        damping[angles[ring], angles[ring]] += system.pins[ring, DAMPING]
+    for i, slopes in enumerate(oil):
+        push, journal = _beside_rings(system, rotor, i, places[i])
+        own = rotor.multiplicity[i] * rotor.journals[i].T
+        for matrix, each in zip((stiffness, damping), slopes, strict=True):
+            matrix += push @ each @ journal - own @ each[:, :-1] @ rotor.journals[i]
+        damping[:, angles] -= own @ rubbed.forces_by_speed[i]
+    return replace(rotor, stiffness=stiffness, damping=damping, turning=tuple(angles[~system.pinned].tolist()))
+
+
+def _beside_rings(system: System, rotor: LinearRotor, i: int, place: Array) -> tuple[Array, Array]:
+    """Maps of film i beside rings, L (n, c) and P (c + 1, n) of dynamic_films."""
+    moment, turn = turns_by_moment(system, i, place)
+    push = rotor.multiplicity[i] * rotor.journals[i].T
+    push[list(system.spins)] += moment
+    journal = np.vstack([rotor.journals[i], np.zeros(rotor.size)])
+    journal[-1, list(system.spins)] = turn
+    return push, journal
+
+
+def oscillator(system: System, omega: float, at_rest: FilmsAtRest, films: Sequence[DynamicFilm]) -> Oscillator:
+    """The machine at omega rad/s without its films, which keep their oil. These turn its rings with all of their
+    forces, and summits, which have torques of their own, are taken off here."""
+    off = [(-film.summits.place, -film.summits.rate) for film in films]
+    rotor = rotor_at_rest(system, omega, at_rest.position.ring_speeds, at_rest, off)
+    here, journals = rotor.at(omega), rotor.journals
+    pushes = here.multiplicity[:, None, None] * np.swapaxes(journals, 1, 2)
+    if system.ring_count:
+        maps = (_beside_rings(system, rotor, i, place) for i, place in enumerate(at_rest.position.journals))
+        pushes, journals = map(np.array, zip(*maps, strict=True))
+    damping = here.damping + omega * here.gyroscopic
+    return Oscillator(here.mass, damping, here.stiffness, journals, pushes, here.turning)
 
 
 def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Array, Array, Array]:

@@ -159,37 +159,43 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
     return angles
 
 
-def torque_by_rates(system: System, places: Array, films: tuple[FilmForce, ...]) -> Array:
-    """(rings, c films) derivative of the torques on the rings by the velocities of the journals: half of the moments of
-    the films' forces."""
-    found = np.zeros((system.ring_count, places.size))
-    c = places.shape[1]
-    for i, (place, film) in enumerate(zip(places, films, strict=True) if system.torque == "all" else ()):
-        touched = (system.bodies[i] == np.arange(system.ring_count)[:, None]).any(axis=1)
-        found[:, c * i : c * (i + 1)] = 0.5 * np.outer(touched, across(place) @ film.by_velocity)
-    return found
+def memoryless(film: FilmForce, place: Array | None = None) -> tuple[Array, Array]:
+    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) those (c, c + 1) by
+    the angle by which journal and shell turn together, too."""
+    stiffness, damping = -film.by_displacement, -film.by_velocity
+    if place is None:
+        return stiffness, damping
+    turned = -by_total(film, place)
+    return np.column_stack([stiffness, np.zeros_like(turned)]), np.column_stack([damping, turned])
+
+
+def turns_by_moment(system: System, i: int, place: Array) -> tuple[Array, Array]:
+    """How film i, with its journal at `place` (c,), turns the rings: (rings, c) the torques by its forces, half of
+    their moments about the middle of the shell; and (rings,) what the speeds of the rings are to omega_J + omega_S."""
+    touched = (system.bodies[i] == np.arange(system.ring_count)[:, None]).any(axis=1)
+    moment = 0.5 * np.outer(touched, across(place)) if system.torque == "all" else np.zeros((len(touched), len(place)))
+    return moment, system.turning[i, SUM, 1:]
 
 
 @dataclass(frozen=True)
 class RubbedRings:
-    """How the summits between rough surfaces follow a machine about its rest. films: the films without them; torques,
+    """How the summits between rough surfaces follow a machine about its rest. summits: their forces; torques,
     torques_by_rate: (rings, c films) on the rings, derivatives by the places of the journals and by their velocities;
     torques_by_speed: (rings, rings) by the speeds of the rings; forces_by_speed: (films, c, rings) of the forces."""
 
-    films: tuple[FilmForce, ...]
+    summits: tuple[FilmForce, ...]
     torques: Array
     torques_by_rate: Array
     torques_by_speed: Array
     forces_by_speed: Array
 
 
-def rubbed_rings(system: System, bodies: Array, places: Array, films: tuple[FilmForce, ...]) -> RubbedRings:
-    """Of a machine whose films and summits at rest at places (films, c) have the forces `films`; bodies: see
-    ring_torques."""
+def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
+    """Of a machine at rest at places (films, c); bodies: see ring_torques."""
     rings, (count, c) = system.ring_count, places.shape
     torques, by_rate, by_speed = np.zeros((rings, count * c)), np.zeros((rings, count * c)), np.zeros((rings, rings))
     forces, alone = np.zeros((count, c, rings)), []
-    for i, (place, film) in enumerate(zip(places, films, strict=True)):
+    for i, place in enumerate(places):
         total, slip = system.turning[i, SUM], system.turning[i, SLIP]
         shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
         motion = np.concatenate([place[:2], np.zeros(2), shares @ bodies])
@@ -200,7 +206,7 @@ def rubbed_rings(system: System, bodies: Array, places: Array, films: tuple[Film
         summits.force[:2] = found[both, VALUE]
         summits.by_displacement[:2, :2] = found[both, BY_X:BY_V_X]
         summits.by_velocity[:2, :2] = found[both, BY_V_X:BY_SLIP]
-        alone.append(film.plus(summits, -1.0))
+        alone.append(summits)
         for side, ring in enumerate(system.bodies[i].tolist()):
             if ring >= 0:
                 torque = found[ON_JOURNAL + side]

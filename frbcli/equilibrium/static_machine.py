@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -183,16 +184,17 @@ def _resting_film(
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
     """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
-    places, totals = found.position.journals, found.totals.tolist()
+    places, totals, turns = found.position.journals, found.totals.tolist(), system.ring_count > 0
 
     def film(i: int, keeps: bool) -> DynamicFilm:
-        if not keeps:
-            return constant_film(found.forces[i])
-        own = dynamic_film(system.films.with_fields[i], places[i], totals[i], omega)
+        if keeps:
+            own = dynamic_film(partial(system.films.linear, i), places[i], totals[i], omega, turns)
         if system.asperities is None:
-            return own
+            return own if keeps else constant_film(found.forces[i], places[i], turns)
         slip = float(found.slips[i])
-        return own.on(system.rubbing(i).force(places[i], np.zeros(2), slip, 0.5 * (totals[i] - slip)))
+        summits = system.rubbing(i).force(places[i], np.zeros(2), slip, 0.5 * (totals[i] - slip))
+        own = own if keeps else constant_film(found.forces[i].plus(summits, -1.0), places[i], turns)
+        return own.on(summits)
 
     return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
 

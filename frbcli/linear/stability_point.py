@@ -12,8 +12,8 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
-from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes, oscillator
-from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes
+from frbcli.equilibrium.linearised import oscillator, rotor_at_rest, state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
@@ -42,11 +42,10 @@ class StabilityPoint:
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
     on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
     in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
-    their speeds follow the motion and are states of their own, but around films that keep oil they stand; 0 against a
-    pin. warm: the machine with its heat, of a case that has it; its temperatures stand, too. errors: (2 n,)
-    expected ones of the eigenvalues in 1/s, by the mesh of the films, empty where they were not asked for; others:
-    stiffness and damping (films, 2, 2) on other meshes, with the share of the difference that is the error; axial: the
-    collar under an axial load, None without one; rotor: the
+    their speeds follow the motion and are states of their own; 0 against a pin. warm: the machine with its heat, of a
+    case that has it; its temperatures stand. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the
+    films, empty where they were not asked for; others: stiffness and damping (films, c, c) on other meshes, with the
+    share of the difference that is the error; axial: the collar under an axial load, None without one; rotor: the
     machine without its films, as small motions see it, None without rest. All others are empty where no resting
     position was found; problem then says why, and is empty otherwise.
     """
@@ -157,10 +156,14 @@ def machine_eigenvalues(machine: MachineAtRest, films: FilmsAtRest) -> Complex:
     return eigenvalues(machine_rotor(machine, films), machine.omega, *_coefficients(films))
 
 
-def machine_rotor(machine: MachineAtRest, films: FilmsAtRest | None = None) -> LinearRotor:
-    """A machine at rest without its films, as small motions see it; films: on another mesh, by default its own."""
+def machine_rotor(
+    machine: MachineAtRest, films: FilmsAtRest | None = None, frequency: float = math.nan
+) -> LinearRotor:
+    """A machine at rest without its films, as small motions see it; films: on another mesh, by default its own;
+    frequency: of the motion in rad/s, above 0, where films keep oil that turns rings."""
     at_rest = machine.at_rest
-    return rotor_at_rest(machine.system, machine.omega, at_rest.position.ring_speeds, films or at_rest)
+    oil = None if math.isnan(frequency) else [film.oil_at(frequency) for film in machine.dynamic]
+    return rotor_at_rest(machine.system, machine.omega, at_rest.position.ring_speeds, films or at_rest, oil)
 
 
 def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Complex, float]]:
@@ -174,7 +177,7 @@ def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Complex, float]]:
 def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None = None) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests. frequency: in rad/s, of the coefficients of films that keep
     oil; by default that of the least damped whirl."""
-    rings, rotor = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist()), machine_rotor(machine)
+    rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
     others: tuple[tuple[Array, Array, float], ...]
     if machine.dynamic:
         values = _with_memory(machine)
@@ -184,10 +187,11 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
         pairs = zip(machine.films, machine.dynamic, strict=True)
         films = tuple(_at_frequency(film, dynamic, frequency) for film, dynamic in pairs)
         _check_known(films)
-        fine = [dynamic.fine.at(1j * frequency)[0] for dynamic in machine.dynamic]
+        fine = [dynamic.fine.at(1j * frequency)[0][:, : len(dynamic.fine.place)] for dynamic in machine.dynamic]
+        rotor = machine_rotor(machine, frequency=frequency)
         others = ((np.array([z.real for z in fine]), np.array([z.imag for z in fine]) / frequency, 1.0),)
         return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others, rotor=rotor)
-    values = machine_eigenvalues(machine, machine.at_rest)
+    rotor, values = machine_rotor(machine), machine_eigenvalues(machine, machine.at_rest)
     others = tuple((*_coefficients(films), share) for films, share in machine.others)
     return StabilityPoint(
         speed, machine.films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others, rotor=rotor
@@ -234,15 +238,18 @@ def _with_memory(machine: MachineAtRest, fine: bool = False) -> Complex:
 
 
 def linear_machine(machine: MachineAtRest) -> Oscillator:
-    """A machine at rest without its films; its rings turn with the speeds that they have there."""
-    return oscillator(machine_rotor(machine), machine.omega)
+    """A machine at rest without its films, which keep their oil."""
+    return oscillator(machine.system, machine.omega, machine.at_rest, machine.dynamic)
 
 
 def _at_frequency(film: RestingFilm, dynamic: DynamicFilm, frequency: float) -> RestingFilm:
     """The film with K = Re Z(i frequency) and D = Im Z(i frequency) / frequency in rad/s, above 0."""
     own, fine = (each.at(1j * frequency)[0] for each in (dynamic.own, dynamic.fine))
-    error = film.error
+    error, size = film.error, len(own)
     if dynamic.exact is not None:
-        pairs: Sequence[tuple[Array, Array]] = ((own.real, fine.real), (own.imag, fine.imag))
+        blocks = [(slice(first, first + 2),) * 2 for first in range(0, size, 2)]  # forces, and moments by tilts
+        pairs = [(part(own[block]), part(fine[block])) for block in blocks for part in (np.real, np.imag)]
         error = max(float(np.abs(mine - other).max() / np.abs(mine).max()) for mine, other in pairs)
-    return replace(film, stiffness=own.real, damping=own.imag / frequency, error=error)
+    stiffness, damping = own.real[:, :size], own.imag[:, :size] / frequency
+    tilting = film.tilting and replace(film.tilting, stiffness=stiffness, damping=damping)
+    return replace(film, stiffness=stiffness[:2, :2], damping=damping[:2, :2], error=error, tilting=tilting)

@@ -110,22 +110,25 @@ def unbalance_shares(alpha: Real, omega: Real, sine: Real, cosine: Real) -> tupl
     return alpha * cosine - omega**2 * sine, alpha * sine + omega**2 * cosine
 
 
-def without_spins(rotor: LinearRotor, speeds: Array, following: NDArray[np.bool_] | None = None) -> LinearRotor:
-    """The machine without its last degrees of freedom, the angles of its rings, which keep their speeds (rings,) in
-    rad/s. following: (rings,) whose angles stay, behind all others; none by default."""
-    count = len(speeds)
-    if count == 0:
+def with_precession(rotor: LinearRotor, speeds: Array) -> LinearRotor:
+    """The machine with the gyroscopic moments of its rings, which turn with speeds (rings,) in rad/s."""
+    if not rotor.cones:
         return rotor
-    n, damping = rotor.size - count, rotor.damping
-    if rotor.cones:
-        damping = damping + rotor.precession(np.concatenate([np.zeros(n), speeds]))
-    staying = np.zeros(0, dtype=np.int64) if following is None else np.flatnonzero(following)
-    kept = np.concatenate([np.arange(n), n + staying])
+    turning = np.concatenate([np.zeros(rotor.size - len(speeds)), speeds])
+    return replace(rotor, damping=rotor.damping + rotor.precession(turning), cones=())
+
+
+def without_spins(rotor: LinearRotor, speeds: Array) -> LinearRotor:
+    """The machine without its last degrees of freedom, the angles of its rings, which keep their speeds (rings,) in
+    rad/s."""
+    if len(speeds) == 0:
+        return rotor
+    rotor, kept = with_precession(rotor, speeds), np.arange(rotor.size - len(speeds))
     square = np.ix_(kept, kept)
     return replace(
         rotor,
         mass=rotor.mass[square],
-        damping=damping[square],
+        damping=rotor.damping[square],
         gyroscopic=rotor.gyroscopic[square],
         stiffness=rotor.stiffness[square],
         static_load=rotor.static_load[kept],
@@ -135,5 +138,4 @@ def without_spins(rotor: LinearRotor, speeds: Array, following: NDArray[np.bool_
         points=tuple((name, place[:, kept]) for name, place in rotor.points),
         over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(kept),
         loads=tuple(load.cut(kept) for load in rotor.loads),
-        cones=(),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import partial
 
 import numpy as np
 import pytest
@@ -160,16 +161,6 @@ def test_heat_without_runs_does_not_know_of_friction(analysis: str) -> None:
         require(rigid(*heat), analysis)
 
 
-def test_films_that_keep_oil_are_not_linearised_beside_rings_that_stick() -> None:
-    """Whose speeds follow small motions; in cycles by shooting the time loop has both."""
-    groove = 'bearing.inner.supply={kind="circumferential-groove", pressure="2 bar"}'
-    ring = load_case("floating-ring", [*ROUGH, groove, "film.cavitation=two-phase"])
-    with pytest.raises(InputError, match="lets the speed of a ring follow small motions"):
-        require(ring, STABILITY)
-    for analysis in (STABILITY, SPEED_CYCLES):
-        require(ring.with_settings({"film.cavitation": "half-sommerfeld"}), analysis)
-
-
 def test_a_sheet_has_the_friction_that_holds_a_ring() -> None:
     """At 1 Hz the ring creeps: the torques of friction and film on its inner and outer surface balance. That on a
     shell is that on its journal turned round, with the moment of the load about the middle of the shell."""
@@ -212,7 +203,7 @@ def test_oil_and_summits_answer_beside_each_other() -> None:
     assert system.asperities is not None
     summits = system.rubbing(0).force(place, np.zeros(2), 2.0 * math.pi * 0.3)
     assert -summits.by_displacement[1, 1] > 1e6
-    alone = dynamic_film(system.films.with_fields[0], place, 2.0 * math.pi * 0.3, 2.0 * math.pi * 0.3)
+    alone = dynamic_film(partial(system.films.linear, 0), place, 2.0 * math.pi * 0.3, 2.0 * math.pi * 0.3)
     for s in (0.5j, -0.1 + 3.0j):
         more = -summits.by_displacement - s * summits.by_velocity
         for own, other in ((film.own, alone.own), (film.fine, alone.fine), (film.one, alone.one)):

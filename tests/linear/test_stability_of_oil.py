@@ -126,7 +126,7 @@ def test_coefficients_are_those_at_the_frequency_of_the_whirl() -> None:
     journal = linear.journals[0]
     matrix = linear.at(1j * nu, [machine.dynamic[0].own])[0]
     alone = linear.stiffness + 1j * nu * linear.damping - nu**2 * linear.mass
-    alone = alone + linear.multiplicity[0] * journal.T @ (film.stiffness + 1j * nu * film.damping) @ journal
+    alone = alone + linear.pushes[0] @ (film.stiffness + 1j * nu * film.damping) @ journal
     np.testing.assert_allclose(alone, matrix, rtol=1e-9)
     assert film.error < 0.05
 

@@ -172,7 +172,7 @@ SUPPLIED = "thermal.supply_temperature=60 degC"
 REFUSED = {
     "channels": ("turbocharger-car", ("bearing.0.channels=coupled",), "bearing.0.channels"),
     "a rotor in its plane": ("jeffcott", (), "rotor.kind"),
-    "oil": ("", ("film.cavitation=elrod",), "film.cavitation"),
+    "gas": ("", ("film.cavitation=bubbly",), "film.cavitation"),
     "a law that follows": ("", ("film.cavitation=penalty",), "film.cavitation"),
     "a short film": ("", ("film.theory=short",), "film.theory"),
     "heat": ("", ('oil.viscosity={grade = "SAE 10W-40"}', "thermal.model=lumped", SUPPLIED), "thermal.model"),

@@ -4,16 +4,18 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
 
     storage w' + flow w + by_place d + by_rate d' = 0,        F = push w,
 
-in the frame at rest, where the settled film does not change. Oil is carried upwind, whose derivatives are exact on
-neighbouring cells, and laws with kinks count with the derivative on the side on which each cell is. Free gas that the
-oil carries is one more state per cell, see gas/linear.py. Openings that take all that their supply gives are one more
-state of the film: the filling of their line, see feed.py.
+in the frame at rest, where the settled film does not change. Of a journal that tilts, d holds its tilts, too
+(tilted/linear.py). Journal and shell may also turn faster: the angle by which they turn together is then the last one
+of d, of whose rate alone the film knows. Oil is carried upwind, whose derivatives are exact on neighbouring cells, and
+laws with kinks count with the derivative on the side on which each cell is. Free gas that the oil carries is one more
+state per cell, see gas/linear.py. Openings that take all that their supply gives are one more state of the film: the
+filling of their line, see feed.py.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,6 +33,7 @@ from frbcli.film.cells.balance.balances import (
     without_ends,
 )
 from frbcli.film.cells.balance.feed import ALL
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION_SLOPE,
@@ -59,17 +62,28 @@ STEP = 1e-5  # of the filling: balances are nearly linear in it
 
 @dataclass(frozen=True)
 class LinearFilm:
-    """A film of n states at rest, see above. SI units but for the cells' own: flow and storage (n, n) sparse;
-    by_place (n, 2) per m; by_rate (n, 2) per m/s; push (2, n) N on the journal; field: of the settled
-    film; ordered: whether the states stand in the order of their elimination, each with its own equation."""
+    """A film of n states at rest, see above, by c coordinates of its journal. SI units but for the cells' own: flow and
+    storage (n, n) sparse; by_place (n, c) per m and rad; by_rate (n, c) by their rates; by_total (n,) by omega_J +
+    omega_S; push (2 or 4, n) N and N m on the journal; field: of the settled film; ordered: whether the states stand in
+    the order of their elimination, each with its own equation."""
 
     flow: csc_matrix
     storage: csc_matrix
     by_place: Array
     by_rate: Array
+    by_total: Array
     push: Array
     field: Array
     ordered: bool = False
+
+    def turning(self) -> LinearFilm:
+        """The film with the angle by which journal and shell turn together as one more coordinate."""
+        by_place = np.column_stack([self.by_place, np.zeros_like(self.by_total)])
+        return replace(self, by_place=by_place, by_rate=np.column_stack([self.by_rate, self.by_total]))
+
+    def in_plane(self) -> LinearFilm:
+        """The film of a journal that keeps its direction."""
+        return replace(self, by_place=self.by_place[:, :2], by_rate=self.by_rate[:, :2], push=self.push[:2])
 
 
 def lying(film: VolumeFilm, share: float) -> VolumeFilm:
@@ -89,10 +103,32 @@ def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | Non
     solution = solver.steady(motion, start, upwind=True)
     if at.law.carries_gas:
         found = linear_states(at, motion, solution)
-        moved = found.by_place / clearance, found.by_rate / clearance
+        moved = found.by_place / clearance, found.by_rate / clearance, found.by_total
         return LinearFilm(found.flow, found.storage, *moved, found.push, solution.field, ordered=True)
     settled = _SettledCells(solver, motion, solution)
     return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
+
+
+def by_total(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> Array:
+    """(m, k) derivative by omega_J + omega_S of what flows out of each cell, which is linear in it."""
+    step, state = math.copysign(max(abs(motion.omega), 1.0), motion.omega), solution.state
+
+    def out(omega: float) -> Array:
+        balance = CellBalances(film.section, film.grid, replace(motion, omega=omega), solution.before)
+        fluxes, _, _ = balance.fluxes(state.pressure, state.fraction)
+        return fluxes.net_outflow(film.grid.share)
+
+    return np.where(film.grid.fixed, 0.0, (out(motion.omega + step) - out(motion.omega)) / step)
+
+
+def by_neighbours(stencil: Array) -> csc_matrix:
+    """(n, n) what the entries (ENTRIES, m, k) of a stencil multiply."""
+    from scipy.sparse import csc_matrix  # takes long to load
+
+    number = np.arange(stencil[CENTRE].size).reshape(stencil[CENTRE].shape)
+    columns = np.concatenate([np.roll(number, shift, (0, 1)).ravel() for _, *shift in NEIGHBOURS])
+    entries = np.concatenate([stencil[entry].ravel() for entry, *_ in NEIGHBOURS])
+    return csc_matrix((entries, (np.tile(number.ravel(), len(NEIGHBOURS)), columns)), shape=(number.size,) * 2)
 
 
 class _SettledCells:
@@ -120,6 +156,7 @@ class _SettledCells:
             storage=diags(storage.ravel(), format="csc"),
             by_place=by_place / clearance,
             by_rate=by_rate / clearance,
+            by_total=by_total(self._solver.film, self._motion, self._solution).ravel(),
             push=self._pushed(self._states[PRESSURE_SLOPE]).reshape(2, -1),
             field=self._solution.field,
         )
@@ -138,6 +175,7 @@ class _SettledCells:
             storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
             by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
             by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
+            by_total=np.append(film.by_total, -(open_ @ film.by_total)),
             push=np.column_stack([film.push, push]),
             field=film.field,
         )
@@ -150,8 +188,6 @@ class _SettledCells:
     def _balances(self, own: np.record) -> tuple[csc_matrix, Array, Array]:
         """Derivatives of the balances of the n cells by their unknowns (n, n), and by displacement and velocity over
         the clearance (n, 2)."""
-        from scipy.sparse import csc_matrix
-
         _, ring, width, cells = self._parts
         (m, k), (x, y) = self._solution.w.shape, self._motion.d
         stencil, fields, nothing = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + SIDES)), np.zeros((m, k))
@@ -164,11 +200,7 @@ class _SettledCells:
 
         by_rate = by_velocity(0.0)
         by_place = by_velocity(1.0) - by_rate
-        number = np.arange(m * k).reshape(m, k)
-        columns = np.concatenate([np.roll(number, shift, (0, 1)).ravel() for _, *shift in NEIGHBOURS])
-        entries = np.concatenate([stencil[entry].ravel() for entry, *_ in NEIGHBOURS])
-        at = np.tile(number.ravel(), len(NEIGHBOURS)), columns
-        return csc_matrix((entries, at), shape=(m * k, m * k)), by_place, by_rate
+        return by_neighbours(stencil), by_place, by_rate
 
     def _by_filling(self) -> tuple[Array, float, Array]:
         """Derivatives by the filling: of the balances (n,), of what the openings take, and of the force (2,) in N."""

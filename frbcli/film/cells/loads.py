@@ -126,6 +126,13 @@ def pushed(film: VolumeFilm, pressure: Array) -> tuple[float, float]:
     return float(-along @ np.diff(np.cos(grid.phi))), float(-along @ np.diff(np.sin(grid.phi)))
 
 
+def pushing(film: VolumeFilm) -> Array:
+    """(2, m, k) force in N on the journal per unit of the scaled pressure of each cell, as `pushed` sums it."""
+    grid, section = film.grid, film.section
+    weight = section.copies * section.radius * section.width * section.pressure_scale * film.weights
+    return np.stack([-np.diff(side(grid.phi))[:, None] * weight for side in (np.cos, np.sin)])
+
+
 def torque(
     film: VolumeFilm, motion: Motion, solution: VolumeSolution, slip: float, factor: CavitationFactor = "none"
 ) -> Torque:

@@ -18,6 +18,7 @@ from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
+from frbcli.film.cells.linearised import linear_film, lying
 from frbcli.film.cells.loads import CavitationFactor, force, loads
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
@@ -25,7 +26,7 @@ from frbcli.film.cells.steady_force import film_at, steady_force, steady_solutio
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
-from frbcli.film.kinds.contract import Compared, Films
+from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.rough_gap import stress_factor
@@ -118,6 +119,11 @@ class CellFilms(Films):
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         start = near.field if near is not None and self.sought_near[i] else None
         return steady_force(self.own[i], place, rate, total, start)
+
+    def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
+        film = self.own[i]
+        mesh = VolumeFilm(film.section, run_grid(film.section, cells), film.law, film.scales.reference)
+        return lambda share, place, total, start: linear_film(lying(mesh, share), place, total, start)
 
     @property
     def compared_states(self) -> int:

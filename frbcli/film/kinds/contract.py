@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.linearised import LinearFilm
 from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Array
 from frbcli.film.kinds.fields import FieldFilm
@@ -28,6 +29,10 @@ from frbcli.film.state import WET
 
 # (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
 Compared = Callable[[int, Array, Array, float], tuple[Array, Array]]
+
+# (share, place, total, start) -> the film at rest with its journal at `place`, on cells that lie by a share of one cell
+# further around; start: field of a film near by, None without. Raises NotConverged.
+LinearOf = Callable[[float, Array, float, Array | None], LinearFilm]
 
 
 @dataclass(frozen=True)
@@ -195,6 +200,11 @@ class Films(ABC):
     def with_fields(self) -> tuple[VolumeFilm, ...]:
         """The films with their fields of pressure, flow and oil; empty where these are not kept."""
         return ()
+
+    def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
+        """Film i, of a law that keeps oil, on cells (around, along) of its own, linearised with its oil; along: of a
+        half of the width where the gap is even. Raises NotImplementedError of a kind that keeps none."""
+        raise NotImplementedError
 
     @property
     def film_of_cells(self) -> NDArray[np.int64]:

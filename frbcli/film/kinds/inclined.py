@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.film.grid import Array
-from frbcli.film.kinds.contract import Films
+from frbcli.film.kinds.contract import Films, LinearOf
 from frbcli.film.kinds.tilted import TiltedField, TiltedFilms
 from frbcli.film.rectangles.film import FilmForce
 
@@ -34,6 +34,18 @@ class InclinedFilms(Films):
 
     def ends(self, places: Array) -> Array:
         return self.tilted.ends(np.hstack([places, self.tilted.standing[:, 2:]]))
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        return self.tilted.remembering
+
+    @property
+    def starving(self) -> bool:
+        return self.tilted.starving
+
+    def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
+        whole, tilt = self.tilted.linear(i, cells), self.tilted.standing[i, 2:]
+        return lambda share, place, *more: whole(share, np.concatenate([place, tilt]), *more).in_plane()
 
     @property
     def fields(self) -> tuple[InclinedFilm, ...]:

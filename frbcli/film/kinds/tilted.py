@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -28,11 +28,12 @@ from frbcli.film.cells.tilted.force import (
     settled_force,
     tilted_force,
 )
+from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
 from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil, unknown_at
-from frbcli.film.kinds.contract import Compared, Films
+from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.kinds.fields import FieldFilm, Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
@@ -108,6 +109,10 @@ class TiltedFilms(Films):
     @property
     def remembering(self) -> tuple[bool, ...]:
         return tuple(film.lands[0].film.law.keeps_oil for film in self.own)
+
+    def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
+        around, half = cells
+        return partial(linear_tilted, self.own[i].finer((around, 2 * half)))
 
     @property
     def starving(self) -> bool:

@@ -16,7 +16,6 @@ from frbcli.scene.forms.tilted import (
     TiltedForm,
     film_faults,
     law_faults,
-    memory_faults,
     misalignment_faults,
     run_faults,
 )
@@ -26,8 +25,7 @@ from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text, misaligned
 
-LINEARISED = (FILMS, STABILITY, RANGE, *SHEETS)
-AT_REST = (*LINEARISED, SPEED_CYCLES)
+AT_REST = (FILMS, STABILITY, RANGE, *SHEETS, SPEED_CYCLES)
 WITHOUT = "Leave bearing.misalignment out."
 
 
@@ -57,7 +55,6 @@ class InclinedForm(TiltedForm):
         Rule(_shaft_faults, (*AT_REST, *RUNS)),
         Rule(_ring_faults, (*AT_REST, *RUNS)),
         Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
-        Rule(lambda case: memory_faults(case, WITHOUT), LINEARISED),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
         Rule(lambda case: run_faults(case, WITHOUT), LOOPS),
         Rule(misalignment_faults, (*AT_REST, *RUNS)),

@@ -38,8 +38,7 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-LINEARISED, RUNS = (FILMS, STABILITY, RANGE, BEARING), (RUN, COMPARISON, LADDER)
-FOLLOWED, LOOPS = (*LINEARISED, SPEED_CYCLES), (RUN, SPEED_CYCLES)
+FOLLOWED, RUNS, LOOPS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES), (RUN, COMPARISON, LADDER), (RUN, SPEED_CYCLES)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
@@ -70,17 +69,13 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     if case.contact.rough:
         problem = "is not modelled with films that tilt: its gap is the same along the axis."
         yield Fault("contact.model", "asperities", None, problem, f'Write contact.model = "spring". {without}')
+    for key, name in dict(cavitation_keys(case)).items():
+        if law_named(name).carries_gas:
+            problem = "carries free gas, which is followed where the gap is the same along the axis."
+            yield Fault(key, name, None, problem, f"Take peeken, its limit of fast exchange. {without}")
     if case.heat is not None:
         problem = "computes temperatures only of films whose gap is the same along the axis."
         yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
-
-
-def memory_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
-    """Laws that are not linearised in a film that tilts. without: see film_faults."""
-    for key, name in dict(cavitation_keys(case)).items():
-        if law_named(name).keeps_oil:
-            problem = "keeps its oil, whose motion in a film that tilts is not linearised."
-            yield Fault(key, name, None, problem, f"Take half-sommerfeld or reynolds. {without}")
 
 
 def law_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
@@ -142,7 +137,6 @@ class TiltedForm(CellForm):
         Rule(_analysis_faults, OTHERS),
         Rule(_machine_faults, (*FOLLOWED, *RUNS)),
         Rule(film_faults, (*FOLLOWED, *RUNS)),
-        Rule(memory_faults, LINEARISED),
         Rule(law_faults, FOLLOWED),
         Rule(run_faults, LOOPS),
         Rule(misalignment_faults, (*FOLLOWED, *RUNS)),

@@ -13,7 +13,7 @@ from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.films import HOUSING, FilmPlace, film_places, turning_rings
+from frbcli.scene.films import HOUSING, FilmPlace, film_places
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.published import PUBLISHED
@@ -22,7 +22,6 @@ from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
 from frbcli.scene.section import film_section
-from frbcli.scene.speeds import keeps_oil
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
@@ -110,16 +109,11 @@ def saturation_faults(case: Case) -> Iterator[Fault]:
 
 
 def moved_gas_faults(case: Case) -> Iterator[Fault]:
-    """What runs do not follow free gas in: channels, films that follow a tilt, films with steps of their own."""
+    """What runs do not follow free gas in: channels, films with steps of their own."""
     if not form_of(case).solved or not any(law_named(name).carries_gas for name in case.cavitations):
         return
     problem = "is not modelled with oil that carries free gas."
     peeken = 'or film.cavitation = "peeken", its limit of fast exchange'
-    if case.film.tilt == "follows":
-        yield Fault("film.tilt", "follows", None, problem, f'Write film.tilt = "none", {peeken}.')
-    elif form_of(case) is INCLINED:
-        for key, value in misaligned(case):
-            yield Fault(key, value, None, problem, f"Write none, {peeken}.")
     if coupling_of(case).in_turn:
         remedy = f'Write film.coupling = "monolithic", {peeken}.'
         yield Fault("film.coupling", case.film.coupling, None, problem, remedy)
@@ -215,14 +209,6 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
     if case.contact.rough and (coupling.in_turn or coupling.once):
         problem = "solves rotor and films once per step, and summits are too stiff for that."
         yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
-
-
-def rough_ring_faults(case: Case) -> Iterator[Fault]:
-    """Rings whose speeds follow small motions on rough surfaces, in films whose oil would have to follow them."""
-    if case.contact.rough and turning_rings(case) and keeps_oil(case):
-        problem = "lets the speed of a ring follow small motions, and films that keep oil are linearised for one speed."
-        remedy = f"{SMOOTH}, or take a law without memory, or a run-up."
-        yield Fault("contact.model", "asperities", None, problem, remedy)
 
 
 def rough_rest_faults(case: Case) -> Iterator[Fault]:

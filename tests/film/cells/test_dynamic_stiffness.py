@@ -16,10 +16,14 @@ from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
+from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film, tilted_force, unit_loads
+from frbcli.film.cells.tilted.linear import linear_tilted
+from frbcli.film.gap import whole_width
 from frbcli.scene.films import film_places, volume_film
 
 OMEGA = 2.0 * math.pi * 78.0
 PLACE = np.array([5.9e-6, -0.8e-6])
+WIDTH = 20e-3
 LAWS = ["two-phase", "elrod", "peeken"]
 
 
@@ -90,3 +94,69 @@ def test_cells_lie_further_around() -> None:
     film = film_of("two-phase")
     grid = lying(film, 0.25).grid
     np.testing.assert_allclose(grid.phi - film.grid.phi, 0.25 * 2.0 * math.pi / 48)
+
+
+TILTED = np.array([5.9e-6, -0.8e-6, 2e-4, -5e-4])  # m and rad, in a bearing 20 mm wide
+
+
+def tilted_of(film: VolumeFilm) -> TiltedFilm:
+    """The bearing of a section over its whole width, on as many cells."""
+    (m, k), reference = film.grid.shape, film.scales.reference
+    return tilted_film(whole_width(film.section), film.law, (m, 2 * k), reference)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_journal_that_is_parallel_has_the_same_film_with_tilts(law: str) -> None:
+    """On the same cells to 1e-9: that of its displacements, and by the sum of the speeds; tilts do nothing to forces,
+    nor displacements and speeds to moments."""
+    even = film_of(law)
+    whole = tilted_of(even)
+    flat = VolumeFilm(even.section, whole.lands[0].film.grid, even.law, even.scales.reference)
+    own, other = (
+        linear.turning()
+        for linear in (linear_tilted(whole, 0.0, np.append(PLACE, [0.0, 0.0]), OMEGA), linear_film(flat, PLACE, OMEGA))
+    )
+    for s in (0.0, 0.5j * OMEGA, (0.1 + 1.0j) * OMEGA):
+        z, expected = stiffness_at(own, s), stiffness_at(other, s)
+        size, tilts = np.abs(expected).max(axis=0), slice(2, 4)
+        np.testing.assert_allclose(z[:2, [0, 1, 4]], expected, atol=1e-9 * size.max())
+        assert np.abs(z[:2, tilts]).max() < 1e-9 * size[0] * WIDTH
+        assert np.abs(z[tilts, :2]).max() < 1e-9 * size[0] * WIDTH
+        assert np.abs(z[tilts, tilts]).max() > 1e-2 * size[0] * WIDTH**2
+
+
+@pytest.mark.parametrize("law", ["two-phase", "elrod"])
+def test_at_rest_a_tilted_film_has_the_stiffness_of_the_settled_one(law: str) -> None:
+    film = tilted_of(film_of(law))
+    settled, linear = tilted_force(film, TILTED, np.zeros(4), OMEGA), linear_tilted(film, 0.0, TILTED, OMEGA)
+    arms = np.array([1.0, 1.0, WIDTH, WIDTH])
+    expected, found = (each / np.outer(arms, arms) for each in (-settled.by_displacement, stiffness_at(linear, 0.0)))
+    np.testing.assert_allclose(found.real, expected, atol=1e-7 * np.abs(expected).max())
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_a_tilted_film_does_what_a_small_step_in_time_does(law: str) -> None:
+    """As above, by all four coordinates, and by an angle by which both surfaces turn: s times it is a speed."""
+    film, s = tilted_of(film_of(law)), 0.5 * OMEGA
+    linear = linear_tilted(film, 0.0, TILTED, OMEGA).turning()
+    steps = 1e-5 * np.array([40e-6, 40e-6, 4e-3, 4e-3, OMEGA / s])
+
+    def stepped(by: np.ndarray) -> np.ndarray:
+        """(4,) force and moments after an implicit Euler step of 1 / s to coordinates (5,) beside rest."""
+        total = np.zeros(4)
+        for land, field in zip(film.lands, linear.field, strict=True):
+            solver, still = FilmSolver(land.film), np.zeros(4)
+            solver._before = np.full(land.film.grid.shape, UPWIND)
+            rest, moved = land.motion(TILTED, still, OMEGA), land.motion(TILTED + by[:4], still, OMEGA + s * by[4])
+            storage = Storage(s * land.film.gaps(moved), s * land.film.content(rest, field))
+            pressure = land.film.mean_pressure(solver._solve(moved, field, storage).state)
+            total += land.map.T @ (unit_loads(land.film) @ pressure.ravel())
+        return total
+
+    found = np.column_stack([(stepped(-by) - stepped(by)) / (2.0 * by.sum()) for by in np.diag(steps)])
+    expected = stiffness_at(linear, s).real
+    arms = np.array([1.0, 1.0, WIDTH, WIDTH])
+    found, expected = (each / arms[:, None] / np.append(arms, OMEGA / s) for each in (found, expected))
+    size = np.abs(expected).max(axis=0)
+    np.testing.assert_allclose(found / size, expected / size, atol=2e-4)
+    assert size[4] > 0.0

@@ -86,7 +86,7 @@ def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_ta
     mode = s / (1.0 + free) / (stiffness + s * compliance)  # p / p_s per displacement, of H = 1 - d cos(phi)
     unit = saturation * np.cos(grid.centre)[:, None]
     expected = -mode * pushed(film, unit)[1]
-    whole = LinearFilm(found.flow, found.storage, found.by_place, found.by_rate, found.push, settled.w)
+    whole = LinearFilm(*found[:4], found.by_total, found.push, settled.w)
     assert stiffness_at(whole, s)[1, 1] == pytest.approx(expected, rel=1e-6)
 
 

@@ -27,7 +27,7 @@ from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, brought, paths_of, with_own_gas
 from frbcli.film.cells.gas.carry import PATHS, follow_oil
-from frbcli.film.cells.mesh.grid import force_weights
+from frbcli.film.cells.loads import pushing
 from frbcli.film.cells.motion import Motion
 from frbcli.film.grid import Array
 
@@ -42,12 +42,13 @@ STEP = 1e-6  # of the differences: balances are nearly linear in it
 class LinearStates(NamedTuple):
     """Derivatives of a film of n cells by its states, w and c of each cell: of its balances, flow (2 n, 2 n) and, by
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
-    (2 n, 2); of the force in N on the journal, push (2, 2 n)."""
+    (2 n, 2); by omega_J + omega_S, by_total (2 n,); of the force in N on the journal, push (2, 2 n)."""
 
     flow: csc_matrix
     storage: csc_matrix
     by_place: Array
     by_rate: Array
+    by_total: Array
     push: Array
 
 
@@ -71,6 +72,9 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     places = [
         settled.change((w, free, _moved(motion, axis, STEP)), (w, free, _moved(motion, axis, -STEP))) for axis in (0, 1)
     ]
+    pace = max(abs(motion.omega), 1.0)
+    faster, slower = (replace(motion, omega=motion.omega + side * STEP * pace) for side in (1.0, -1.0))
+    turned = settled.change((w, free, faster), (w, free, slower))
     state, gap = settled.state(w, free), settled.gap(motion)
     high, low = settled.state(w, free + STEP), settled.state(w, free - STEP)
     fraction, pressure = (high.fraction - low.fraction) / (2.0 * STEP), (high.pressure - low.pressure) / (2.0 * STEP)
@@ -79,10 +83,12 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     storage = [((area * gap * slope).ravel(), row, by) for slope, row, by in stored]
     storage.append(((area * gap * state.fraction * settled.rated * settled.time).ravel(), c_at, c_at))
     rate = [(area * state.fraction * side[:, None]).ravel() for side in (np.sin(grid.centre), -np.cos(grid.centre))]
-    by_place, by_rate, push = np.zeros((size, 2)), np.zeros((size, 2)), np.zeros((2, size))
+    by_place, by_rate, by_total, push = np.zeros((size, 2)), np.zeros((size, 2)), np.zeros(size), np.zeros((2, size))
     by_place[at] = np.stack([np.concatenate([each.ravel() for each in place]) for place in places], axis=1)
     by_rate[w_at] = np.stack(rate, axis=1)
-    push[:, at] = np.concatenate([_push(film, state.pressure_slope), _push(film, pressure)], axis=1)
+    by_total[at] = np.concatenate([each.ravel() for each in turned]) / pace
+    slopes = np.concatenate([state.pressure_slope.ravel(), pressure.ravel()])
+    push[:, at] = np.tile(pushing(film).reshape(2, -1), 2) * slopes
 
     def matrix(parts: Sequence[Entries]) -> csc_matrix:
         values, rows, columns = (np.concatenate(each) for each in zip(*parts, strict=True))
@@ -90,7 +96,7 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
         found.eliminate_zeros()  # nothing comes back against the flow
         return found
 
-    return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, push)
+    return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, by_total, push)
 
 
 def _numbers(shape: tuple[int, int]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -174,11 +180,3 @@ def _nearest(cells: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.in
 def _moved(motion: Motion, axis: int, step: float) -> Motion:
     x, y = motion.d
     return replace(motion, d=(x + step, y) if axis == 0 else (x, y + step))
-
-
-def _push(film: VolumeFilm, slope: Array) -> Array:
-    """(2, n) force in N per state that changes the scaled pressures by `slope` (m, k)."""
-    section, grid = film.section, film.grid
-    weight = section.copies * section.radius * section.width * section.pressure_scale * force_weights(section, grid)
-    sides = np.diff(np.cos(grid.phi)), np.diff(np.sin(grid.phi))
-    return np.stack([-(side[:, None] * weight * slope).ravel() for side in sides])

@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.loads import pushed
+from frbcli.film.cells.loads import pushed, pushing
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.mesh.tilted import tilted_cells
 from frbcli.film.cells.motion import Motion, Storage
@@ -153,21 +153,29 @@ def land_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) 
 
 def _land_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> tuple[Array, Array, Array]:
     """Loads (4,) that belong to u in N, and their derivatives (4, 4) by u in N and by its rate in N s."""
+    state, (m, k) = solution.state, film.grid.shape
+    stencil, by_u, by_v = land_slopes(film, motion, solution)
+    fields = np.concatenate([np.zeros((m, k, k)), -by_u, -by_v], axis=2)
+    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    changes = np.array([_loads(film, mean_change(film, state, fields[:, :, k + i])) for i in range(2 * COORDINATES)])
+    return _loads(film, film.mean_pressure(state)), changes[:COORDINATES].T, changes[COORDINATES:].T
+
+
+def land_slopes(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> tuple[Array, Array, Array]:
+    """Derivatives of the balances of the cells of a land in its settled state: the stencil (ENTRIES, m, k) by their
+    unknowns, and (m, k, 4) by u and by its rate."""
     grid, state = film.grid, solution.state
     balance = CellBalances(film.section, grid, motion, solution.before)
     storage = Storage(gap_rate(motion.velocity_at(grid.height), grid.centre[:, None]), np.zeros(grid.shape))
     _, entries = balance.residual(state, storage)
-    m, k = grid.shape
-    stencil, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k + 2 * COORDINATES))
+    stencil = np.zeros((ENTRIES, *grid.shape))
     stencil[CENTRE], stencil[BEFORE], stencil[BEHIND] = entries.centre, entries.before, entries.behind
     stencil[BELOW], stencil[ABOVE] = entries.below, entries.above
-    for i in range(COORDINATES):
-        fields[:, :, k + i] = -_by_place(film, motion, solution, i)
-        opening = gap_rate(_unit(i, grid.height), grid.centre[:, None])
-        fields[:, :, k + COORDINATES + i] = -np.where(grid.fixed, 0.0, grid.area * opening * state.fraction)
-    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
-    changes = np.array([_loads(film, mean_change(film, state, fields[:, :, k + i])) for i in range(2 * COORDINATES)])
-    return _loads(film, film.mean_pressure(state)), changes[:COORDINATES].T, changes[COORDINATES:].T
+    stored = np.where(grid.fixed, 0.0, grid.area * state.fraction)
+    numbers = range(COORDINATES)
+    by_u = np.stack([_by_place(film, motion, solution, i) for i in numbers], axis=2)
+    by_v = np.stack([stored * gap_rate(_unit(i, grid.height), grid.centre[:, None]) for i in numbers], axis=2)
+    return stencil, by_u, by_v
 
 
 def _unit(i: int, z: Array) -> tuple[Array, Array]:
@@ -189,6 +197,12 @@ def _by_place(film: VolumeFilm, motion: Motion, solution: VolumeSolution, i: int
         fluxes, _, _ = CellBalances(film.section, grid, moved, solution.before).fluxes(state.pressure, state.fraction)
         total += weight / step * fluxes.net_outflow(grid.share)
     return np.where(grid.fixed, 0.0, total)
+
+
+def unit_loads(film: VolumeFilm) -> Array:
+    """(4, n) of _loads per unit of the pressure of each cell."""
+    unit = pushing(film)
+    return np.concatenate([unit, (film.grid.height - 0.5) * unit]).reshape(COORDINATES, -1)
 
 
 def _loads(film: VolumeFilm, pressure: Array) -> Array:
