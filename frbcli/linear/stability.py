@@ -32,6 +32,7 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds
 
+SCOUTED = 4  # every which speed is tried on the coarsest mesh
 TRIED = 5  # speeds at which rest is sought before it is given up, where there is none at the highest one
 
 
@@ -97,7 +98,7 @@ def stability(
 
 def threshold_alone(case: Case) -> Stability:
     """As `stability`, for who wants the threshold with its error alone: the points have no errors, and if films are on
-    cells, most points are on the coarsest mesh. Raises InputError."""
+    cells, they are fewer, and most of them on the coarsest mesh. Raises InputError."""
     require(case, RANGE)
     speeds = default_speeds(case)
     check_machine(case, speeds)
@@ -107,15 +108,22 @@ def threshold_alone(case: Case) -> Stability:
 
 
 def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -> tuple[StabilityPoint, ...]:
-    """The points at speeds_Hz on the coarsest mesh, of which those that decide where the threshold lies are replaced by
-    those of `machines`.
+    """Points at some of speeds_Hz on the coarsest mesh, of which those that decide where the threshold lies are
+    replaced by those of `machines`: at every SCOUTED-th speed, and at all where growth may pass zero between these.
 
     () where this decides nothing: films are not on cells or keep oil, whose eigenvalues scatter from mesh to mesh,
     there is no rest at some speed, or the meshes differ in whether a deciding point is stable.
     """
     if not machines.static.on_cells or machines.system.remembers:
         return ()
-    points = list(_sweep(case, StaticMachines(case, coarse=True), speeds_Hz, with_error=False))
+    scout = StaticMachines(case, coarse=True)
+    points = list(_sweep(case, scout, [*speeds_Hz[:-1:SCOUTED], speeds_Hz[-1]], with_error=False))
+    if not all(point.rests for point in points):
+        return ()
+    if between := [speed for speed in speeds_Hz if any(low < speed < high for low, high in _open_spans(points))]:
+        known = {point.speed_Hz for point in points}
+        points += _sweep(case, scout, [speed for speed in between if speed not in known], with_error=False)
+        points.sort(key=lambda point: point.speed_Hz)
     if not all(point.rests for point in points):
         return ()
     near: MachineAtRest | None = None
@@ -125,6 +133,15 @@ def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -
             return ()
         points[number] = own
     return tuple(points)
+
+
+def _open_spans(points: Sequence[StabilityPoint]) -> list[tuple[float, float]]:
+    """Spans of speeds in Hz within which growth may pass zero: about its maxima below the first speed at which a motion
+    grows, and up to this."""
+    growth, last = [point.growth for point in points], len(points) - 1
+    first = next((number for number, each in enumerate(growth) if each > 0.0), last)
+    highest = [i for i in range(first + 1) if i == first or growth[i] >= max(growth[max(i - 1, 0)], growth[i + 1])]
+    return [(points[max(i - 1, 0)].speed_Hz, points[min(i + 1, last)].speed_Hz) for i in highest]
 
 
 def _stability(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,11 +16,13 @@ from frbcli.film.cells.balance.feed import supply_line, supply_pressure
 from frbcli.film.cells.balance.plain import NO_DISTANCE
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.cells.mesh.openings import bathed
-from frbcli.film.gap import gap_height
+from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 
 Records = NDArray[np.record]
+FEW = 64  # films whose geometry is kept
 TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 CLOSED, GIVEN, FREE, FED = range(4)
@@ -144,7 +147,7 @@ def volume_films(
     )
     for index, film in enumerate(films):
         _describe(film, data.films[index])
-        _fill(film, data.ring[index], data.width[index], data.cells[index])
+        data.ring[index], data.width[index], data.cells[index] = _geometry(film.section, film.grid)
         data.films[index].centrifugal = centrifugal[index] if centrifugal else 0.0
         data.films[index].settled = settled
     return data
@@ -172,9 +175,13 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     own.given, own.line, own.lowest = supply_line(film)
 
 
-def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
-    section, grid, centred = film.section, film.grid, (0.0, 0.0)
-    face = grid.phi[1:]
+@lru_cache(maxsize=FEW)
+def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
+    """ring (RING_ROWS, m), width (1, k) and cells (CELL_LAYERS, m, k) of a film, not to be written to. Those of a few
+    films are kept: a film is solved often, at each eccentricity with a law of its own."""
+    m, k = grid.shape
+    ring, width, cells = np.zeros((RING_ROWS, m)), np.zeros((1, k)), np.zeros((CELL_LAYERS, m, k))
+    face, centred = grid.phi[1:], (0.0, 0.0)
     ring[SIN], ring[COS], ring[GAP] = (
         np.sin(grid.centre),
         np.cos(grid.centre),
@@ -187,7 +194,7 @@ def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
     width[0] = np.diff(grid.z)
     cells[AREA], cells[SHARE], cells[EXCESS] = grid.area, grid.share, grid.excess
     cells[SHEARED] = (1.0 - grid.cover) * grid.size
-    cells[LOAD] = film.weights
+    cells[LOAD] = force_weights(section, grid)
     around = np.where(grid.around > 0.0, width[0] / np.maximum(grid.around, NO_DISTANCE), 0.0)
     edge = grid.at != grid.phi[1:, None]
     cells[AROUND], cells[EDGE] = np.where(edge, 0.0, around), np.where(edge, around, 0.0)
@@ -196,3 +203,4 @@ def _fill(film: VolumeFilm, ring: Array, width: Array, cells: Array) -> None:
     open_along = np.where(grid.along > 0.0, ring[LENGTH][:, None] / np.maximum(grid.along, NO_DISTANCE), 0.0)
     cells[ALONG, :, :-1] = section.aspect * open_along
     cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)
+    return ring, width, cells

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -105,7 +104,7 @@ class VolumeFilm:
             return np.full(self.grid.shape, self.law.standing(self.scales))
         return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
 
-    @cached_property
+    @property
     def weights(self) -> Array:
         """(m, k) of the pressures of the cells in the integral over the width."""
         return force_weights(self.section, self.grid)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,12 +15,13 @@ from frbcli.film.cells.mesh.tilted import tilted_weights
 from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
 
+FEW = 64  # films whose weights are kept: a film is solved often
 NEAREST = 1e-3  # of a cell: so near its middle the edge of a groove or hole may come
 CHEBYSHEV = 0.35  # share of Chebyshev's spacing along the axis under a journal that tilts
 CONTRACTION = 0.3  # exponent on (1 - eps) / (1 + eps): 0.5 is Sommerfeld's angle, which leaves the wide gap coarse
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class VolumeGrid:
     """Cells of one section. phi: (m + 1,) boundaries of a turn; z: (k + 1,) boundaries over [0, 1].
 
@@ -137,6 +139,7 @@ def volume_grid(section: Section, phi: Array, z: Array, height: Array | None = N
     return VolumeGrid(phi, z, height, fixed, fixed_pressure, cover=cover, **near._asdict())
 
 
+@lru_cache(maxsize=FEW)
 def force_weights(section: Section, grid: VolumeGrid) -> Array:
     """(m, k) of the pressures of a section's cells in the integral over its width."""
     middle = np.array_equal(grid.height, middles(grid.z))
