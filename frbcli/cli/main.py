@@ -142,6 +142,7 @@ GROUPS = {
     "Exchange data": ("fit", "export"),
 }
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a disk
+NO_CASE = "It changes a CASE before it is computed, and this command takes none: `frb runup CASE --set KEY=VALUE`."
 LIGHT = ("cases", "schema")  # compute nothing
 
 
@@ -211,6 +212,8 @@ def run(arguments: Sequence[str]) -> int:
         nothing_asked.show()
         return nothing_asked.exit_code
     except click.ClickException as wrong_usage:
+        if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
+            wrong_usage.message = f"{wrong_usage.message} {NO_CASE}"
         told = io.StringIO()
         wrong_usage.show(told)
         _tell(told.getvalue().rstrip("\n"))

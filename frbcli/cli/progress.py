@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from frbcli.case.schema import Case
     from frbcli.runs.march import Progress
+    from frbcli.scene.costs.preparation import Kernels
 
 REFRESH_Hz = 8
 TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
@@ -142,10 +143,12 @@ def display(terminal: Terminal, lines: str = COMPUTING) -> Iterator[Display]:
 
 
 @contextmanager
-def computing(terminal: Terminal, case: Case, also: Iterable[Case] = (), at_rest: bool = False) -> Iterator[Display]:
-    """A display that also shows the progress of the compilation; case, also: what is computed, which determines the
-    kernels; at_rest: without a time loop."""
-    with display(terminal) as shown, compilation_shown(shown, case, also, at_rest):
+def computing(
+    terminal: Terminal, case: Case, also: Iterable[Case] = (), kernels: Kernels = "loop"
+) -> Iterator[Display]:
+    """A display that also shows the progress of the compilation; case, also: what is computed; kernels: see
+    compile_s."""
+    with display(terminal) as shown, compilation_shown(shown, case, also, kernels):
         yield shown
 
 
@@ -157,8 +160,10 @@ def drawing(terminal: Terminal) -> Iterator[None]:
 
 
 @contextmanager
-def compilation_shown(shown: Display, case: Case, also: Iterable[Case] = (), at_rest: bool = False) -> Iterator[None]:
-    """Within it, a display shows the progress of the compilation; case, also, at_rest: see `computing`."""
+def compilation_shown(
+    shown: Display, case: Case, also: Iterable[Case] = (), kernels: Kernels = "loop"
+) -> Iterator[None]:
+    """Within it, a display shows the progress of the compilation; case, also, kernels: see `computing`."""
     from frbcli.compilation import counted  # heavy: only where kernels are used
     from frbcli.scene.costs.preparation import compile_s
 
@@ -171,7 +176,7 @@ def compilation_shown(shown: Display, case: Case, also: Iterable[Case] = (), at_
             from frbcli.solve.time_loop import some_are_kept
 
             most = "at most " if some_are_kept() else ""  # of which this machine needs some, maybe
-            about = f"{most}about {compile_s([case, *also], at_rest) * slowness():.0f} s of CPU time."
+            about = f"{most}about {compile_s([case, *also], kernels) * slowness():.0f} s of CPU time."
             told = now
             shown.line(f"Compiling the kernels, once: {about}")
         elif compilations.functions and (shown.redraws or now - told > COMPILING_EVERY_s):

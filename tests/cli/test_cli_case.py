@@ -208,6 +208,12 @@ def test_case_is_printed_and_copied(tmp_path: Path, capsys: pytest.CaptureFixtur
     assert run(["cases", "jeffcott", "-o", str(tmp_path / "no" / "mine.toml")]) == 2
     assert run(["cases", "jefcott"]) == 2
     assert 'Did you mean the shipped case "jeffcott"' in capsys.readouterr().err
+    assert run(["cases", "jeffcott", "--set", "bearing.clearance=40 um", "-o", str(tmp_path / "wide.toml")]) == 0
+    assert load_case(tmp_path / "wide.toml").same_run(load_case("jeffcott", ["bearing.clearance=40 um"]))
+    assert run(["cases", "--set", "bearing.clearance=40 um"]) == 2
+    capsys.readouterr()
+    assert run(["waterfall", "run.h5", "--set", "bearing.clearance=40 um"]) == 2
+    assert "before it is computed" in capsys.readouterr().err
 
 
 def test_json_knows_no_nan(capsys: pytest.CaptureFixture[str]) -> None:

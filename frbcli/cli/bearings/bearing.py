@@ -68,7 +68,7 @@ def command(
     _check_film(case, film)
     elements = _ross_files(case, ross)
     places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
-    with computing(terminal, case, at_rest=True) as shown:
+    with computing(terminal, case, kernels="rest") as shown:
         if over == "speed":
             found = bearing_sheet(case, speeds or None, load, shown.counting())
         else:

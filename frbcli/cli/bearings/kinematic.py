@@ -54,7 +54,7 @@ def run_test(
 
     outputs = options.check(here(case.name, f"-{'compare' if compared else test}.png"))
     tests = {"rotation": kinematic.rotation, "squeeze": kinematic.squeeze, "whirl": kinematic.whirl}
-    with computing(terminal, case, at_rest=True) as shown:
+    with computing(terminal, case, kernels="rest") as shown:
         found = tests[test](case, cavitation, shown.counting())
     _report(found, terminal)
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}

@@ -6,28 +6,34 @@ from pathlib import Path
 
 import click
 
-from frbcli.cli.common import Terminal, output_options
+from frbcli.cli.common import SETTING, Terminal, output_options
+from frbcli.cli.completion import complete_key
 from frbcli.cli.files import OUTPUT, check_outputs
 
 
 @click.command()
 @click.argument("names", nargs=-1, metavar="[NAME]...")
+@click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
+              help=f"{SETTING} Repeatable. The text is then without comments.")
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
 @click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
 @output_options
-def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool, terminal: Terminal) -> int | None:
+def command(
+    names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool,
+    terminal: Terminal,
+) -> int | None:  # fmt: skip
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
     if run_hard:
         from frbcli.cli.studies.hard import run_hard as run_them
 
         return run_them(names, terminal)
-    if not names and output is not None:
-        raise click.UsageError("-o needs the NAME of a case.")
+    if not names and (output is not None or settings):
+        raise click.UsageError("-o and --set need the NAME of a case.")
     if len(names) > 1:
         raise click.UsageError("One NAME at a time.")
     if names:
-        _show(names[0], output, hard, terminal)
+        _show(names[0], settings, output, hard, terminal)
     elif hard:
         from frbcli.cli.studies.hard import list_hard
 
@@ -37,13 +43,17 @@ def command(names: tuple[str, ...], output: Path | None, hard: bool, run_hard: b
     return None
 
 
-def _show(name: str, output: Path | None, hard: bool, terminal: Terminal) -> None:
+def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal) -> None:
     """Print a case or copy it."""
     if hard:
         from frbcli.cli.studies.hard import hard_text as text_of
     else:
         from frbcli.case.reading.shipped import find_shipped as text_of
     text = text_of(name)
+    if settings:
+        from frbcli.case.reading.load import load_case_text
+
+        text = load_case_text(text, settings, name).source_text
     if output is not None:
         _write(text, output)
         terminal.result(f"case: {output}")

@@ -149,7 +149,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     from frbcli.errors import NotConverged
 
     try:
-        with computing(terminal, case):
+        with computing(terminal, case, kernels="rest"):
             warm = warm_machine(case)
     except NotConverged as error:
         terminal.sentence(f"No steady temperatures at the top speed: {error}")

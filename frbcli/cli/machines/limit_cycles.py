@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
     from frbcli.plot.spectra.run_track import RunTrack
     from frbcli.plot.style import Picture
+    from frbcli.scene.costs.preparation import Kernels
 
 ASKED = "asked"
 KINDS = {"hopf": "Hopf points", "fold": "folds", "torus": "torus points", "flip": "flips"}
@@ -102,13 +103,19 @@ def command(
         _map(terminal, case, (*varied.second, varied.points), across, with_unbalance, places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
-    with computing(terminal, case) as shown:
+    with computing(terminal, case, kernels=_kernels(case)) as shown:
         if not along_speed and low is not None and high is not None:
             found = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
             found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
     _tell(terminal, found)
     terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
+
+
+def _kernels(case: Case) -> Kernels:
+    from frbcli.scene.gate.cycles import by_shooting
+
+    return "both" if by_shooting(case) else "loop"
 
 
 def _figure(found: LimitCycles, tracks: list[RunTrack]) -> Picture:
@@ -138,7 +145,7 @@ def _map(
     from frbcli.scene.films import film_places
 
     across = None if first is None else Across(*first)
-    with computing(terminal, case) as shown:
+    with computing(terminal, case, kernels=_kernels(case)) as shown:
         found = stability_map(case, *second, shown.counting(), across, with_unbalance)
     _tell_map(terminal, found)
     names = tuple(place.name for place in film_places(case))

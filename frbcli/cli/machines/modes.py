@@ -94,7 +94,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
     """Table, picture and JSON of the modes of a rotor in its films at a speed in Hz."""
     from frbcli.linear.damped_modes import damped_modes
 
-    with computing(terminal, case, at_rest=True):
+    with computing(terminal, case, kernels="rest"):
         found = damped_modes(case, speed_Hz)
     terminal.show(f"Damped modes at {speed_Hz:.5g} Hz", found.table())
     if not found.modes:

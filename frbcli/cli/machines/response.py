@@ -67,7 +67,7 @@ def command(
         raise click.UsageError("--excitation and --run exclude each other: --run is for the synchronous motion.")
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
-    with computing(terminal, case, at_rest=True) as shown:
+    with computing(terminal, case, kernels="rest") as shown:
         found = response(case, speeds or None, shown.counting(), excitation)
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))

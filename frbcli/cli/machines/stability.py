@@ -60,7 +60,7 @@ def command(
     if stiffness is not None:
         emit_modes(terminal, case, stiffness, speeds, places)
         return None
-    with computing(terminal, case, at_rest=True) as shown:
+    with computing(terminal, case, kernels="rest") as shown:
         found = stability(case, speeds or None, shown.counting())
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
     _tell(terminal, found, kind, bool(speeds))

@@ -8,6 +8,7 @@ on fewer cells. All numbers are CPU seconds of the reference machine of cost.py.
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import Literal
 
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
@@ -21,6 +22,8 @@ from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
+
+Kernels = Literal["loop", "rest", "both"]
 
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
 CRITICAL_s = 0.5  # of the critical speeds of a machine on cells
@@ -36,12 +39,16 @@ AT_REST = 0.4  # of the kernels of a form, without rings and heat: what films at
 HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ring
 
 
-def compile_s(cases: Iterable[Case], at_rest: bool = False) -> float:
+def compile_s(cases: Iterable[Case], kernels: Kernels = "loop") -> float:
     """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
-    a time loop of their own beside that of tabulated films. at_rest: without a time loop."""
-    if at_rest:
-        return AT_REST * sum({form: form.compiling[0] for form in map(form_of, cases)}.values())
-    return sum(spent for *_, spent in {(*_kind(case), _compilation(case)[0]) for case in cases})
+    a time loop of their own beside that of tabulated films. kernels: those of a time loop, of films at rest, or both,
+    each with its own machine code of what both call."""
+    cases, spent = list(cases), 0.0
+    if kernels != "loop":
+        spent += AT_REST * sum({form: form.compiling[0] for form in map(form_of, cases)}.values())
+    if kernels != "rest":
+        spent += sum(each for *_, each in {(*_kind(case), _compilation(case)[0]) for case in cases})
+    return spent
 
 
 def _kind(case: Case) -> tuple[FilmForm, bool]:
