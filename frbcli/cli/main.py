@@ -213,7 +213,7 @@ def run(arguments: Sequence[str]) -> int:
         return nothing_asked.exit_code
     except click.ClickException as wrong_usage:
         if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
-            wrong_usage.message = f"{wrong_usage.message} {NO_CASE}"
+            wrong_usage = click.UsageError(f"{wrong_usage.format_message()} {NO_CASE}", wrong_usage.ctx)
         told = io.StringIO()
         wrong_usage.show(told)
         _tell(told.getvalue().rstrip("\n"))
