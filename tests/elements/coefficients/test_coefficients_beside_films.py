@@ -1,0 +1,291 @@
+"""Given coefficients beside films, their files, and the faults of both."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from given_rotors import JEFFCOTT, TURN, bearing, growing_seal, matrix, rigid, speed
+
+import frbcli
+from frbcli.case.reading.load import case_from_dict, load_case_text
+from frbcli.case.rules.machine_keys import machine_fault
+from frbcli.equilibrium.coefficients import coefficients_of
+from frbcli.equilibrium.resting import resting_position
+from frbcli.errors import InputError
+from frbcli.linear.stability import stability, stability_points
+from frbcli.linear.stability_point import eigenvalues
+from frbcli.rotor.over_speed import LinearPart
+from frbcli.runs.run import runup
+from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.plan import make_plan
+from frbcli.studies.sweep.sweep import sweep
+
+
+def both_planes(roots: np.ndarray) -> np.ndarray:
+    """The eigenvalues of x and y out of those of z: with their conjugates, sorted."""
+    return np.sort_complex(np.round(np.concatenate([roots, roots.conj()]), 6))
+
+
+SHORT_FILM = {
+    "kind": "single-film", "width": "20 mm", "diameter": "25 mm", "clearance": "35 um", "ends": "oil-bath",
+    "supply": {"kind": "circumferential-groove", "pressure": "1 bar"},
+}  # fmt: skip
+OIL = {"viscosity": "12 mPa*s", "density": "830 kg/m^3", "ambient_pressure": "1 bar", "cavitation_pressure": "1 bar"}
+
+
+def in_film(*elements: dict[str, Any], **tables: object) -> frbcli.Case:
+    bearings = [SHORT_FILM, *elements] if elements else SHORT_FILM
+    data = {"rotor": JEFFCOTT, "bearing": bearings, "oil": OIL, "film": {"theory": "short"},
+            "speed": speed(0.0, 300.0, 0.4)}  # fmt: skip
+    return case_from_dict(data | tables, "film")
+
+
+def test_a_seal_of_zero_coefficients_changes_nothing(tmp_path: Path) -> None:
+    nothing = {"kind": "coefficients", "name": "seal", "stiffness": "0 N/m"}
+    without, beside = (runup(case, tmp_path / f"{number}.h5") for number, case in
+                       enumerate((in_film(), in_film(nothing))))  # fmt: skip
+    assert without.status == beside.status == "finished"
+    assert list(without.signals) == list(beside.signals)
+    for name in without.signals:
+        np.testing.assert_array_equal(np.array(without[name]), np.array(beside[name]))
+    assert stability(in_film()).threshold == stability(in_film(nothing)).threshold
+
+
+def test_a_table_of_equal_rows_is_the_constant_coefficients(tmp_path: Path) -> None:
+    """Beside a tabulated film, in a run whose inverse follows the speed."""
+    constant = {"kind": "coefficients", "name": "seal", "stiffness": matrix(2e5, 5e4, "N/m"), "damping": "50 N*s/m"}
+    columns = {"kxx": 2e5, "kxy": 5e4, "kyx": -5e4, "kyy": 2e5, "cxx": 50.0, "cxy": 0.0, "cyx": 0.0, "cyy": 50.0}
+    table = {name: [f"{value} {'N/m' if name[0] == 'k' else 'N*s/m'}"] * 3 for name, value in columns.items()}
+    rows = {"kind": "coefficients", "name": "seal", "over_speed": {"speed": ["0 Hz", "50 Hz", "90 Hz"], **table}}
+    runs = [
+        runup(in_film(element, film={}, speed=speed(20.0, 120.0, 0.2), output={"signals": ["force"]}),
+              tmp_path / f"{number}.h5")
+        for number, element in enumerate((constant, rows))
+    ]  # fmt: skip
+    assert runs[0].cost["steps"] == runs[1].cost["steps"]
+    for name in runs[0].signals:
+        first, second = (np.array(run[name]) for run in runs)
+        np.testing.assert_allclose(first, second, atol=1e-9 * np.abs(first).max(), rtol=0.0)
+    with pytest.raises(InputError) as caught:
+        make_plan(in_film(rows, film={"theory": "short", "coupling": "co-simulation"}))
+    (fault,) = caught.value.faults
+    assert (fault.key, fault.value) == ("film.coupling", "co-simulation")
+
+
+def test_a_seal_shifts_the_threshold_as_its_stiffness_in_the_matrices() -> None:
+    """The same stiffness added by hand: twice, for a symmetric rotor has two bearings."""
+    seal = {"kind": "coefficients", "name": "seal", "stiffness": matrix(2e5, 5e4, "N/m"), "damping": "50 N*s/m"}
+    case, alone = in_film(seal), in_film()
+    threshold, before = stability(case).threshold, stability(alone).threshold
+    assert threshold is not None
+    assert before is not None
+    assert abs(threshold.speed_Hz / before.speed_Hz - 1.0) > 0.02
+    place = dict(make_rotor(alone).points)["journal"]
+    part = LinearPart(
+        np.zeros(1), np.array([[[2e5, 5e4], [-5e4, 2e5]]]), 50.0 * np.eye(2)[None], np.zeros((1, 2, 2))
+    )  # fmt: skip
+    by_hand = make_rotor(alone)
+    stiffness = by_hand.stiffness + 2.0 * place.T @ part.stiffness[0] @ place
+    damping = by_hand.damping + 2.0 * place.T @ part.damping[0] @ place
+    rotor = replace(by_hand, stiffness=stiffness, damping=damping)
+    system = make_system(alone, make_plan(alone), rotor)
+    for share, grows in ((1.0 - 1e-6, False), (1.0 + 1e-6, True)):
+        omega = share * TURN * threshold.speed_Hz
+        films = resting_position(system, omega).films
+        found = eigenvalues(
+            rotor, omega, *(-np.array([getattr(film, name) for film in films]) for name in
+                            ("by_displacement", "by_velocity"))
+        )  # fmt: skip
+        assert (found.real.max() > 0.0) == grows
+
+
+def test_a_turbocharger_in_films_with_a_seal_of_nothing_has_its_eigenvalues() -> None:
+    text = frbcli.load_case("turbocharger-car").source_text
+    start, end = text.index("[[bearing]]"), text.index("[oil]")
+    film = """[[bearing]]
+kind = "single-film"
+name = "{}"
+position = "{}"
+width = "5 mm"
+diameter = "7 mm"
+clearance = "15 um"
+ends = "oil-bath"
+"""
+    both = film.format("front", "42 mm") + film.format("rear", "74 mm")
+    seal = '[[bearing]]\nkind = "coefficients"\nname = "seal"\nposition = "34 mm"\nstiffness = "{}"\n'
+    settings = ["film.theory=short", "film.cavitation=half-sommerfeld", "speed.to=2000 Hz"]
+    cases = [
+        load_case_text(text[:start] + both + more + text[end:], settings, name="car")
+        for more in ("", seal.format("0 N/m"), seal.format("1e6 N/m"))
+    ]
+    plain, nothing, held = (stability_points(case, [1500.0])[1][0] for case in cases)
+    np.testing.assert_allclose(nothing.eigenvalues, plain.eigenvalues, rtol=1e-12)  # 34 mm is the end of a section
+    assert abs(held.growth - plain.growth) > 1e-3 * abs(plain.growth)
+    assert [name for name, _ in make_rotor(cases[1]).points if name.startswith("journal")] == [
+        "journal_front", "journal_rear", "journal_seal"
+    ]  # fmt: skip
+    told = [(d.choice, d.value) for d in make_plan(cases[1]).decisions]
+    assert ("bearings", "3 of 3") in told
+    assert ("bearings", "seal: given coefficients") in told
+
+
+CSV = """speed_Hz,kxx,kxy,kyx,kyy,cxx,cxy,cyx,cyy
+50,1e6,1e5,-1e5,1e6,300,0,0,300
+100,1.5e6,2e5,-2e5,1.5e6,250,0,0,250
+"""
+
+
+def with_file(folder: Path, name: str, **keys: object) -> frbcli.Case:
+    rotor = {"kind": "rigid", "mass": "6 kg"}
+    element = {"kind": "coefficients", "name": "seal", "file": name} | keys
+    return case_from_dict({"rotor": rotor, "bearing": element, "speed": speed(10.0, 200.0)}, "rigid", folder)
+
+
+def test_a_csv_is_linear_between_its_speeds_and_constant_beyond(tmp_path: Path) -> None:
+    (tmp_path / "seal.csv").write_text(CSV)
+    case = with_file(tmp_path, "seal.csv")
+    rotor = make_rotor(case)
+    for speed_Hz, k, q, c in ((10.0, 1e6, 1e5, 300.0), (75.0, 1.25e6, 1.5e5, 275.0), (500.0, 1.5e6, 2e5, 250.0)):
+        here = rotor.at(TURN * speed_Hz)
+        np.testing.assert_allclose(here.stiffness, 2.0 * np.array([[k, q], [-q, k]]), rtol=1e-12)
+        np.testing.assert_allclose(here.damping, 2.0 * c * np.eye(2), rtol=1e-12)
+    told = {d.value: d.reason for d in make_plan(case).decisions if d.choice == "bearings"}
+    assert told["seal: given coefficients, over speed from seal.csv"].startswith("2 speeds, 50 to 100 Hz")
+    (tmp_path / "seal.csv").unlink()  # the case has all of its numbers
+    assert load_case_text(case.source_text, name="rigid") == case
+
+
+def test_the_file_of_a_bearing_sheet_and_a_csv_give_the_same(tmp_path: Path) -> None:
+    from frbcli.linear.bearing_sheet import bearing_sheet
+    from frbcli.results.export import write_ross
+
+    sheet = bearing_sheet(in_film(), [40.0, 80.0, 120.0])
+    frame = sheet.to_pandas()
+    write_ross(frame, tmp_path / "bearing.toml")
+    kinds = (("k", "stiffness", "N_m"), ("c", "damping", "N_s_m"))
+    names = {f"{letter}{axes}": f"{kind}_{axes}_{unit}" for letter, kind, unit in kinds
+             for axes in ("xx", "xy", "yx", "yy")}  # fmt: skip
+    lines = [",".join(["speed_Hz", *names])]
+    lines += [",".join(repr(float(row[c])) for c in ("speed_Hz", *names.values())) for _, row in frame.iterrows()]
+    (tmp_path / "bearing.csv").write_text("\n".join(lines) + "\n")
+    of_ross, of_table = (make_rotor(with_file(tmp_path, name)) for name in ("bearing.toml", "bearing.csv"))
+    film = sheet.points[1]
+    assert film.stiffness is not None
+    np.testing.assert_allclose(of_ross.at(TURN * 80.0).stiffness, 2.0 * film.stiffness, rtol=1e-12)
+    for speed_Hz in (0.0, 55.0, 80.0, 200.0):
+        mine, other = of_ross.at(TURN * speed_Hz), of_table.at(TURN * speed_Hz)
+        np.testing.assert_allclose(mine.stiffness, other.stiffness, rtol=1e-12)
+        np.testing.assert_allclose(mine.damping, other.damping, rtol=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (CSV.replace(",cyy", "").replace(",300\n", "\n").replace(",250\n", "\n"), "lacks cyy"),
+        (CSV.replace("100,", "50,"), "do not ascend"),
+        (CSV.replace("1.5e6,2e5", "nan,2e5"), "no finite number"),
+        (CSV.replace("1.5e6,2e5", "1.5 MN/m,2e5"), "no number"),
+        (CSV.replace("cxx", "damping"), "not known here"),
+        (CSV.replace("100,1.5e6,", "100,"), "8 values in row 2"),
+        (CSV.splitlines()[0], "0 speeds"),
+        ("", "is empty"),
+        (CSV.replace("cyy", "cyy,mxx,mxy,myx,myy").replace("0,300\n", "0,300,1,0,0,-1\n")
+         .replace(",250\n", ",250,1,0,0,1\n"), "mass matrix at 50 Hz"),
+        (CSV.replace("cyy", "cyy,mxx").replace(",300\n", ",300,1\n").replace(",250\n", ",250,1\n"), "lacks mxy"),
+    ],
+)  # fmt: skip
+def test_a_table_that_cannot_be_used_is_one_fault(text: str, words: str, tmp_path: Path) -> None:
+    (tmp_path / "seal.csv").write_text(text)
+    with pytest.raises(InputError) as caught:
+        with_file(tmp_path, "seal.csv")
+    (fault,) = caught.value.faults
+    assert (fault.key, fault.value) == ("bearing.file", '"seal.csv"')
+    assert words in fault.problem
+    assert fault.remedy
+
+
+@pytest.mark.parametrize(
+    ("element", "key", "words"),
+    [
+        ({"file": "seal.csv"}, "bearing.file", "names no file"),
+        ({"file": "seal.csv", "stiffness": "1e6 N/m"}, "bearing.file", "beside stiffness"),
+        ({}, "bearing.stiffness", "is missing"),
+        ({"stiffness": [["1e6 N/m", "0 N/m"]]}, "bearing.stiffness.1", "is missing"),
+        ({"stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m"]]}, "bearing.stiffness.1.1", "is missing"),
+        ({"stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m", "1e6 kg"]]}, "bearing.stiffness.1.1", ""),
+        ({"damping": "300 N/m"}, "bearing.damping", ""),
+        ({"mass": [["1 kg", "0 kg"], ["0 kg", "-1 kg"]]}, "bearing.mass", "is negative"),
+        ({"mass": [["1 kg", "3 kg"], ["0 kg", "1 kg"]]}, "bearing.mass", "is negative"),
+        ({"stiffness": "1e6 N/m", "width": "20 mm"}, "bearing.width", "not known"),
+    ],
+)
+def test_keys_that_cannot_be_used_are_told(element: dict[str, Any], key: str, words: str) -> None:
+    with pytest.raises(InputError) as caught:
+        rigid({"kind": "coefficients", "name": "seal"} | element)
+    fault = next(fault for fault in caught.value.faults if fault.key == key)
+    assert words in fault.problem
+    assert fault.remedy
+
+
+@pytest.mark.parametrize(
+    ("tables", "key"),
+    [
+        ({"film": {"theory": "short"}}, "film"),
+        ({"contact": {"policy": "elastic", "stiffness": "1e8 N/m"}}, "contact"),
+        ({"output": {"signals": ["force"]}}, "output.signals"),
+        ({"start": {"displacement": [0.1, 0.0]}}, "start.displacement"),
+        ({"accuracy": {"mesh": [4, 20]}}, "accuracy.mesh"),
+    ],
+)
+def test_what_is_of_films_alone_is_refused_without_films(tables: dict[str, Any], key: str) -> None:
+    with pytest.raises(InputError) as caught:
+        rigid(bearing(), **tables)
+    (fault,) = caught.value.faults
+    assert fault.key == key
+    assert "no bearing has a film" in fault.problem
+
+
+def test_studies_of_films_are_refused_without_films() -> None:
+    from frbcli.linear.bearing_sheet import bearing_sheet
+
+    case = rigid(bearing())
+    for asked in (frbcli.limit_cycles, bearing_sheet):
+        with pytest.raises(InputError) as caught:
+            asked(case)
+        (fault,) = caught.value.faults
+        assert (fault.key, fault.value) == ("bearing.kind", "coefficients")
+        assert "no film" in fault.problem
+    with pytest.raises(InputError, match="oil"):
+        _ = case.oil
+
+
+@pytest.mark.nightly  # 10 s; Hopf point and threshold: test_support.py
+def test_limit_cycles_of_a_film_beside_an_element() -> None:
+    """A seal that takes some of the damping away lowers the Hopf point to the threshold of stability."""
+    seal = {"kind": "coefficients", "name": "seal", "stiffness": matrix(1e5, 5e4, "N/m")}
+    case = in_film(seal, speed=speed(20.0, 320.0))
+    threshold = stability(case).threshold
+    assert threshold is not None
+    found = frbcli.limit_cycles(in_film(seal, speed=speed(0.95 * threshold.speed_Hz, 1.02 * threshold.speed_Hz)))
+    (hopf,) = [point for point in found.special if point.kind == "hopf"][:1]
+    assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=1e-6)
+    assert any(len(branch.points) > 3 for branch in found.branches)
+    growing = in_film(growing_seal(300.0), speed=speed(195.0, 200.0))
+    threshold, found = stability(growing).threshold, frbcli.limit_cycles(growing)
+    assert threshold is not None
+    assert [point.speed_Hz for point in found.of("hopf")] == pytest.approx([threshold.speed_Hz], rel=1e-6)
+
+
+def test_coefficients_can_be_swept(tmp_path: Path) -> None:
+    case = in_film({"kind": "coefficients", "name": "seal", "stiffness": "0 N/m"}, speed=speed(20.0, 320.0))
+    found = sweep(case, {"bearing.1.stiffness": ["0 N/m", "2e5 N/m"]}, tmp_path, "stability")
+    frame = found.to_pandas()
+    assert list(frame["status"]) == ["finished", "finished"]
+    assert frame["threshold_speed_Hz"].nunique() == 2
+    assert machine_fault("bearing.1.stiffness", "--key") is None
+    assert coefficients_of(())[0].shape == (0, 2, 2)
