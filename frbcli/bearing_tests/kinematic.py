@@ -141,23 +141,17 @@ def squeeze(
 
     Parameters
     ----------
-    case : Case
-        The machine, see `load_case`, with [motion].
-    cavitations : sequence of str
-        Cavitation models; an empty one stands for that of the case.
-    observe : callable, optional
-        Called with the number of each moment of each model, and how many there are.
+    case, cavitations, observe : as of `rotation`
 
     Returns
     -------
     KinematicTest
-        Force in N over time by each model. A model that does not converge is a result with that status. Ctrl-C ends it
-        with the models that are done, or is raised on if there are none.
+        Force in N over time by each model; otherwise as of `rotation`.
 
     Raises
     ------
     InputError
-        If the case does not fit.
+        As `rotation`.
 
     Examples
     --------
@@ -174,23 +168,17 @@ def whirl(
 
     Parameters
     ----------
-    case : Case
-        The machine, see `load_case`, with [motion].
-    cavitations : sequence of str
-        Cavitation models; an empty one stands for that of the case.
-    observe : callable, optional
-        Called with the number of each moment of each model, and how many there are.
+    case, cavitations, observe : as of `rotation`
 
     Returns
     -------
     KinematicTest
-        Pressure in Pa over time by each model. A model that does not converge is a result with that status. Ctrl-C ends
-        it with the models that are done, or is raised on if there are none.
+        Pressure in Pa over time by each model; otherwise as of `rotation`.
 
     Raises
     ------
     InputError
-        If the case does not fit.
+        As `rotation`.
 
     Examples
     --------

@@ -49,7 +49,7 @@ class MachineElement(ABC):
 
     key: str
 
-    symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/element_symbols.py
+    symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/svg.py
     arrow: ClassVar[tuple[str, str] | None] = None  # letter and words of its arrow in a sketch
     beside: ClassVar[bool] = False  # whether it lets the shells of bearings move, or pulls at the shaft beside them
 

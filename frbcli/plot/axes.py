@@ -73,10 +73,7 @@ def orbit(
 
     Parameters
     ----------
-    run : Run
-        A run, see `read_run`, `runup` and `measured_run`.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+    run, ax : as of `draw_eccentricity`
     bearing : str
         Name of the bearing; by default the first.
     from_time, to_time : float, optional
@@ -112,14 +109,9 @@ def waterfall(
 
     Parameters
     ----------
-    run : Run
-        A run, see `read_run`, `runup` and `measured_run`.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+    run, ax, over : as of `draw_eccentricity`
     signal : str
         The point: "journal", "disk", or the name of a bearing or disk.
-    over : {"time", "speed"}
-        The axis.
     window_s : float, optional
         Length of the windows in s; by default as the ramp asks for.
     direction : {"x", "y", "forward"}
@@ -155,12 +147,9 @@ def spectrum(
 
     Parameters
     ----------
-    run : Run
-        A run, see `read_run`, `runup` and `measured_run`.
+    run, ax : as of `draw_eccentricity`
     time_s : float
         The time in s.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
     signal : str
         The point: "journal", "disk", or the name of a bearing or disk.
     window_s : float, optional
@@ -192,12 +181,7 @@ def ring_speed(run: Run, ax: Axes | None = None, over: Over = "time") -> Axes:
 
     Parameters
     ----------
-    run : Run
-        A run, see `read_run`, `runup` and `measured_run`.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
-    over : {"time", "speed"}
-        The axis.
+    run, ax, over : as of `draw_eccentricity`
 
     Returns
     -------
@@ -229,16 +213,11 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
 
     Parameters
     ----------
-    run : Run
-        A run, see `read_run`, `runup` and `measured_run`.
+    run, ax, over : as of `draw_eccentricity`
     kind : str
         "force", "film-thickness", "power", "torque", "oil-flow", "tilt" or "supply-pressure".
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
     part : int
         0 and 1 are x and y of "force" and "tilt".
-    over : {"time", "speed"}
-        The axis.
 
     Returns
     -------
@@ -270,8 +249,7 @@ def campbell(found: Stability, ax: Axes | None = None) -> Axes:
     ----------
     found : Stability
         See `stability`.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+    ax : as of `draw_eccentricity`
 
     Returns
     -------
@@ -298,8 +276,7 @@ def response(found: Response, ax: Axes | None = None) -> Axes:
     ----------
     found : Response
         See `response`.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+    ax : as of `draw_eccentricity`
 
     Returns
     -------
@@ -327,8 +304,7 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
         See `bearing_sheet` and `sommerfeld_chart`.
     quantity : {"stiffness", "damping"}
         In N/m or N s/m.
-    ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+    ax : as of `draw_eccentricity`
 
     Returns
     -------

@@ -224,9 +224,9 @@ def _event(number: int, event: dict[str, Any], unit: SpeedWords) -> tuple[str, .
     def told(key: str, form: str) -> str:
         return "-" if event[key] is None else format(event[key], form)
 
-    named = event_name(event | {"film": (event["film"] or "").replace("_", " ")})
-    return (str(number), named, told("t_s", ".3f"), unit.cell(event["speed_Hz"], event.get("speed_uncertainty_Hz")),
-            told_frequency(event), told("frequency_ratio", ".3f"), told_amplitude(event))  # fmt: skip
+    speed = unit.cell(event["speed_Hz"], event.get("speed_uncertainty_Hz"))
+    return (str(number), event_name(event), told("t_s", ".3f"), speed, told_frequency(event),
+            told("frequency_ratio", ".3f"), told_amplitude(event))  # fmt: skip
 
 
 def _note(run: Run, signal: str, words: str) -> str:

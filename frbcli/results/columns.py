@@ -8,15 +8,11 @@ from typing import Any
 from frbcli.columns import Column, Shown, with_uncertainty
 
 
-def event_place(event: Mapping[str, Any]) -> str:
-    """Where an event was found: its film, or else the point whose motion shows it; "" of one that has neither, as in
-    files of earlier versions."""
-    return str(event["film"] or event.get("point") or "")
-
-
 def event_name(event: Mapping[str, Any]) -> str:
-    """The kind of an event, its whirl where it has been named ("whirl", as Sub 1), and its place."""
-    return " ".join(word for word in (event["kind"], event.get("whirl", ""), event_place(event)) if word)
+    """The kind of an event for people, its whirl where it has been named ("whirl", as Sub 1), and where it was found:
+    its film, or else the point whose motion shows it; files of earlier versions have neither."""
+    place = str(event["film"] or event.get("point") or "").replace("_", " ")
+    return " ".join(word for word in (event["kind"], event.get("whirl", ""), place) if word)
 
 
 def told_speed(event: Mapping[str, Any]) -> str:

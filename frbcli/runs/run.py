@@ -102,32 +102,17 @@ def rundown(
 
     Parameters
     ----------
-    case : Case
-        The machine, see `load_case`.
-    output : str or Path
-        Run file (HDF5), written as the run goes. A run of the same case that has ended there before is returned as it
-        is.
-    resume : bool
-        Go on with an interrupted run of the same case in `output`.
-    observe : callable, optional
-        Called some times a second.
-    force : bool
-        Replace any run in `output`.
-    uncertainty : bool
-        Make a second, coarser run for the uncertainties of the events, whatever it costs; without it only where that
-        takes at most a third of the CPU time of the run. A run in `output` that has ended without them gets them.
+    case, output, resume, observe, force, uncertainty : as of `runup`
 
     Returns
     -------
     Run
-        Any end for a physical or numerical reason is its status: "finished", "contact", "starved", "overheated",
-        "not-converged"; Ctrl-C ends it as "interrupted".
+        As of `runup`.
 
     Raises
     ------
     InputError
-        For a case that cannot be modelled or afforded, an output that cannot be written, to which another process
-        writes, or which holds a run that would be lost.
+        As `runup`.
 
     Examples
     --------

@@ -126,8 +126,8 @@ def test_names_of_whirls_are_one_in_table_and_picture_and_count_as_they_begin() 
     films = ("rear_inner", "front_inner", "front_outer", "rear_outer", "front_inner")
     events = [onset(film, 1.0 + 1.5 * number) for number, film in enumerate(films)]
     cells = [row[0] for row in table_of(EVENTS, with_whirl_names(events)).cells()]
-    assert cells == ["onset Sub 1 rear_inner", "onset Sub 1 front_inner", "onset Sub 2 front_outer",
-                     "onset Sub 2 rear_outer", "onset Sub 3 front_inner"]  # fmt: skip
+    assert cells == ["onset Sub 1 rear inner", "onset Sub 1 front inner", "onset Sub 2 front outer",
+                     "onset Sub 2 rear outer", "onset Sub 3 front inner"]  # fmt: skip
     figure = summary_figure(replace(make_run(), events=events))
     written = [text.get_text().split("\n")[0] for text in figure.axes[0].texts]
     assert written == ["Sub 1 rear inner", "Sub 2 front outer", "Sub 3 front inner"]

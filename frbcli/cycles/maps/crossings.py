@@ -23,10 +23,10 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import crossing
-from frbcli.cycles.maps.curves import DIFFERENCE, MOST_HARMONICS, TAIL, require_positive, with_harmonics
+from frbcli.cycles.maps.curves import DIFFERENCE, fitted, require_positive
 from frbcli.cycles.maps.planes import MapPlane
-from frbcli.cycles.method.balance import harmonics_of, left_out, loads_along, unpacked
-from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
+from frbcli.cycles.method.balance import harmonics_of, loads_along, unpacked
+from frbcli.cycles.method.continuation import Equations, Place, unit_vector
 from frbcli.cycles.method.cycle import FLIP, TORUS, Cycle
 from frbcli.cycles.parts.machine import Machine, transfer
 
@@ -99,25 +99,11 @@ class CrossingCurve:
 
     def fitted(self, place: Place) -> Place | None:
         """A place with as many harmonics as it needs, up to a largest number."""
-        for _ in range(8):
-            machine, here = self.plane.machine(place.y), self.motion_of(place.y)
-            harmonics = (len(here) - 3) // machine.size // 2
-            if harmonics >= MOST_HARMONICS or left_out(machine, self.plane.cycle(here)) < TAIL:
-                return place
-            more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
-            y, tangent = (self._resized(vector, machine.size, more) for vector in (place.y, place.tangent))
-            found = corrected(self.equations(y), y, tangent / np.linalg.norm(tangent))
-            if found is None:
-                return None
-            place = oriented(found, tangent)
-        return place
+        return fitted(self.plane, self.equations, place, int(self.torus))
 
     def ends(self, place: Place) -> str:
         """Why a curve ends in a place, or nothing."""
         return "" if not self.torus or 0.0 < self.shift(place.y) < 0.5 else MERGED
-
-    def _resized(self, vector: Array, c: int, harmonics: int) -> Array:
-        return np.concatenate([vector[: int(self.torus)], with_harmonics(self.motion_of(vector), c, harmonics)])
 
     def _motion(self, z: Array, reference: Complex) -> tuple[Array, Array]:
         """Residual (n,) of the motion and its derivative (n, n + 2)."""

@@ -205,16 +205,20 @@ def _stepped(
         return None
 
 
-def fitted_fold(plane: MapPlane, place: Place) -> Place | None:
-    """A fold with as many harmonics as it needs, up to a largest number."""
+def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Place, before: int = 0) -> Place | None:
+    """A place with as many harmonics as its motion needs, up to a largest number. before: unknowns that stand before
+    the motion."""
     for _ in range(8):
-        machine = plane.machine(place.y)
-        harmonics = (len(place.y) - 3) // machine.size // 2
-        if harmonics >= MOST_HARMONICS or left_out(machine, plane.cycle(place.y)) < TAIL:
+        machine, motion = plane.machine(place.y), place.y[before:]
+        harmonics = (len(motion) - 3) // machine.size // 2
+        if harmonics >= MOST_HARMONICS or left_out(machine, plane.cycle(motion)) < TAIL:
             return place
         more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
-        y, tangent = (with_harmonics(vector, machine.size, more) for vector in (place.y, place.tangent))
-        found = corrected(fold_equations(plane, y), y, tangent / np.linalg.norm(tangent))
+        y, tangent = (
+            np.concatenate([vector[:before], with_harmonics(vector[before:], machine.size, more)])
+            for vector in (place.y, place.tangent)
+        )
+        found = corrected(equations(y), y, tangent / np.linalg.norm(tangent))
         if found is None:
             return None
         place = oriented(found, tangent)

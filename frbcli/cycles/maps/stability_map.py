@@ -7,6 +7,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from frbcli.cycles.faults import check
 from frbcli.cycles.maps.crossings import CrossingCurve, CrossingStart, starts_of
 from frbcli.cycles.maps.curves import (
     MOST_HARMONICS,
-    fitted_fold,
+    fitted,
     fold_equations,
     follow_both,
     hopf_equations,
@@ -286,7 +287,7 @@ def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Arr
     if kind == HOPF:
         found = follow_both(equations, start, plane.corners)
     else:
-        found = follow_both(equations, start, plane.corners, lambda place: fitted_fold(plane, place), met)
+        found = follow_both(equations, start, plane.corners, partial(fitted, plane, equations), met)
     if found is None:
         return []
     points = [_point(plane, kind, place.y) for place in found.places]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import TypeVar
 
 import numpy as np
@@ -87,6 +88,14 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
     return None
 
 
+def reached(equations: Equations, guess: Array, tangent: Array) -> Place:
+    """As corrected. Raises Unreachable where the point is not found."""
+    found = corrected(equations, guess, tangent)
+    if found is None:
+        raise Unreachable
+    return found
+
+
 def unit_vector(size: int, number: int = -1) -> Array:
     """(size,) direction of one unknown alone, the last one if not given: in the plane across it the unknown is kept."""
     direction = np.zeros(size)
@@ -135,12 +144,9 @@ def follow(equations: Equations, start: Place, strides: Strides) -> Iterator[tup
     or there are enough of them."""
     place, length = start, strides.first
     for _ in range(strides.points):
-        found = step_from(equations, place, length)
-        while found is None:
-            length *= 0.5
-            if length < strides.shortest:
-                return
-            found = step_from(equations, place, length)
+        found, length = halved_until(partial(step_from, equations, place), length, strides.shortest)
+        if found is None:
+            return
         yield found, length
         length = next_length(length, strides, place, found)
         place = found

@@ -18,10 +18,9 @@ from frbcli.cycles.method.continuation import (
     Equations,
     Place,
     Strides,
-    Unreachable,
-    corrected,
     follow,
     oriented,
+    reached,
     unit_vector,
 )
 from frbcli.cycles.parts.linearised import StateSpace, state_space
@@ -177,10 +176,7 @@ def first_place(ask: Equations, near: Array, speed: float) -> Place:
     Raises Unreachable."""
     guess = np.append(near, speed)
     along = -unit_vector(len(guess))
-    found = corrected(ask, guess, along)
-    if found is None:
-        raise Unreachable
-    return oriented(found, along)
+    return oriented(reached(ask, guess, along), along)
 
 
 def at_rest(machine: Machine, position: RestingPosition) -> Array:
@@ -198,20 +194,14 @@ def between(low: Equilibrium, high: Equilibrium, value: float) -> Array:
 def place_between(course: SpeedCourse, low: Equilibrium, high: Equilibrium, value: float) -> Place:
     """The place of the resting position at a speed in rad/s between two. Raises Unreachable."""
     guess = np.append(between(low, high, value), value / course.pace)
-    found = corrected(course.equations, guess, unit_vector(len(guess)))
-    if found is None:
-        raise Unreachable
-    return found
+    return reached(course.equations, guess, unit_vector(len(guess)))
 
 
 def at_speed(ask: Equations, near: Place, speed: float) -> Place:
     """The place at a speed over the pace. Raises Unreachable."""
     guess = near.y + (speed - near.y[-1]) / near.tangent[-1] * near.tangent
     guess[-1] = speed
-    found = corrected(ask, guess, unit_vector(len(guess)))
-    if found is None:
-        raise Unreachable
-    return oriented(found, near.tangent)
+    return oriented(reached(ask, guess, unit_vector(len(guess))), near.tangent)
 
 
 def equilibrium(machine: Machine, space: StateSpace, place: Place) -> Equilibrium:
@@ -231,9 +221,7 @@ def hopf_points(course: EquilibriumCourse, points: Sequence[Equilibrium]) -> tup
 def settled(machine: Machine, near: Array, omega: float, value: float) -> Equilibrium:
     """The resting position of a machine at a speed in rad/s near to u. Raises Unreachable."""
     guess = np.append(near, omega / machine.pace)
-    found = corrected(equations(machine), guess, unit_vector(len(guess)))
-    if found is None:
-        raise Unreachable
+    found = reached(equations(machine), guess, unit_vector(len(guess)))
     return replace(equilibrium(machine, state_space(machine), found), value=value)
 
 

@@ -71,14 +71,10 @@ def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu:
     u, _ = motion_along(motion, len(rate))
     powers, flows, by_scale = _rates(machine, ends, loads, (u, nu * rate), omega)
     h = len(motion) - 1
-    return FilmHeats(
-        power=np.array([float(each.value.mean()) for each in powers]),
-        flow=np.array([float(each.value.mean()) for each in flows]),
+    return replace(
+        _means(powers, flows, by_scale),
         power_by=np.array([_by_motion(machine, f, each, rate, nu, h) for f, each in enumerate(powers)]),
         flow_by=np.array([_by_motion(machine, f, each, rate, nu, h) for f, each in enumerate(flows)]),
-        power_by_scale=np.array([float(each.by_scale.mean()) for each in powers]),
-        flow_by_scale=np.array([float(each.by_scale.mean()) for each in flows]),
-        loads_by_scale=by_scale,
     )
 
 
@@ -87,6 +83,11 @@ def heats_at(machine: Machine, ends: tuple[EndFlow, ...], u: Array, v: Array, om
     OutOfGap."""
     loads = film_loads(replace(machine, cones=()), u, v, omega)
     powers, flows, by_scale = _rates(machine, ends, loads, (u, v), omega)
+    return _means(powers, flows, by_scale)
+
+
+def _means(powers: list[_Rate], flows: list[_Rate], loads_by_scale: Array) -> FilmHeats:
+    """Means over moments, without derivatives by a motion."""
     return FilmHeats(
         power=np.array([float(each.value.mean()) for each in powers]),
         flow=np.array([float(each.value.mean()) for each in flows]),
@@ -94,7 +95,7 @@ def heats_at(machine: Machine, ends: tuple[EndFlow, ...], u: Array, v: Array, om
         flow_by=np.zeros((len(flows), 0)),
         power_by_scale=np.array([float(each.by_scale.mean()) for each in powers]),
         flow_by_scale=np.array([float(each.by_scale.mean()) for each in flows]),
-        loads_by_scale=by_scale,
+        loads_by_scale=loads_by_scale,
     )
 
 

@@ -79,7 +79,7 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
         values = np.array([point.eccentricity_max[film] for point in found.synchronous])
         stable = np.array([point.stable for point in found.synchronous])
         _line(axes, speeds, values, stable, GREY, "with unbalance")
-    for number, branch in enumerate(found.branches):
+    for number, branch in _drawn(found):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
         label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
@@ -94,6 +94,11 @@ def _film(axes: Axes, found: LimitCycles, film: int) -> None:
             _bars(axes, *at, *errors)
     axes.set_ylim(0.0, 1.0)
     axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
+
+
+def _drawn(found: LimitCycles) -> list[tuple[int, CycleBranch]]:
+    """The branches with points, by their numbers."""
+    return [(number, branch) for number, branch in enumerate(found.branches) if branch.points]
 
 
 def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
@@ -121,7 +126,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
         labels = ("(ω$_R$ + ω$_F$)/2", "ω$_F$/2") if ring == 0 else (None, None)
         axes.plot(speeds, 0.5 * (rotor + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
         axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
-    for number, branch in enumerate(found.branches):
+    for number, branch in _drawn(found):
         values = np.array([point.frequency_Hz for point in branch.points])
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
         _band(axes, branch, values, [point.frequency_uncertainty_Hz for point in branch.points], number)
