@@ -1,8 +1,9 @@
 """The films of static results: resting positions, coefficients, stability and response all have the same ones.
 
-Gaps made of rectangles, and bearing models, have the film of a run: it has no cells, and is cheap. All others are
-solved on CELLS, more than those of a run, which has to solve them many times. With the films come the same ones on
-other meshes, whose coefficients tell the error of theirs.
+Gaps made of rectangles, and bearing models, have the film of a run, clipped along more lines: it has no cells, and is
+cheap. All others are solved on CELLS, more than those of a run, which has to solve them many times, and with the edge
+of the cavity within cells. With the films come the same ones on other meshes, whose coefficients tell the error of
+theirs.
 """
 
 from __future__ import annotations
@@ -37,11 +38,13 @@ from frbcli.scene.planning.planned import Plan
 Array = NDArray[np.float64]
 
 CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
-# Fronts of cavities lie between cells: how far coefficients are off is not even from mesh to mesh, so that one coarser
-# mesh may agree by chance.
-COARSER = ((72, 10), (96, 14))
-FINER, FINER_SHARE = 3, 1.5  # times the elements each way, and the lines between them, of films without cells; the
-# differences scatter as the edge of the cavity crosses the lines
+# How far coefficients are off is not even from mesh to mesh as edges of cavities cross cells, so that one coarser mesh
+# may agree by chance; their order lies between one and two, and is taken as low as the scatter asks for.
+COARSER, ORDER = ((72, 10), (96, 14)), 1.3
+# Films without cells: lines along which films at rest are clipped, whose number costs little there; times the elements
+# each way of the finer mesh, and its share: differences scatter as the edge of the cavity crosses the lines.
+RESTING_LINES = 3
+FINER, FINER_SHARE = 3, 1.5
 
 
 @dataclass(frozen=True)
@@ -115,10 +118,10 @@ class StaticFilms:
             return tuple(FieldFilms(*films, other.share) for films in both)
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
         pairs = zip(map(EvenFilm, own), map(EvenFilm, self._on(fewer)), strict=True)
-        return tuple(FieldFilms(*films, share_of_cells(fewer, CELLS)) for films in pairs)
+        return tuple(FieldFilms(*films, share_of_cells(fewer, CELLS, ORDER)) for films in pairs)
 
     def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
-        return tuple(volume_film(self.case, each, cells, self.top_Hz) for each in film_places(self.case))
+        return tuple(volume_film(self.case, each, cells, self.top_Hz, edged=True) for each in film_places(self.case))
 
 
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
@@ -141,8 +144,9 @@ def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
         return ()
     if plan.form.by_cells:
         own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
-        return tuple((replace(plan, cells=cells), share_of_cells(cells, own)) for cells in coarser)
-    finer = [Mesh(FINER * mesh.axial, FINER * mesh.circumferential, FINER) for _, mesh in plan.films]
+        order = ORDER if plan.edged else FRONTS
+        return tuple((replace(plan, cells=cells), share_of_cells(cells, own, order)) for cells in coarser)
+    finer = [Mesh(FINER * mesh.axial, FINER * mesh.circumferential, 2 * mesh.lines + 1) for _, mesh in plan.films]
     meshes = [DEFAULT_MESH] * len(finer) if plan.theory == "short" else finer
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))
     return ((replace(plan, theory="finite", films=films), FINER_SHARE),)
@@ -166,7 +170,9 @@ def _plan(case: Case) -> Plan:
     else:
         films = choose_films(case, case.accuracy.target)
         plan = _films_alone(case, films.theory, films.form, films.mesh, films.films)
-    return replace(plan, form=ON_CELLS, cells=CELLS) if plan.form.fine_when_static else plan
+    if plan.form.fine_when_static:
+        return replace(plan, form=ON_CELLS, cells=CELLS, edged=True)
+    return replace(plan, films=tuple((own, replace(mesh, lines=RESTING_LINES)) for own, mesh in plan.films))
 
 
 def _films_alone(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -37,6 +38,9 @@ SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a h
 # law follows, those of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
+# Where all meshes agree by chance, coefficients on cells may still be off by so much of the square of a cell's length
+# over 1 - e, that of the narrow gap.
+NARROW = 0.15
 CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
 
 
@@ -145,7 +149,7 @@ class StaticMachines:
             begun = position.displacements + (0.0 if near is None else near.apart)
             _, others = _on_others(static.others, omega, begun, _nearly(static.system, held), held)
         counted = others if with_error else []
-        films = tuple(_resting_film(static.system, omega, i, found, counted) for i in range(len(found.forces)))
+        films = tuple(_resting_film(static, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
         changes = _by_omega(near, omega, position.displacements)
         return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic, changes)
@@ -170,16 +174,19 @@ def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) ->
 
 
 def _resting_film(
-    system: System, omega: float, i: int, found: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
+    static: StaticFilms, omega: float, i: int, found: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
 ) -> RestingFilm:
     """Film i of a machine at rest at omega rad/s, with its errors from the other meshes, NaN without any."""
+    system, plan = static.system, static.own.plan
     force, clearance = found.forces[i], system.clearances[i]
     at = found.position.journals[i]
     place, tilt = at[:2] / clearance, at[2:] if len(at) > 2 else None
     forces = [(other.forces[i], share) for other, share in others]
     places = [(other.position.journals[i][:2] / clearance, share) for other, share in others]
-    errors = coefficient_error(force, forces, omega), place_error(place, places)
-    return resting_film(system.names[i], force, place, *errors, tilt=tilt)
+    error = coefficient_error(force, forces, omega)
+    if plan.edged and plan.cells:
+        error = max(error, NARROW * (2.0 * math.pi / plan.cells[0]) ** 2 / (1.0 - float(np.hypot(*place))))
+    return resting_film(system.names[i], force, place, error, place_error(place, places), tilt=tilt)
 
 
 def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:

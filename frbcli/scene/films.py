@@ -170,8 +170,11 @@ def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[fl
     return tuple(centrifugal)
 
 
-def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None = None) -> VolumeFilm:
-    """A film on volumes for a run, equal cells (around, along). top_Hz: top rotor speed, default that of the run."""
+def volume_film(
+    case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None = None, edged: bool = False
+) -> VolumeFilm:
+    """A film on volumes for a run, equal cells (around, along). top_Hz: top rotor speed, default that of the run;
+    edged: see VolumeFilm."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
     section = film_section(case, geometry, place.feed_holes)
     law_class = law_named(cavitation)
@@ -184,4 +187,4 @@ def volume_film(case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: fl
     top = max(abs(case.speed.start), abs(case.speed.end)) if top_Hz is None else top_Hz
     speed = 2.0 * math.pi * max(top, 1.0)
     reference = PUMPED * 0.5 * speed / section.aspect
-    return VolumeFilm(section, run_grid(section, cells), law, reference)
+    return VolumeFilm(section, run_grid(section, cells), law, reference, edged)

@@ -81,7 +81,8 @@ class Law:
     rectangles; tabulated: whether its source follows from the pressure of the cell alone, as a penalty's, so that
     films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn in;
     empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
-    whether a source keeps the pressure from falling below p_cav; published_form: whether it has a published form, on
+    whether a source keeps the pressure from falling below p_cav; edges: whether the edge of its cavity within a cell is
+    known, see `edged`; published_form: whether it has a published form, on
     quadratic elements; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
     exchanged of the law, and of which `cell` takes two more parameters and has two more results, see bubbly.py.
     order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
@@ -105,6 +106,7 @@ class Law:
     starves: ClassVar[bool] = False
     empties: ClassVar[bool] = False
     holds_cavity: ClassVar[bool] = False
+    edges: ClassVar[bool] = False
     published_form: ClassVar[bool] = False
     carries_gas: ClassVar[bool] = False
     order: ClassVar[float] = FRONTS
@@ -175,6 +177,15 @@ class Law:
         into a cell, `carried`, tends to it; of a law that carries gas."""
         raise NotImplementedError
 
+    def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
+        """The cells `state` with the unknown w, with the edge of the cavity within them. rate: at which the gap opens,
+        1/s; through: scaled flow to the next cell over the area, per pressure; see film/cells/cavity_edge.py."""
+        raise NotImplementedError
+
+    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
+        """Sources that belong to scaled gauge pressures of cells beside the edge of the cavity, see `edged`."""
+        raise NotImplementedError
+
     def curve(self, ratio: Array) -> Array:
         """theta at p / p_cav (n,), of a law that keeps oil and whose pressures are scaled with p_cav. Raises
         NotImplementedError where theta does not follow from the pressure."""
@@ -195,3 +206,12 @@ class Law:
         names = (field.name for field in fields(self))  # type: ignore[arg-type]
         values = self.follow(self.parameters, eccentricity, speed, whirl)
         return replace(self, **dict(zip(names, values, strict=True)))  # type: ignore[type-var]
+
+
+def source_at_edge(above: Array, rate: Array, through: Array) -> Array:
+    """Source of a cell whose pressure is `above` that of the cavity, which begins s < 1 cells behind its middle:
+    A (1 - s)^2 / 2 with s^2 = above / (A L^2 / (2 H^3)), see film/cells/cavity_edge.py."""
+    opens = np.maximum(rate, 0.0)
+    most = 0.5 * opens / through
+    place = np.sqrt(np.clip(np.divide(above, most, out=np.ones_like(above), where=most > 0.0), 0.0, 1.0))
+    return np.asarray(0.5 * opens * (1.0 - place) ** 2)

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales, source_at_edge
 
 PREFACTOR = 0.01  # a of (3.31)
 # By which sources are divided in the unknown, 1/s: about what a cell passes on per unit of pressure, of those 48 around
@@ -45,6 +45,7 @@ class Penalty(Law):
     conserves = False
     keeps_oil = False
     tabulated = True
+    edges = True
     cost = 1.2
 
     @classmethod
@@ -89,6 +90,36 @@ class Penalty(Law):
             fraction_slope=np.zeros_like(w),
             source_slope=-SPREAD * scales.reference * omega / (1.0 + omega),
         )
+
+    def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
+        """See Law.edged: a cell beside the edge has the source there where the law itself has less. Where the pressure
+        falls to that of the cavity over several cells, it has not."""
+        above, weight = self._above_cavity(state.pressure, scales, rate)
+        source = source_at_edge(above, rate, through)
+        more = (source > state.source) & (state.pressure_slope > 0.0)  # not in openings
+        # The pressure is s^2 rate / (2 through), the source rate (1 - s)^2 / 2, by the pressure -through (1 - s) / s.
+        left = np.sqrt(np.divide(2.0 * source, rate, out=np.zeros_like(source), where=more))
+        steep = -through * weight * np.divide(left, 1.0 - left, out=np.zeros_like(left), where=left < 1.0)
+        return replace(
+            state,
+            source=np.where(more, source, state.source),
+            source_slope=np.where(more, steep * state.pressure_slope, state.source_slope),
+        )
+
+    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
+        """See Law.edge_source."""
+        exponent = -self.steepness * (pressure - scales.cavitation)
+        own = self.prefactor * np.exp(np.clip(exponent, NOTHING, -NOTHING))
+        return np.asarray(np.maximum(own, source_at_edge(self._above_cavity(pressure, scales, rate)[0], rate, through)))
+
+    def _above_cavity(self, pressure: Array, scales: Scales, rate: Array) -> tuple[Array, Array]:
+        """Pressure from which s at the edge follows, and its derivative by the pressure. In a cavity the source makes
+        up for the gap that opens. Beside it p'' = a (1 - e^(-b y)) at y above the pressure there, so that the slope is
+        that of a parabola of the height y - (1 - e^(-b y)) / b."""
+        cavity = -np.log(np.maximum(rate / self.prefactor, math.exp(NOTHING))) / self.steepness
+        y = np.maximum(pressure - scales.cavitation - cavity, 0.0)
+        weight = -np.expm1(-self.steepness * y)
+        return np.maximum(y - weight / self.steepness, 0.0), weight
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales
+from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales, source_at_edge
 
 
 @dataclass(frozen=True)
@@ -23,6 +23,7 @@ class Reynolds(Law):
     conserves = False
     keeps_oil = False
     holds_cavity = True
+    edges = True
     cost = 1.0
 
     def cells(self, w: Array, scales: Scales) -> CellState:
@@ -37,6 +38,26 @@ class Reynolds(Law):
             fraction_slope=zero,
             source_slope=np.where(full, 0.0, -scales.reference),
         )
+
+    def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
+        """See Law.edged. s is linear in w, so that pressure and source have no kink: w reference = 2 s A / (2 through),
+        which is the pressure and once more that at s = 1 where s > 1."""
+        opens, value = np.maximum(rate, 0.0), w * scales.reference
+        most = np.broadcast_to(0.5 * opens / through, w.shape)
+        place = np.divide(value, 2.0 * most, out=np.where(value > 0.0, 1.0, 0.0), where=most > 0.0)
+        near = np.clip(place, 0.0, 1.0)
+        return CellState(
+            pressure=scales.cavitation + np.where(place < 1.0, most * near**2, value - most),
+            fraction=state.fraction,
+            source=0.5 * opens * (1.0 - near) ** 2 - through * np.minimum(value, 0.0),
+            pressure_slope=scales.reference * near,
+            fraction_slope=state.fraction_slope,
+            source_slope=-scales.reference * through * (1.0 - near),
+        )
+
+    def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
+        """See Law.edge_source."""
+        return source_at_edge(pressure - scales.cavitation, rate, through)
 
     @staticmethod
     def cell(w: float, parameters: Numbers, scales: Scales) -> Cell:

@@ -84,9 +84,13 @@ def reference_pressure(section: Section, motion: Motion) -> float:
 class VolumeFilm:
     """A section on a grid with a law. Constant: its methods take and return states."""
 
-    def __init__(self, section: Section, grid: VolumeGrid, law: Law, reference: float) -> None:
-        """reference: scaled pressure in 1/s that one unit of w stands for, see reference_pressure."""
+    def __init__(
+        self, section: Section, grid: VolumeGrid, law: Law, reference: float, edged: bool = False
+    ) -> None:  # fmt: skip
+        """reference: scaled pressure in 1/s that one unit of w stands for, see reference_pressure; edged: whether the
+        edge of the cavity lies within cells where the film rests, see cavity_edge.py, if its law knows it."""
         self.section, self.grid, self.law = section, grid, law
+        self.edged = edged and law.edges and section.flow_roughness == 0.0
         self.scales = Scales(
             reference,
             (section.cavitation_pressure - section.ambient_pressure) / section.pressure_scale,
@@ -178,7 +182,7 @@ def supplied(film: VolumeFilm, share: float) -> VolumeFilm:
         holes=tuple(replace(hole, pressure=share * hole.pressure) for hole in section.holes),
     )
     grid = replace(grid, fixed_pressure=share * grid.fixed_pressure)
-    return VolumeFilm(section, grid, film.law, film.scales.reference)
+    return VolumeFilm(section, grid, film.law, film.scales.reference, film.edged)
 
 
 def refilled(

@@ -90,7 +90,7 @@ def lying(film: VolumeFilm, share: float) -> VolumeFilm:
     """The film on cells that lie by a share of one cell further around."""
     phi, z, height = film.grid.phi, film.grid.z, film.grid.height
     grid = volume_grid(film.section, phi + share * 2.0 * math.pi / (len(phi) - 1), z, height)
-    return VolumeFilm(film.section, grid, film.law, film.scales.reference)
+    return VolumeFilm(film.section, grid, film.law, film.scales.reference, film.edged)
 
 
 def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | None = None) -> LinearFilm:

@@ -32,6 +32,7 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
+from frbcli.film.cells.cavity_edge import full_cells, set_edges
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
@@ -131,7 +132,9 @@ class FilmSolver:
         if law.carries_gas:
             return self._steady_with_gas(motion, start, storage, repeated)
         self._settle_gas()
-        solution = self._solve(motion, self.film.full() if start is None else start, storage)
+        if start is None:
+            start = full_cells(self.film, motion) if self.film.edged else self.film.full()
+        solution = self._solve(motion, start, storage)
         for _ in range(repeated):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             solution = self._again(motion, solution, storage)
@@ -276,6 +279,8 @@ class FilmSolver:
         oil carries; gas: see Attempt."""
         self._states[BEFORE_UPSTREAM] = self._before
         self._set_states(w)
+        if self.film.edged:
+            set_edges(self.film, motion, w, self._states)
         if mixing is not None:
             carried = self._states[CARRIED_GAS:BEFORE_UPSTREAM]
             before = carried.copy()

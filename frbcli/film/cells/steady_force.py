@@ -8,11 +8,14 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion
+from frbcli.film.cavitation.compiled import given_parameters
+from frbcli.film.cells.balance.balances import BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
 from frbcli.film.cells.balance.feed import ALL
-from frbcli.film.cells.balance.newton_step import film_newton
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, TURNOVER
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES
+from frbcli.film.cells.balance.newton_step import film_loads, film_newton
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, PRESSURE, STATES, TURNOVER, cell_states
+from frbcli.film.cells.cavity_edge import edge_slopes, set_edges
+from frbcli.film.cells.data import AREA
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
@@ -27,7 +30,7 @@ HELD, CARRIED = 1e-9, 1e9  # s: moved so little or so much by a velocity that on
 def film_at(film: VolumeFilm, eccentricity: float, omega: float) -> VolumeFilm:
     """The film with its law as it is at an eccentricity and a speed of a journal that does not whirl."""
     law = film.law.followed(eccentricity, omega)
-    return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference)
+    return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference, film.edged)
 
 
 def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
@@ -58,6 +61,8 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
     film, data = solver.film, solver.data
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
+    if film.edged:
+        return _force_with_edges(solver, motion, solution)
     c, (m, k) = film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
@@ -73,6 +78,27 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
     return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field)
+
+
+def _force_with_edges(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
+    """See settled_force, of a film with the edge of its cavity within cells, whose sources follow the motion, too."""
+    film, data, (m, k) = solver.film, solver.data, solution.w.shape
+    own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    states, nothing, law = np.zeros((STATES, m, k)), np.zeros((m, k)), np.append(given_parameters(film.law), np.nan)
+    cell_states(own, cells, law, 0.0, solution.w, states)
+    set_edges(film, motion, solution.w, states)
+    by_place, by_rate = edge_slopes(film, motion, states[PRESSURE])
+    slopes = []
+    for g in (CARRIED, HELD):
+        stencil, blocks, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
+        at = GridMotion(*motion.d, motion.omega, *motion.v, g=g)
+        balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
+        fields[:, :, [k + BY_X, k + BY_Y]] += cells[AREA][:, :, None] * (g * by_place + by_rate)
+        solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])
+        values = film_loads(own, ring, cells, states, fields)
+        slopes.append(np.array(values[2:]).reshape(2, 2) / film.section.clearance)
+    at_rest = np.array(force(film, film.mean_pressure(solution.state)))
+    return FilmForce(at_rest, slopes[0] / CARRIED, slopes[1], solution.field)
 
 
 def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:

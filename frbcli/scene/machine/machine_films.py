@@ -63,7 +63,7 @@ def _clearances(case: Case) -> tuple[float, ...]:
 
 def _cells(case: Case, plan: Plan, top_Hz: float | None) -> Films:
     cells, places = cells_of(plan), film_places(case)
-    volumes = tuple(volume_film(case, place, cells, top_Hz) for place in places)
+    volumes = tuple(volume_film(case, place, cells, top_Hz, plan.edged) for place in places)
     data = volume_films(volumes, centrifugal_pressures(case, volumes), settled_share(plan.tolerance))
     data = with_channels(data, volumes, coupled_channels(case, volumes))
     return CellFilms(

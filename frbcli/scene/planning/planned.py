@@ -29,7 +29,8 @@ class Plan:
     other films; film_error: expected relative error of the forces; method: name of a time integration method;
     tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
     COUPLINGS; macro_step: longest one in s of a co-simulation, else None; length: m, in place of the clearance for
-    machines without films, see reference_length.py; eccentricity: that the cells are chosen for, see FilmChoice."""
+    machines without films, see reference_length.py; eccentricity: that the cells are chosen for, see FilmChoice; edged:
+    whether films on cells have the edge of their cavity within cells, see VolumeFilm: at rest alone."""
 
     theory: str
     cavitation: str
@@ -46,6 +47,7 @@ class Plan:
     decisions: tuple[Decision, ...]
     length: float = 0.0
     eccentricity: float | None = None
+    edged: bool = False
 
     def __repr__(self) -> str:
         """Its choices, one on a line."""

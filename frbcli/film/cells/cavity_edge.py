@@ -1,0 +1,81 @@
+"""The edge of the cavity within a cell, for films at rest of laws whose cavity ends where the film has no slope.
+
+Oil appears in a cavity as fast as its gap opens, at the rate A = omega/2 H' + dH/dt. Before the edge of the cavity the
+pressure above it therefore is a r^2 / 2 with a = A / H^3 at the distance r, and has no slope at the edge. Balances of
+cells with the cavity between two middles would move the edge onto one of them: forces then have an error of second
+order that jumps from cell to cell, and their derivatives one of first order. Let the edge lie s < 1 cells of the length
+L behind the middle of the last cell with pressure, p = a (s L)^2 / 2. The flow that enters this cell for pressure is
+(s + 1/2) A L, that into the next one, whose pressure is that of the cavity, s^2 A L / 2, and the surfaces carry A L
+more out of it than into it. It is balanced with a source of A (1 - s)^2 / 2, and so the edge may lie anywhere.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from frbcli.film.cavitation.law import CellState
+from frbcli.film.cells.balance.states import CARRIED_GAS, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
+from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.motion import Motion
+from frbcli.film.gap import gap_rate
+from frbcli.film.grid import Array
+
+NUDGE = 1e-6  # of the gap, and of the pace, for derivatives of smooth functions
+
+
+class Opening(NamedTuple):
+    """How the gap of a film opens. rate: (m, 1) A in 1/s; through: (m, 1) H^3 / L^2, what flows to the next cell for a
+    difference of pressure over its area."""
+
+    rate: Array
+    through: Array
+
+
+def opening(film: VolumeFilm, motion: Motion) -> Opening:
+    """How the gap opens in each cell around."""
+    phi, centre = film.grid.phi, film.grid.centre
+    length, face, gap = np.diff(phi), film.gap(motion.d, phi), film.gap(motion.d, centre)
+    rate = 0.5 * motion.omega * np.diff(face) / length + gap_rate(motion.v, centre)
+    return Opening(rate[:, None], (gap**3 / length**2)[:, None])
+
+
+def full_cells(film: VolumeFilm, motion: Motion) -> Array:
+    """(m, k) unknown of a film that is full everywhere, with the cavity one cell behind each."""
+    rate, through = opening(film, motion)
+    above: Array = np.maximum(rate, 0.0) / through / film.scales.reference
+    return film.full() + above
+
+
+def set_edges(film: VolumeFilm, motion: Motion, w: Array, states: Array) -> None:
+    """states (STATES, m, k), as the law has them without it <- with the edge of the cavity within cells."""
+    state = film.law.edged(CellState(*states[:CARRIED_GAS]), w, film.scales, *opening(film, motion))
+    free = ~film.grid.fixed
+    for layer, values in (
+        (PRESSURE, state.pressure),
+        (SOURCE, state.source),
+        (PRESSURE_SLOPE, state.pressure_slope),
+        (SOURCE_SLOPE, state.source_slope),
+    ):
+        states[layer] = np.where(free, values, states[layer])
+
+
+def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Array, Array]:
+    """(m, k, 2) derivatives of the sources of cells with scaled gauge pressures (m, k) by displacement over the
+    clearance, and by its rate."""
+
+    def source(at: Motion) -> Array:
+        return film.law.edge_source(pressure, film.scales, *opening(film, at))
+
+    def slope(name: str, nudge: float) -> Array:
+        middle = np.array(getattr(motion, name))
+        ahead, behind = (
+            [source(replace(motion, **{name: tuple(middle + side * nudge * unit)})) for unit in np.eye(2)]
+            for side in (1.0, -1.0)
+        )
+        return np.stack([(a - b) / (2.0 * nudge) for a, b in zip(ahead, behind, strict=True)], axis=-1)
+
+    free = ~film.grid.fixed[:, :, None]
+    return slope("d", NUDGE) * free, slope("v", NUDGE * motion.rate) * free
