@@ -11,6 +11,7 @@ more out of it than into it. It is balanced with a source of A (1 - s)^2 / 2, an
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -66,16 +67,17 @@ def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Arra
     """(m, k, 2) derivatives of the sources of cells with scaled gauge pressures (m, k) by displacement over the
     clearance, and by its rate."""
 
-    def source(at: Motion) -> Array:
-        return film.law.edge_source(pressure, film.scales, *opening(film, at))
+    def moved(x: float, y: float) -> Motion:
+        return replace(motion, d=(motion.d[0] + x, motion.d[1] + y))
 
-    def slope(name: str, nudge: float) -> Array:
-        middle = np.array(getattr(motion, name))
-        ahead, behind = (
-            [source(replace(motion, **{name: tuple(middle + side * nudge * unit)})) for unit in np.eye(2)]
-            for side in (1.0, -1.0)
-        )
-        return np.stack([(a - b) / (2.0 * nudge) for a, b in zip(ahead, behind, strict=True)], axis=-1)
+    def hastened(x: float, y: float) -> Motion:
+        return replace(motion, v=(motion.v[0] + x, motion.v[1] + y))
 
-    free = ~film.grid.fixed[:, :, None]
-    return slope("d", NUDGE) * free, slope("v", NUDGE * motion.rate) * free
+    def slope(change: Callable[[float, float], Motion], nudge: float) -> Array:
+        def source(x: float, y: float) -> Array:
+            return film.law.edge_source(pressure, film.scales, *opening(film, change(x, y)))
+
+        by_x, by_y = source(nudge, 0.0) - source(-nudge, 0.0), source(0.0, nudge) - source(0.0, -nudge)
+        return np.stack([by_x, by_y], axis=-1) / (2.0 * nudge) * ~film.grid.fixed[:, :, None]
+
+    return slope(moved, NUDGE), slope(hastened, NUDGE * motion.rate)
