@@ -27,7 +27,7 @@ from frbcli.film.grid import Array
 NUDGE = 1e-6  # of the gap, and of the pace, for derivatives of smooth functions
 
 
-class Opening(NamedTuple):
+class GapRise(NamedTuple):
     """How the gap of a film opens. rate: (m, 1) A in 1/s; through: (m, 1) H^3 / L^2, what flows to the next cell for a
     difference of pressure over its area."""
 
@@ -35,24 +35,24 @@ class Opening(NamedTuple):
     through: Array
 
 
-def opening(film: VolumeFilm, motion: Motion) -> Opening:
+def gap_rise(film: VolumeFilm, motion: Motion) -> GapRise:
     """How the gap opens in each cell around."""
     phi, centre = film.grid.phi, film.grid.centre
     length, face, gap = np.diff(phi), film.gap(motion.d, phi), film.gap(motion.d, centre)
     rate = 0.5 * motion.omega * np.diff(face) / length + gap_rate(motion.v, centre)
-    return Opening(rate[:, None], (gap**3 / length**2)[:, None])
+    return GapRise(rate[:, None], (gap**3 / length**2)[:, None])
 
 
 def full_cells(film: VolumeFilm, motion: Motion) -> Array:
     """(m, k) unknown of a film that is full everywhere, with the cavity one cell behind each."""
-    rate, through = opening(film, motion)
+    rate, through = gap_rise(film, motion)
     above: Array = np.maximum(rate, 0.0) / through / film.scales.reference
     return film.full() + above
 
 
 def set_edges(film: VolumeFilm, motion: Motion, w: Array, states: Array) -> None:
     """states (STATES, m, k), as the law has them without it <- with the edge of the cavity within cells."""
-    state = film.law.edged(CellState(*states[:CARRIED_GAS]), w, film.scales, *opening(film, motion))
+    state = film.law.edged(CellState(*states[:CARRIED_GAS]), w, film.scales, *gap_rise(film, motion))
     free = ~film.grid.fixed
     for layer, values in (
         (PRESSURE, state.pressure),
@@ -75,7 +75,7 @@ def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Arra
 
     def slope(change: Callable[[float, float], Motion], nudge: float) -> Array:
         def source(x: float, y: float) -> Array:
-            return film.law.edge_source(pressure, film.scales, *opening(film, change(x, y)))
+            return film.law.edge_source(pressure, film.scales, *gap_rise(film, change(x, y)))
 
         by_x, by_y = source(nudge, 0.0) - source(-nudge, 0.0), source(0.0, nudge) - source(0.0, -nudge)
         return np.stack([by_x, by_y], axis=-1) / (2.0 * nudge) * ~film.grid.fixed[:, :, None]
