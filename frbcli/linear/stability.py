@@ -120,9 +120,10 @@ def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -
     points = list(_sweep(case, scout, [*speeds_Hz[:-1:SCOUTED], speeds_Hz[-1]], with_error=False))
     if not all(point.rests for point in points):
         return ()
-    if between := [speed for speed in speeds_Hz if any(low < speed < high for low, high in _open_spans(points))]:
-        known = {point.speed_Hz for point in points}
-        points += _sweep(case, scout, [speed for speed in between if speed not in known], with_error=False)
+    known, spans = {point.speed_Hz for point in points}, open_spans(points)
+    between = [speed for speed in speeds_Hz if any(low < speed < high for low, high in spans)]
+    if untried := [speed for speed in between if speed not in known]:
+        points += _sweep(case, scout, untried, with_error=False)
         points.sort(key=lambda point: point.speed_Hz)
     if not all(point.rests for point in points):
         return ()
@@ -135,13 +136,14 @@ def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -
     return tuple(points)
 
 
-def _open_spans(points: Sequence[StabilityPoint]) -> list[tuple[float, float]]:
+def open_spans(points: Sequence[StabilityPoint]) -> list[tuple[float, float]]:
     """Spans of speeds in Hz within which growth may pass zero: about its maxima below the first speed at which a motion
     grows, and up to this."""
     growth, last = [point.growth for point in points], len(points) - 1
     first = next((number for number, each in enumerate(growth) if each > 0.0), last)
     highest = [i for i in range(first + 1) if i == first or growth[i] >= max(growth[max(i - 1, 0)], growth[i + 1])]
-    return [(points[max(i - 1, 0)].speed_Hz, points[min(i + 1, last)].speed_Hz) for i in highest]
+    above = [i if growth[i] > 0.0 else min(i + 1, last) for i in highest]
+    return [(points[max(i - 1, 0)].speed_Hz, points[j].speed_Hz) for i, j in zip(highest, above, strict=True)]
 
 
 def _stability(

@@ -6,6 +6,7 @@ import math
 import os
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from sweep_points import CLEARANCES, SHORT, TWO, VISCOSITIES
 
 from frbcli import Case, InputError, load_case, read_run, runup, stability, sweep
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.linear.stability import threshold_alone
+from frbcli.linear.stability import open_spans, threshold_alone
 from frbcli.linear.stability_point import point_at_rest
 from frbcli.linear.threshold import find_threshold
 from frbcli.studies.sweep import sweep as study
@@ -375,3 +376,16 @@ def test_a_cluster_that_is_not_there_is_wrong_input(
     monkeypatch.setattr("frbcli.studies.sweep.workers.CONNECT_WITHIN_s", 0.5)
     with pytest.raises(InputError, match="cannot be reached"):
         sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, workers=Workers("dask", scheduler="tcp://127.0.0.1:9"))
+
+
+@pytest.mark.parametrize(
+    ("growths", "spans"),
+    [
+        ([-3.0, -1.0, -2.0, 1.0, 2.0], [(0.0, 2.0), (2.0, 3.0)]),  # a whirl may begin and end about the first maximum
+        ([-3.0, -2.0, -1.0], [(1.0, 2.0)]),
+        ([1.0, 2.0, -1.0], [(0.0, 0.0)]),
+    ],
+)
+def test_speeds_beside_a_maximum_of_growth_are_tried(growths: list[float], spans: list[tuple[float, float]]) -> None:
+    points: Any = [SimpleNamespace(speed_Hz=float(number), growth=each) for number, each in enumerate(growths)]
+    assert open_spans(points) == spans
