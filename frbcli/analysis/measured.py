@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.tacho import tacho_speed
+from frbcli.analysis.orders.revolutions import tacho_speed
 from frbcli.analysis.signals import point_of
 from frbcli.arrays import Array
 from frbcli.nearest import did_you_mean

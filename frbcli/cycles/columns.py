@@ -238,46 +238,41 @@ def diagram_columns(
     over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
     unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether journals tilt.
     """
+    value = Column(over, "", "value of the number that is varied", _number("value"))
+    whirl = Column("unbalance", "", "true of a whirl with unbalance",
+                   lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
+    per_film = [
+        ("eccentricity_max", "", "largest eccentricity", "eccentricity"),
+        ("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed", ""),
+        *([("end_eccentricity_max", "", END_MEANING, "end_eccentricity")] if tilts else []),
+        *([("temperatures_K", "K", TEMPERATURE, "")] if heat else []),
+    ]
 
     def of_point(*columns: Column, film: str = "") -> tuple[Column, ...]:
         return named(columns, film, itemgetter(1))
 
-    value = Column(over, "", "value of the number that is varied", lambda point: getattr(point, "value", math.nan))
-    whirl = Column("unbalance", "", "true of a whirl with unbalance",
-                   lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
-    several = len(films) > 1
     return (
         *of_point(*(() if over == SPEED else (value,))),
         Column("branch", "", "number of the branch, from 0; -1 of a resting position", itemgetter(0)),
         *of_point(
             SPEED_COLUMN,
-            replace(FREQUENCY, value=lambda point: getattr(point, "frequency_Hz", math.nan)),
+            replace(FREQUENCY, value=_number("frequency_Hz")),
             STABLE,
             Column("kind", "", "kind of a special point, or `asked`; `locked`, `two frequencies` or `fold` of a "
                    "whirl with unbalance", _kind),
         ),
-        *(column for film, name in enumerate(films)
-          for column in of_point(Column("eccentricity_max", "", "largest eccentricity", _eccentricity(film)),
-                                 film=name if several else "")),
-        *(column for film, name in enumerate(films)
-          for column in of_point(Column("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed",
-                                        _eccentricity_uncertainty(film)),
-                                 film=name if several else "")),
-        *(column for film, name in enumerate(films if tilts else ())
-          for column in of_point(Column("end_eccentricity_max", "", END_MEANING, _end_eccentricity(film)),
-                                 film=name if several else "")),
-        *(column for film, name in enumerate(films if heat else ())
-          for column in of_point(Column("temperature", "K", TEMPERATURE, _temperature(film)),
-                                 film=name if several else "")),
+        *(column for quantity, unit, meaning, at_rest in per_film for film, name in enumerate(films)
+          for column in of_point(Column(quantity.replace("temperatures_K", "temperature"), unit, meaning,
+                                        _number(quantity, film, at_rest)), film=name if len(films) > 1 else "")),
         *of_point(
-            *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _ring_speed(ring)) for ring in range(rings)),
+            *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _number("ring_speeds_Hz", ring))
+              for ring in range(rings)),
             Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
-                   lambda point: getattr(point, "torque_N_m", math.nan)),
+                   _number("torque_N_m")),
             Column(*(("speed_uncertainty", "Hz") if over == SPEED else ("value_uncertainty", "")),
-                   "uncertainty of the number that is varied, of a fold",
-                   lambda point: getattr(point, "value_uncertainty", math.nan)),
+                   "uncertainty of the number that is varied, of a fold", _number("value_uncertainty")),
             Column("frequency_uncertainty", "Hz", "uncertainty of the frequency of a cycle, at its speed",
-                   lambda point: getattr(point, "frequency_uncertainty_Hz", math.nan)),
+                   _number("frequency_uncertainty_Hz")),
             *([whirl] if unbalance else []),
             *(Column(f"amplitude of {line}", "", "amplitude of a line over the clearance, of the film where it is "
                      "largest", _amplitude(line)) for line in lines),
@@ -291,32 +286,17 @@ def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
     return point.kind if isinstance(point, CyclePoint) else ""
 
 
-def _eccentricity(film: int) -> Callable[[Any], float]:
-    return lambda point: float(
-        point.eccentricity[film] if isinstance(point, RestingPoint) else point.eccentricity_max[film]
-    )
+def _number(name: str, place: int | None = None, at_rest: str = "") -> Callable[[Any], float]:
+    """A number of a point by its name, and place in an array; NaN where the point has none. at_rest: its name in a
+    RestingPoint, if that is another."""
 
-
-def _end_eccentricity(film: int) -> Callable[[Any], float]:
-    return lambda point: float(
-        (point.end_eccentricity if isinstance(point, RestingPoint) else point.end_eccentricity_max)[film]
-    )
-
-
-def _eccentricity_uncertainty(film: int) -> Callable[[Any], float]:
     def value(point: Any) -> float:
-        found = getattr(point, "eccentricity_max_uncertainty", None)
-        return math.nan if found is None else float(found[film])
+        found = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
+        if found is None:
+            return math.nan
+        return float(found if place is None else found[place])
 
     return value
-
-
-def _temperature(film: int) -> Callable[[Any], float]:
-    return lambda point: float(point.temperatures_K[film])
-
-
-def _ring_speed(ring: int) -> Callable[[Any], float]:
-    return lambda point: float(point.ring_speeds_Hz[ring])
 
 
 def _amplitude(name: str) -> Callable[[Any], float]:

@@ -1,4 +1,4 @@
-"""The machines of a case by one of its numbers."""
+"""The cases whose limit cycles can be computed, and the machines of a case by one of its numbers."""
 
 from __future__ import annotations
 
@@ -7,15 +7,17 @@ import re
 
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
-from frbcli.cycles.faults import check
 from frbcli.cycles.method.changing import kept
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Equilibrium, between, settled
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.parts.other_meshes import other_films
 from frbcli.errors import InputError, input_error
+from frbcli.scene.gate.analysis import CYCLES, SPEED_CYCLES, WHIRLS
+from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.speeds import default_speeds
 
 LONGEST_SHOWN = 40  # characters of a value in a fault
 REMEDY = 'Write e.g. "40 um".'
@@ -94,3 +96,11 @@ def _number(key: str, text: str) -> tuple[float, str]:
     if found is None or not math.isfinite(float(found[1])):
         raise input_error(key, key, text[:LONGEST_SHOWN], "is no number with a unit.", REMEDY)
     return float(found[1]), found[2].strip()
+
+
+def check(case: Case, shooting: bool = False, with_unbalance: bool = False) -> tuple[float, float]:
+    """The range of speeds of a case in rad/s, the slowest above zero. shooting: whether cycles may be found by shooting
+    on the time loop; with_unbalance: whether the whirls with it are asked for as well. Raises InputError."""
+    require(case, WHIRLS if with_unbalance else SPEED_CYCLES if shooting else CYCLES)
+    speeds = default_speeds(case)
+    return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]

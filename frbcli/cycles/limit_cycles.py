@@ -10,7 +10,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
-from frbcli.cycles.faults import check
+from frbcli.cycles.family import check
 from frbcli.cycles.heat import WarmFollower, warm_walk
 from frbcli.cycles.method.changing import ChangingFollower, by_difference, kept
 from frbcli.cycles.method.continuation import Place, Unreachable

@@ -14,8 +14,7 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors
-from frbcli.cycles.family import Family, positive_range
-from frbcli.cycles.faults import check
+from frbcli.cycles.family import Family, check, positive_range
 from frbcli.cycles.method.changing import ChangingFollower
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled

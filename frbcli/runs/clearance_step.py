@@ -8,9 +8,8 @@ from __future__ import annotations
 
 from frbcli.film.cells.motion import turned
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.runs.cosimulation import in_turn
 from frbcli.runs.oil import displacement, grid_angle
-from frbcli.runs.start import FIRST_STEP, accelerations, settled_forces
+from frbcli.runs.start import FIRST_STEP, accelerations, in_turn, settled_forces
 from frbcli.scene.machine.system import System
 from frbcli.solve.state import ERROR_BEFORE, STEP, STEP_BEFORE, STEP_DONE, TIME, State
 

@@ -14,8 +14,6 @@ from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
-from frbcli.runs.control import control_of
-from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, summed
 from frbcli.runs.heat import RunHeat
@@ -26,7 +24,7 @@ from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_n
 from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
-from frbcli.runs.start import first_state, rotor_data
+from frbcli.runs.start import control_of, first_state, in_turn, micro_cost, rotor_data
 from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.costs.course import expected_course
 from frbcli.scene.costs.preparation import film_error_s

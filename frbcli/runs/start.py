@@ -1,4 +1,5 @@
-"""The initial state of a run: arrays of the rotor; displacement, velocity and consistent acceleration."""
+"""The start of a run: arrays of the rotor and limits of the time loop; displacement, velocity and consistent
+acceleration; and what a co-simulation of rotor and films begins with and costs."""
 
 from __future__ import annotations
 
@@ -10,23 +11,45 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.case.course.control import Start
+from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
+from frbcli.film.roughness.asperities import Asperities
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.rotor.over_speed import no_part
 from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.scene.costs.course import longest_step, steps_of_a_turn
+from frbcli.scene.coupling import coupling_named
 from frbcli.scene.machine.system import System
+from frbcli.scene.planning.planned import Plan
+from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs
 from frbcli.solve.pin import RADIUS, STIFFNESS
 from frbcli.solve.stage.cones import make_cones
 from frbcli.solve.stage.loads import varying_loads
-from frbcli.solve.state import ERROR_SPANS, HISTORY, NUMBERS, RUN_END, STEP, STEP_DONE, Array, RotorData, State
+from frbcli.solve.stage.rough_contact import RoughContact
+from frbcli.solve.state import (
+    ERROR_SPANS,
+    HISTORY,
+    NUMBERS,
+    RUN_END,
+    STEP,
+    STEP_DONE,
+    STEPS,
+    TIME,
+    Array,
+    Control,
+    RotorData,
+    State,
+)
 
 FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
+
+HELD_BY_SUMMITS = 1e-9  # N/m: films keep a contact gap and a run goes on as with an elastic shell, which pushes nothing
 
 
 def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()] = ()) -> RotorData:
@@ -159,3 +182,59 @@ def accelerations(
     for selection, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
         forces = forces + count * selection.T @ force
     return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)
+
+
+def control_of(case: Case, plan: Plan, asperities: Asperities | None = None) -> Control:
+    """The limits of the time loop, from the case and its plan. asperities: of its machine, see System."""
+    contact = case.contact
+    stiffness = contact.stiffness if contact.policy == "elastic" and contact.stiffness is not None else 0.0
+    rough: RoughContact | tuple[()] = ()
+    if asperities is not None:
+        stiffness, rough = HELD_BY_SUMMITS, RoughContact(asperities, np.zeros((len(asperities.radii), 2)))
+    return Control(
+        tolerance=plan.tolerance,
+        steps_per_revolution=steps_of_a_turn(case, plan),
+        longest_step=longest_step(case, plan),
+        output_step=case.output.step,
+        contact_eccentricity=contact.eccentricity,
+        contact_stiffness=stiffness,
+        linearised=coupling_named(plan.coupling).once,
+        rough=rough,
+    )
+
+
+def in_turn(system: System, state: State, omega: float) -> State:
+    """The state of advance_in_turn from that of advance, at the beginning or after a clearance has changed.
+
+    omega: speed of the rotor in rad/s.
+
+    The coupling variables (section 5.2.1) are constant before the start, except those of the journals, which
+    move with their initial velocity.
+    """
+    rotor, rings = system.rotor, list(system.spins)
+    numbers = np.zeros(CO_NUMBERS)
+    numbers[: len(state.numbers)] = state.numbers
+    numbers[MICRO_STEP] = FIRST_STEP
+    numbers[FILMS_REMEMBER] = float(system.remembers)
+    place, rate = rotor.journals @ state.q, rotor.journals @ state.v
+    times = FIRST_STEP * np.arange(1 - HISTORY, 1)
+    exchanged = [settled_forces(system, omega, state.q, state.v).ravel(), np.zeros(len(rings))]
+    past = np.array([
+        np.concatenate([
+            [numbers[TIME] + t], (place + t * rate).ravel(), rate.ravel(), state.q[rings], state.v[rings], *exchanged
+        ])
+        for t in times
+    ])  # fmt: skip
+    return state._replace(numbers=numbers, past=past)
+
+
+def micro_cost(state: State, cpu_s: float) -> dict[str, float]:
+    """Cost of the films' own steps; cpu_s: of the whole run."""
+    numbers = state.numbers
+    micro, macro = max(float(numbers[MICRO_STEPS]), 1.0), max(float(numbers[STEPS]), 1.0)
+    return {
+        "micro_steps": int(numbers[MICRO_STEPS]),
+        "rejected_micro_steps": int(numbers[MICRO_REJECTED]),
+        "micro_steps_per_macro_step": micro / macro,
+        "ms_per_micro_step": 1e3 * cpu_s / micro,
+    }

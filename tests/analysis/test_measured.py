@@ -13,7 +13,7 @@ from scipy.io import savemat, wavfile
 from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.orders.tacho import tacho_speed
+from frbcli.analysis.orders.revolutions import tacho_speed
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError

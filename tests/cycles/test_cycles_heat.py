@@ -10,7 +10,7 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cycles.faults import check
+from frbcli.cycles.family import check
 from frbcli.cycles.heat import WarmFollower, warm_walk
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.cycles.method.balance import packed

@@ -31,8 +31,7 @@ from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
 from frbcli.rotor.speed_profile import speed_profile
-from frbcli.runs.control import control_of
-from frbcli.runs.start import rotor_data, state_at
+from frbcli.runs.start import control_of, rotor_data, state_at
 from frbcli.scene.gate.analysis import SPEED_CYCLES
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.system import make_system

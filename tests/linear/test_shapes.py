@@ -24,8 +24,8 @@ from frbcli.linear.critical_map import critical_map
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
-from frbcli.plot.machine.critical_map import critical_map_figure
 from frbcli.plot.machine.modes import shapes_figure
+from frbcli.plot.machine.response import critical_map_figure
 from frbcli.plot.moving.orbits import FRAMES, animate_orbits
 
 PLAIN = [  # a turbocharger in plain bearings, with all its modes

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.runs.cosimulation import in_turn, micro_cost
 from frbcli.runs.march import control_of
 from frbcli.runs.run import runup
-from frbcli.runs.start import first_state, rotor_data
+from frbcli.runs.start import first_state, in_turn, micro_cost, rotor_data
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -18,9 +18,8 @@ import frbcli
 from frbcli.case.reading.shipped import shipped_names
 from frbcli.cli.main import run
 from frbcli.compilation import counted
-from frbcli.runs.control import control_of
 from frbcli.runs.inputs import RunInputs
-from frbcli.runs.start import rotor_data
+from frbcli.runs.start import control_of, rotor_data
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.studies.kernels.short_analyses import CELLS, OTHERS, ShortAnalysis, machine_kernels, short_analyses

@@ -99,7 +99,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     Refused."""
     import numpy as np
 
-    from frbcli.analysis.orders.tacho import tacho_speed
+    from frbcli.analysis.orders.revolutions import tacho_speed
     from frbcli.results.measured.reading import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import click
@@ -121,7 +122,7 @@ def _document(
         "status": "ok",
         "values": _value_documents(listed),
         "bare_numbers": _value_documents(bare),
-        "plan": _plan_documents(decisions),
+        "plan": [asdict(decision) for decision in decisions],
     }
 
 
@@ -135,10 +136,6 @@ def _tell_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[Listed
 
 def _value_documents(values: Sequence[ListedValue]) -> list[dict[str, object]]:
     return [{"key": value.key, "value": value.value, "unit": value.unit} for value in values]
-
-
-def _plan_documents(decisions: Sequence[Decision]) -> list[dict[str, object]]:
-    return [{"choice": d.choice, "value": d.value, "reason": d.reason} for d in decisions]
 
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -78,7 +79,7 @@ def command(
             "command": "stability",
             "case": case.name,
             "points": [_point(point) for point in found.points],
-            "threshold": _threshold(found),
+            "threshold": found.threshold and asdict(found.threshold) | {"whirl_ratio": found.threshold.whirl_ratio},
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
             **written,
@@ -184,16 +185,3 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
         told["problem"] = point.problem
     told["modes"] = documents(MODES, point.modes_with_errors)
     return told | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
-
-
-def _threshold(found: Stability) -> dict[str, float] | None:
-    threshold = found.threshold
-    if threshold is None:
-        return None
-    return {
-        "speed_Hz": threshold.speed_Hz,
-        "frequency_Hz": threshold.frequency_Hz,
-        "whirl_ratio": threshold.whirl_ratio,
-        "speed_uncertainty_Hz": threshold.speed_uncertainty_Hz,
-        "frequency_uncertainty_Hz": threshold.frequency_uncertainty_Hz,
-    }

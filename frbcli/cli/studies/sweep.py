@@ -282,16 +282,9 @@ def of_machines(
         from frbcli.plot.studies.sweep import scatter_figure
 
         drawn = draw(terminal, lambda: scatter_figure(found.case.heading, seen), target)
-    document = {
-        "count": seen.count,
-        "left_out": seen.left_out,
-        "percentiles": [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles],
-        "sensitivities": [asdict(one) for one in seen.sensitivities],
-        "explained": seen.explained,
-        "below_Hz": seen.below_Hz,
-        "share": seen.share,
-        "interval": seen.interval,
-    }
+    percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]
+    document = asdict(seen) | {"percentiles": percentiles}
+    del document["speeds_Hz"]
     return document, drawn
 
 

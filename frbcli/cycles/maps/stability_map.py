@@ -16,8 +16,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
-from frbcli.cycles.family import Family, positive_range
-from frbcli.cycles.faults import check
+from frbcli.cycles.family import Family, check, positive_range
 from frbcli.cycles.maps.crossings import CrossingCurve, CrossingStart, starts_of
 from frbcli.cycles.maps.curves import (
     MOST_HARMONICS,

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import first_place, follow_branch
-from frbcli.cycles.faults import check
+from frbcli.cycles.family import check
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.criticality import lyapunov_coefficient
 from frbcli.cycles.method.cycle import FOLD, Cycle

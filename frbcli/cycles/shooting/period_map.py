@@ -28,9 +28,8 @@ from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.data import UNKNOWN
 from frbcli.film.state import GAS, GAS_RATE, OIL, PASSED, RATE, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.speed_profile import speed_profile
-from frbcli.runs.control import control_of
 from frbcli.runs.inputs import RunInputs
-from frbcli.runs.start import rotor_data, state_at
+from frbcli.runs.start import control_of, rotor_data, state_at
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import (

@@ -1,4 +1,5 @@
-"""The linear unbalance response: Bode and polar diagrams of the points, forces of the bearings, and orbits."""
+"""The linear unbalance response: Bode and polar diagrams of the points, forces of the bearings, and orbits; and the
+undamped critical speed map, with the stiffness of the films of the case over it."""
 
 from __future__ import annotations
 
@@ -10,8 +11,21 @@ from matplotlib.figure import Figure
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.arrays import Array
+from frbcli.linear.critical_map import CriticalMap
 from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response, larger_semi_axis
-from frbcli.plot.style import BAND, BLACK, COLOURS, GREY, legend_below, legend_beside, new_figure, styled
+from frbcli.plot.style import (
+    BAND,
+    BLACK,
+    BLUE,
+    COLOURS,
+    GREY,
+    ORANGE,
+    VERMILION,
+    legend_below,
+    legend_beside,
+    new_figure,
+    styled,
+)
 
 MICRO = 1e6
 STABLE, GROWING = "-", (0, (1, 1.5))  # lines of motions that are seen, and of those that a whirl hides
@@ -19,6 +33,10 @@ GAP = (0, (4, 2))  # line of a clearance
 SHADES = {DOUBTFUL_MOTION: 0.12, BEYOND_GAP: 0.3}
 LABELS = {DOUBTFUL_MOTION: "linear coefficients doubtful", BEYOND_GAP: "an orbit leaves its gap"}
 DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are colours
+
+FEW = 10  # speeds of films: they are marked, as fewer than two are no line
+FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
+FILM_MARKS = ("o", "D", "^")
 
 
 def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
@@ -152,3 +170,41 @@ def _polar(axes: Axes, found: Response, number: int, colour: str, dash: object) 
     axes.plot(np.where(grows, np.nan, forward.real), forward.imag, color=colour, linestyle=dash)
     axes.plot(np.where(grows, forward.real, np.nan), forward.imag, color=colour, linestyle=GROWING)
     axes.plot(forward.real[-1], forward.imag[-1], color=colour, marker="o", markersize=4.0)
+
+
+def critical_map_figure(found: CriticalMap) -> Figure:
+    """Critical speeds of forward and backward whirls over the stiffness of a bearing, both logarithmic; red, what the
+    films have at each speed: where the curves cross, the rotor has a critical speed, less what damping moves it."""
+    case = found.case
+    with styled():
+        figure = new_figure(case.heading, "undamped critical speeds over the stiffness of each bearing")
+        axes = figure.subplots()
+        draw_critical_map(axes, found)
+        legend_below(figure, axes)
+    return figure
+
+
+def draw_critical_map(axes: Axes, found: CriticalMap) -> None:
+    """The map on axes of a figure: critical speeds in Hz over the stiffness in N/m."""
+    for values, colour, dashes, name in (
+        (found.forward, BLUE, "-", "forward whirl"), (found.backward, ORANGE, (0, (5, 2)), "backward whirl"),
+    ):  # fmt: skip
+        for number, curve in enumerate(values.T):
+            axes.plot(found.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
+    for number, springs in enumerate(found.film_stiffness.T if len(found.film_speeds_Hz) else ()):
+        if np.isnan(springs).all():
+            continue
+        bearing = found.case.bearings[number].name
+        label = ", ".join(word for word in ("stiffness of the films", bearing) if word)
+        marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
+        axes.plot(springs, found.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
+                  markersize=5.0, label=label)  # fmt: skip
+    top = max(abs(found.case.speed.start), abs(found.case.speed.end))
+    axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    axes.set_xlim(float(found.stiffness[0]), float(found.stiffness[-1]))
+    lowest = float(np.nanmin([found.forward, found.backward]))
+    axes.set_ylim(max(lowest, 0.02 * top), 20.0 * top)
+    axes.set_xlabel("stiffness of a bearing in N/m")
+    axes.set_ylabel("critical speed in Hz")

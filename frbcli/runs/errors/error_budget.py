@@ -13,10 +13,10 @@ import numpy as np
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.runs.control import control_of
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.inputs import films_change
 from frbcli.runs.oil import oil_defect
+from frbcli.runs.start import control_of
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.machine.elements import element_springs

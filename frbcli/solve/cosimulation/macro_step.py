@@ -226,7 +226,7 @@ def advance_in_turn(
     heat: Any = NO_HEAT,
 ) -> tuple[int, int]:  # fmt: skip
     """Advance rotor and films that are solved apart, see advance of time_loop.py; the state comes from in_turn of
-    runs/cosimulation.py.
+    runs/start.py.
 
     Temperatures move on once in a macro step, by the power and the flow at its end. control.longest_step is the longest
     macro step. state.past: (3, 1 + 6 films + 3 rings) at the last macro times: time; the journals' displacements and

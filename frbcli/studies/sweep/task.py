@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -108,8 +108,5 @@ def _threshold(task: Task) -> SweepPoint:
     if at is None:
         status = FINISHED if any(point.rests for point in found.sweep) else NOT_CONVERGED
         return SweepPoint(task.number, task.settings, status, found.note, (), cost)
-    event = {"kind": THRESHOLD, "film": None, "t_s": None, "speed_Hz": at.speed_Hz,
-             "frequency_Hz": at.frequency_Hz, "frequency_ratio": at.whirl_ratio,
-             "speed_uncertainty_Hz": at.speed_uncertainty_Hz,
-             "frequency_uncertainty_Hz": at.frequency_uncertainty_Hz}  # fmt: skip
+    event = {"kind": THRESHOLD, "film": None, "t_s": None, **asdict(at), "frequency_ratio": at.whirl_ratio}
     return SweepPoint(task.number, task.settings, FINISHED, "", (event,), cost)
