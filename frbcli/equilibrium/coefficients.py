@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -113,7 +113,7 @@ def settled_force(
             system.force(i, place, side * pace * unit, total, None, slip).force for side in (1.0, -1.0)
         )
         by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
-    return FilmForce(found.force, by_displacement, by_velocity, found.field)
+    return replace(found, by_displacement=by_displacement, by_velocity=by_velocity)
 
 
 @dataclass(frozen=True)

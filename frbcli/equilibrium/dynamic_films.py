@@ -3,7 +3,7 @@
 The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of L Z(s) P, by nonlinear inverse iteration from the
 eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
 motion of the machine onto that of the journals, and of the angles of rings onto the angle by which journal and shell
-turn together; L maps forces onto the machine, and their moments onto the rings.
+turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the drag.
 
 How a film answers depends on where its fronts lie between its cells: fronts cross cells one at a time, and the
 derivative jumps. So Z is the mean over PLACES of the cells. Its error is of first order in the size of the cells:
@@ -48,8 +48,7 @@ EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 class DynamicFilm:
     """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
     exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
-    the oil, but for `exact`. Its coordinates are those of its journal, and beside rings the angle by which journal and
-    shell turn together (`turns`)."""
+    the oil, but for `exact`. `turns`: whether it is one beside rings, see LinearFilm.turning."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
@@ -65,8 +64,9 @@ class DynamicFilm:
     def on(self, summits: FilmForce) -> DynamicFilm:
         """The film with the summits of rough surfaces beside it, which have no memory, and whose friction does not
         follow the angle by which journal and shell turn together."""
-        still = np.zeros((len(summits.force), self.own.place.shape[1] - len(summits.force)))
-        more = without_memory(*(np.hstack([each, still]) for each in memoryless(summits)))
+        more = without_memory(*np.zeros((2, *self.own.place.shape)))
+        at = slice(0, len(summits.force))
+        more.place[at, at], more.rate[at, at] = memoryless(summits)
         own, fine, one = (weighted([(each, 1.0), (more, 1.0)]) for each in (self.own, self.fine, self.one))
         return DynamicFilm(own, fine, one, more, self.exact)
 
@@ -211,8 +211,12 @@ def _trusted(film: DynamicFilm, s: complex) -> bool:
     if film.exact is None:
         return True
     exact, own = stiffness_at(film.exact, s) + film.summits.at(s)[0], film.one.at(s)[0]
-    sizes = [math.sqrt(np.abs(exact[first : first + 2, first : first + 2]).max()) for first in range(0, len(exact), 2)]
-    rows = np.repeat(sizes, 2)  # of displacements, and of tilts
-    angle = np.abs(exact[:, len(rows) :] / rows[:, None]).max(axis=0)  # by which both surfaces turn
-    scale = np.outer(rows, np.append(rows, angle))
-    return bool(np.abs((own - exact) / scale).max() < TRUSTED * np.abs(exact / scale).max())
+    scale, plain = np.ones(len(exact)), len(exact) // 2 * 2  # of displacements, and of tilts
+    for first in range(0, plain, 2):
+        scale[first : first + 2] = math.sqrt(np.abs(exact[first : first + 2, first : first + 2]).max())
+    own, exact = own / scale[:, None], exact / scale[:, None]
+    scale[plain:] = np.abs(exact[:plain, plain:]).max(axis=0)  # by the angle that both surfaces turn
+    own, exact = own / scale, exact / scale
+    largest = np.abs(exact).max(axis=1, keepdims=True)
+    largest[:plain] = largest[:plain].max()
+    return bool((np.abs(own - exact) <= TRUSTED * largest).all())

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.coefficients import FilmsAtRest
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
-from frbcli.equilibrium.ring_speed import memoryless, ring_torques, rubbed_rings, turns_by_moment
-from frbcli.film.rectangles.film import none_of
+from frbcli.equilibrium.ring_speed import SUM, memoryless, ring_torques, rubbed_rings, turned_by
 from frbcli.rotor.linear import LinearRotor, with_precession
 from frbcli.scene.machine.system import System
 
@@ -31,8 +30,8 @@ def rotor_at_rest(
     its rings are degrees of freedom and see the torques of their films and summits; of rings with a pin its spring and
     its damper, too.
 
-    oil: stiffness and damping (c, c + 1) of the films without their summits, see turns_by_moment, by which they turn
-    the rings and follow them; by default as films without memory have them."""
+    oil: stiffness and damping (c + 1, c + 1) of the films without their summits, see LinearFilm.turning, by which they
+    turn the rings and follow them; by default as films without memory have them."""
     rotor = with_precession(system.rotor, ring_speeds)
     if not system.ring_count:
         return rotor
@@ -41,7 +40,8 @@ def rotor_at_rest(
     films = tuple(film.plus(summits, -1.0) for film, summits in zip(at_rest.forces, rubbed.summits, strict=True))
     if oil is None:
         oil = [memoryless(*each) for each in zip(films, places, strict=True)]
-    constant = tuple(replace(none_of(len(film.force)), force=film.force) for film in films)
+    nothing = np.zeros((places.shape[1],) * 2)
+    constant = tuple(replace(film, by_displacement=nothing, by_velocity=nothing) for film in films)
     _, by_speeds, by_places = ring_torques(system, bodies, places, constant)
     journals, angles = rotor.journals.reshape(-1, rotor.size), np.array(system.spins)
     stiffness, damping = rotor.stiffness.copy(), rotor.damping.copy()
@@ -51,35 +51,34 @@ def rotor_at_rest(
     for ring in np.flatnonzero(system.pinned):
         stiffness[angles[ring], angles[ring]] += system.pins[ring, STIFFNESS]
         damping[angles[ring], angles[ring]] += system.pins[ring, DAMPING]
-    for i, slopes in enumerate(oil):
-        push, journal = _beside_rings(system, rotor, i, places[i])
+    for i, (push, journal) in enumerate(zip(*_beside_rings(system, rotor, bodies, places), strict=True)):
         own = rotor.multiplicity[i] * rotor.journals[i].T
-        for matrix, each in zip((stiffness, damping), slopes, strict=True):
-            matrix += push @ each @ journal - own @ each[:, :-1] @ rotor.journals[i]
+        for matrix, each in zip((stiffness, damping), oil[i], strict=True):
+            matrix += push @ each @ journal - own @ each[:-1, :-1] @ rotor.journals[i]
         damping[:, angles] -= own @ rubbed.forces_by_speed[i]
     return replace(rotor, stiffness=stiffness, damping=damping, turning=tuple(angles[~system.pinned].tolist()))
 
 
-def _beside_rings(system: System, rotor: LinearRotor, i: int, place: Array) -> tuple[Array, Array]:
-    """Maps of film i beside rings, L (n, c) and P (c + 1, n) of dynamic_films."""
-    moment, turn = turns_by_moment(system, i, place)
-    push = rotor.multiplicity[i] * rotor.journals[i].T
-    push[list(system.spins)] += moment
-    journal = np.vstack([rotor.journals[i], np.zeros(rotor.size)])
-    journal[-1, list(system.spins)] = turn
-    return push, journal
+def _beside_rings(system: System, rotor: LinearRotor, bodies: Array, places: Array) -> tuple[Array, Array]:
+    """Maps of the films beside rings, L (films, n, c + 1) and P (films, c + 1, n) of dynamic_films; bodies, places: see
+    ring_torques."""
+    spins, (films, c, n) = list(system.spins), rotor.journals.shape
+    pushes, journals = np.zeros((films, n, c + 1)), np.zeros((films, c + 1, n))
+    pushes[:, :, :c] = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
+    pushes[:, spins] += turned_by(system, bodies, places)
+    journals[:, :c], journals[:, c, spins] = rotor.journals, system.turning[:, SUM, 1:]
+    return pushes, journals
 
 
 def oscillator(system: System, omega: float, at_rest: FilmsAtRest, films: Sequence[DynamicFilm]) -> Oscillator:
     """The machine at omega rad/s without its films, which keep their oil. These turn its rings with all of their
     forces, and summits, which have torques of their own, are taken off here."""
-    off = [(-film.summits.place, -film.summits.rate) for film in films]
-    rotor = rotor_at_rest(system, omega, at_rest.position.ring_speeds, at_rest, off)
+    off, speeds = [(-film.summits.place, -film.summits.rate) for film in films], at_rest.position.ring_speeds
+    rotor = rotor_at_rest(system, omega, speeds, at_rest, off)
     here, journals = rotor.at(omega), rotor.journals
     pushes = here.multiplicity[:, None, None] * np.swapaxes(journals, 1, 2)
     if system.ring_count:
-        maps = (_beside_rings(system, rotor, i, place) for i, place in enumerate(at_rest.position.journals))
-        pushes, journals = map(np.array, zip(*maps, strict=True))
+        pushes, journals = _beside_rings(system, rotor, np.append(omega, speeds), at_rest.position.journals)
     damping = here.damping + omega * here.gyroscopic
     return Oscillator(here.mass, damping, here.stiffness, journals, pushes, here.turning)
 

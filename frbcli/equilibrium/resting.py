@@ -130,7 +130,7 @@ def _position(
             displacements = _with_rings(system, held, omega, displacements)
         displacements, speeds = _parted(system, omega, displacements)
     journals = system.rotor.journals @ displacements + system.films.standing
-    speeds = ring_speeds(system, held, omega, journals) if speeds is None else speeds
+    speeds = ring_speeds(system, held, omega, journals, films) if speeds is None else speeds
     if system.pinned.any():
         displacements = displacements.copy()
         displacements[list(system.spins)] = pin_angles(system, omega, journals, films)
@@ -178,21 +178,26 @@ def _balance(
     """What rotor and films put on the journals; near: films near those of the first position, see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
-    speeds = ring_speeds(system, held, omega, position)
-    following = _following_omegas(system, held, omega, position)
-    films = _forces(system, omega, speeds, position, before.films if before else near)
+    near = before.films if before else near
+    speeds = ring_speeds(system, held, omega, position, near)  # with the oil that was missing the time before
+    following = _following_omegas(system, held, omega, position, near)
+    films = _forces(system, omega, speeds, position, near)
+    changed = ring_speeds(system, held, omega, position, films) - speeds  # by the oil that is missing now
+    faster = system.omegas(0.0, changed).tolist()
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = slice(2 * i, 2 * i + 2)
-        surplus[own] += many * force.force
+        surplus[own] += many * (force.force + faster[i] * by_total(force, position[i]))
         slope[own, own] += many * force.by_displacement
         if system.ring_count:
             slope[own] += many * np.outer(by_total(force, position[i]), following[i])
     if system.rough_rings:
-        slope += _by_rubbed_rings(system, held, omega, position, following)
+        slope += _by_rubbed_rings(system, held, omega, position, near, following)
     return ForceBalance(surplus, slope, films)
 
 
-def _by_rubbed_rings(system: System, held: HeldRotor, omega: float, position: Array, following: Array) -> Array:
+def _by_rubbed_rings(
+    system: System, held: HeldRotor, omega: float, position: Array, near: tuple[FilmForce, ...], following: Array
+) -> Array:
     """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
     summits, less that as of a film. following: see _following_omegas."""
     found, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
@@ -204,13 +209,13 @@ def _by_rubbed_rings(system: System, held: HeldRotor, omega: float, position: Ar
             for i, (place, total, slip) in enumerate(zip(position, totals.tolist(), slips.tolist(), strict=True))
         ]
 
-    for i, own in enumerate(summits(ring_speeds(system, held, omega, position))):
+    for i, own in enumerate(summits(ring_speeds(system, held, omega, position, near))):
         found[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
     for column in range(position.size):
         step = np.zeros(position.size)
         step[column] = NUDGE * system.clearances[column // 2]
         ahead, behind = (
-            np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved))])
+            np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved, near))])
             for moved in (step.reshape(-1, 2), -step.reshape(-1, 2))
         )
         found[:, column] += (ahead - behind) / (2.0 * step[column])
@@ -280,14 +285,16 @@ def _on_shells(
     return found
 
 
-def _following_omegas(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
+def _following_omegas(
+    system: System, held: HeldRotor, omega: float, position: Array, near: tuple[FilmForce, ...]
+) -> Array:
     """(films, c films) derivatives of the films' speeds by the places of the journals, in rad/s over m."""
     found = np.zeros((len(position), position.size))
     for column in range(position.size if system.ring_count else 0):
         step = np.zeros(position.size)
         step[column] = NUDGE * system.clearances[column // 2]
         ahead, behind = (
-            system.omegas(omega, ring_speeds(system, held, omega, position + side * step.reshape(-1, 2)))
+            system.omegas(omega, ring_speeds(system, held, omega, position + side * step.reshape(-1, 2), near))
             for side in (1.0, -1.0)
         )
         found[:, column] = (ahead - behind) / (2.0 * step[column])

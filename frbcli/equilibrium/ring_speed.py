@@ -1,4 +1,4 @@
-"""How fast a floating ring turns, by the torques (4.17) on it: of films full of oil, with everything at rest.
+"""How fast a floating ring turns, by the torques (4.17) on it, with everything at rest.
 
 Between rough surfaces the friction of the summits pulls, too: a ring may stick to its rotor, or to its shell. How fast
 it turns then follows small motions, as it does of a ring with a pin: both are part of the linearised machine.
@@ -10,6 +10,7 @@ Couette's terms pull towards the rotor and towards the housing, Poiseuille's is 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,20 +43,26 @@ def concentric_ratios(case: Case) -> dict[str, float]:
     return ratios
 
 
-def drags(system: System, places: Array) -> Array:
-    """(films,) Couette's torque per slip in N m s, with the journals at places (films, coordinates)."""
+def drags(system: System, places: Array, films: Sequence[FilmForce] = ()) -> Array:
+    """(films,) Couette's torque per slip in N m s, with the journals at places (films, coordinates); films: as they are
+    solved, without them full of oil."""
     sheared = system.films.sheared * np.array(system.drags)
+    if films:
+        sheared = sheared * system.films.sheared_oil(places, films)
     if system.shell is not None:
         places = np.array([system.felt(i, place) for i, place in enumerate(places)])
     return np.asarray(sheared * 2.0 * np.pi / system.films.harmonic_gaps(places))
 
 
-def ring_speeds(system: System, held: HeldRotor, omega: float, position: Array) -> Array:
+def ring_speeds(
+    system: System, held: HeldRotor, omega: float, position: Array, films: Sequence[FilmForce] = ()
+) -> Array:
     """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in
-    m, where the rotor's load tells the forces of the films; 0 of rings with a pin, which takes what is left over."""
+    m, where the rotor's load tells the forces of the films; 0 of rings with a pin, which takes what is left over.
+    films: see drags."""
     if not system.ring_count:
         return np.zeros(0)
-    drag = drags(system, position)
+    drag = drags(system, position, films)
     carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
     moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
     if system.torque != "all":
@@ -113,14 +120,14 @@ def by_total(force: FilmForce, place: Array) -> Array:
     return np.asarray(0.5 * force.by_velocity @ across(place))
 
 
-def _drag_slopes(system: System, places: Array) -> Array:
-    """(films, c) derivatives of the drags by the coordinates of the journals."""
+def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> Array:
+    """(films, c) derivatives of the drags by the coordinates of the journals, the oil remaining as it is."""
     found = np.zeros_like(places)
     for k, unit in enumerate(np.eye(places.shape[1])):
         ahead = np.tile(unit, (len(places), 1))
         reach = np.abs(system.films.ends(ahead)).reshape(len(places), -1).max(axis=1)
         step = NUDGE / reach[:, None] * ahead
-        found[:, k] = (drags(system, places + step) - drags(system, places - step)) / (2.0 * step[:, k])
+        found[:, k] = (drags(system, places + step, films) - drags(system, places - step, films)) / (2.0 * step[:, k])
     return found
 
 
@@ -133,10 +140,10 @@ def ring_torques(
     rings = np.arange(system.ring_count)
     around, inside = (system.bodies[:, side, None] == rings for side in (1, 0))
     pulled, touched = around.astype(float) - inside, (around | inside).astype(float)
-    drag, slips = drags(system, places), system.turning[:, SLIP]
+    drag, slips = drags(system, places, films), system.turning[:, SLIP]
     torque = pulled.T @ (drag * (slips @ bodies))
     by_speeds = (pulled.T * drag) @ slips[:, 1:]
-    slopes, c = _drag_slopes(system, places) * (slips @ bodies)[:, None], places.shape[1]
+    slopes, c = _drag_slopes(system, places, films) * (slips @ bodies)[:, None], places.shape[1]
     by_places = np.asarray(np.repeat(pulled.T, c, axis=1) * slopes.ravel())
     for i, (place, film) in enumerate(zip(places, films, strict=True) if system.torque == "all" else ()):
         turned, pull = across(place), across(film.force)
@@ -160,21 +167,26 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
 
 
 def memoryless(film: FilmForce, place: Array | None = None) -> tuple[Array, Array]:
-    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) those (c, c + 1) by
-    the angle by which journal and shell turn together, too."""
+    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) those (c + 1, c + 1)
+    of a film beside rings, see LinearFilm.turning."""
     stiffness, damping = -film.by_displacement, -film.by_velocity
     if place is None:
         return stiffness, damping
-    turned = -by_total(film, place)
-    return np.column_stack([stiffness, np.zeros_like(turned)]), np.column_stack([damping, turned])
+    whole = np.zeros((2, len(place) + 1, len(place) + 1))
+    whole[:, :-1, :-1] = stiffness, damping
+    whole[1, :-1, -1] = -by_total(film, place)
+    return whole[0], whole[1]
 
 
-def turns_by_moment(system: System, i: int, place: Array) -> tuple[Array, Array]:
-    """How film i, with its journal at `place` (c,), turns the rings: (rings, c) the torques by its forces, half of
-    their moments about the middle of the shell; and (rings,) what the speeds of the rings are to omega_J + omega_S."""
-    touched = (system.bodies[i] == np.arange(system.ring_count)[:, None]).any(axis=1)
-    moment = 0.5 * np.outer(touched, across(place)) if system.torque == "all" else np.zeros((len(touched), len(place)))
-    return moment, system.turning[i, SUM, 1:]
+def turned_by(system: System, bodies: Array, places: Array) -> Array:
+    """(films, rings, c + 1) torques on the rings by the forces of the films, half of their moments about the middle of
+    the shell, and by the share of Couette's torque that missing oil leaves. bodies, places: see ring_torques."""
+    rings = np.arange(system.ring_count)
+    around, inside = (system.bodies[:, side, None] == rings for side in (1, 0))
+    touched, pulled = (around | inside).astype(float), around.astype(float) - inside
+    half = 0.5 * np.array([across(place) for place in places]) if system.torque == "all" else 0.0 * places
+    couette = drags(system, places) * (system.turning[:, SLIP] @ bodies)
+    return np.concatenate([touched[:, :, None] * half[:, None], (pulled * couette[:, None])[:, :, None]], axis=2)
 
 
 @dataclass(frozen=True)

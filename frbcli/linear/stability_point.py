@@ -17,6 +17,7 @@ from frbcli.equilibrium.linearised import oscillator, rotor_at_rest, state_matri
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
+from frbcli.film.cells.dynamic_stiffness import DynamicStiffness
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import fastest_first, ranks
 
@@ -187,7 +188,7 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
         pairs = zip(machine.films, machine.dynamic, strict=True)
         films = tuple(_at_frequency(film, dynamic, frequency) for film, dynamic in pairs)
         _check_known(films)
-        fine = [dynamic.fine.at(1j * frequency)[0][:, : len(dynamic.fine.place)] for dynamic in machine.dynamic]
+        fine = [_by_journal(dynamic.fine, frequency) for dynamic in machine.dynamic]
         rotor = machine_rotor(machine, frequency=frequency)
         others = ((np.array([z.real for z in fine]), np.array([z.imag for z in fine]) / frequency, 1.0),)
         return StabilityPoint(speed, films, values, ring_speeds_Hz=rings, warm=machine.warm, others=others, rotor=rotor)
@@ -242,14 +243,20 @@ def linear_machine(machine: MachineAtRest) -> Oscillator:
     return oscillator(machine.system, machine.omega, machine.at_rest, machine.dynamic)
 
 
+def _by_journal(film: DynamicStiffness, frequency: float) -> Complex:
+    """(c, c) Z(i frequency) of forces and moments by the coordinates of the journal."""
+    c = len(film.place) // 2 * 2
+    return film.at(1j * frequency)[0][:c, :c]
+
+
 def _at_frequency(film: RestingFilm, dynamic: DynamicFilm, frequency: float) -> RestingFilm:
     """The film with K = Re Z(i frequency) and D = Im Z(i frequency) / frequency in rad/s, above 0."""
-    own, fine = (each.at(1j * frequency)[0] for each in (dynamic.own, dynamic.fine))
+    own, fine = (_by_journal(each, frequency) for each in (dynamic.own, dynamic.fine))
     error, size = film.error, len(own)
     if dynamic.exact is not None:
         blocks = [(slice(first, first + 2),) * 2 for first in range(0, size, 2)]  # forces, and moments by tilts
         pairs = [(part(own[block]), part(fine[block])) for block in blocks for part in (np.real, np.imag)]
         error = max(float(np.abs(mine - other).max() / np.abs(mine).max()) for mine, other in pairs)
-    stiffness, damping = own.real[:, :size], own.imag[:, :size] / frequency
+    stiffness, damping = own.real, own.imag / frequency
     tilting = film.tilting and replace(film.tilting, stiffness=stiffness, damping=damping)
     return replace(film, stiffness=stiffness[:2, :2], damping=damping[:2, :2], error=error, tilting=tilting)

@@ -15,12 +15,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.film.cells.linearised import LinearFilm
-from frbcli.film.grid import Array
-
-Complex = NDArray[np.complex128]
 
 ROUND_OFF = 1e-11  # of the largest: of directions in which vectors do not reach
 

@@ -46,6 +46,7 @@ from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UN
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.linear import linear_states
+from frbcli.film.cells.loads import CavitationFactor, shear_weights
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
@@ -64,8 +65,9 @@ STEP = 1e-5  # of the filling: balances are nearly linear in it
 class LinearFilm:
     """A film of n states at rest, see above, by c coordinates of its journal. SI units but for the cells' own: flow and
     storage (n, n) sparse; by_place (n, c) per m and rad; by_rate (n, c) by their rates; by_total (n,) by omega_J +
-    omega_S; push (2 or 4, n) N and N m on the journal; field: of the settled film; ordered: whether the states stand in
-    the order of their elimination, each with its own equation."""
+    omega_S; push (2 or 4, n) N and N m on the journal; sheared (n,): share of Couette's torque that missing oil leaves;
+    field: of the settled film; ordered: whether the states stand in the order of their elimination, each with its own
+    equation."""
 
     flow: csc_matrix
     storage: csc_matrix
@@ -73,13 +75,16 @@ class LinearFilm:
     by_rate: Array
     by_total: Array
     push: Array
+    sheared: Array
     field: Array
     ordered: bool = False
 
     def turning(self) -> LinearFilm:
-        """The film with the angle by which journal and shell turn together as one more coordinate."""
+        """The film beside rings: the angle by which journal and shell turn together is one more coordinate, and the
+        share of Couette's torque that missing oil leaves one more component of the force."""
         by_place = np.column_stack([self.by_place, np.zeros_like(self.by_total)])
-        return replace(self, by_place=by_place, by_rate=np.column_stack([self.by_rate, self.by_total]))
+        by_rate, push = np.column_stack([self.by_rate, self.by_total]), np.vstack([self.push, self.sheared])
+        return replace(self, by_place=by_place, by_rate=by_rate, push=push)
 
     def in_plane(self) -> LinearFilm:
         """The film of a journal that keeps its direction."""
@@ -93,19 +98,23 @@ def lying(film: VolumeFilm, share: float) -> VolumeFilm:
     return VolumeFilm(film.section, grid, film.law, film.scales.reference, film.edged)
 
 
-def linear_film(film: VolumeFilm, place: Array, total: float, start: Array | None = None) -> LinearFilm:
+def linear_film(
+    film: VolumeFilm, place: Array, total: float, start: Array | None = None, factor: CavitationFactor = "none"
+) -> LinearFilm:
     """The film with its journal at rest at `place` (2,) in m. film: of a law whose forces are the pressures of its
-    cells; total: omega_J + omega_S in rad/s; start: field to begin from. Raises NotConverged."""
+    cells; total: omega_J + omega_S in rad/s; start: field to begin from; factor: how missing oil lowers the torque.
+    Raises NotConverged."""
     clearance = film.section.clearance
     x, y = (place / clearance).tolist()
     at = film_at(film, math.hypot(x, y), total)
     motion, solver = Motion((x, y), (0.0, 0.0), total), FilmSolver(at)
     solution = solver.steady(motion, start, upwind=True)
+    weights = shear_weights(at, motion, factor)
     if at.law.carries_gas:
-        found = linear_states(at, motion, solution)
+        found = linear_states(at, motion, solution, weights)
         moved = found.by_place / clearance, found.by_rate / clearance, found.by_total
-        return LinearFilm(found.flow, found.storage, *moved, found.push, solution.field, ordered=True)
-    settled = _SettledCells(solver, motion, solution)
+        return LinearFilm(found.flow, found.storage, *moved, found.push, found.sheared, solution.field, ordered=True)
+    settled = _SettledCells(solver, motion, solution, weights)
     return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
 
 
@@ -134,8 +143,9 @@ def by_neighbours(stencil: Array) -> csc_matrix:
 class _SettledCells:
     """A settled film on cells, of which the derivatives are taken."""
 
-    def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> None:
-        self._solver, self._motion, self._solution = solver, motion, solution
+    def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution, weights: Array) -> None:
+        """weights: see shear_weights."""
+        self._solver, self._motion, self._solution, self._weights = solver, motion, solution, weights
         data = solver.data
         self._parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
         self._law = np.append(given_parameters(solver.film.law), np.nan)
@@ -158,6 +168,7 @@ class _SettledCells:
             by_rate=by_rate / clearance,
             by_total=by_total(self._solver.film, self._motion, self._solution).ravel(),
             push=self._pushed(self._states[PRESSURE_SLOPE]).reshape(2, -1),
+            sheared=(self._weights * self._states[FRACTION_SLOPE]).ravel(),
             field=self._solution.field,
         )
 
@@ -177,6 +188,7 @@ class _SettledCells:
             by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
             by_total=np.append(film.by_total, -(open_ @ film.by_total)),
             push=np.column_stack([film.push, push]),
+            sheared=np.append(film.sheared, 0.0),
             field=film.field,
         )
 

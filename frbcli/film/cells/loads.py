@@ -159,6 +159,19 @@ def torque(
     return Torque(whole * couette, whole * poiseuille)
 
 
+def shear_weights(film: VolumeFilm, motion: Motion, factor: CavitationFactor) -> Array:
+    """(m, k) of the oil fractions of the cells in the share of Couette's torque that missing oil leaves, see torque;
+    their sum is 1, or 0 where it leaves all."""
+    grid, section = film.grid, film.section
+    area = (1.0 - grid.cover) * grid.size
+    if factor == "local":
+        gap = gap_on(section, motion, grid.centre, grid.height)
+        area = area / gap
+        if section.flow_roughness > 0.0:
+            area *= shear_stress(gap * section.clearance / section.flow_roughness)
+    return np.asarray(area / area.sum() if factor != "none" else 0.0 * area)
+
+
 def oil_fraction(film: VolumeFilm, solution: VolumeSolution) -> float:
     """The factor (4.46): mean of theta over the film without grooves and holes."""
     area = (1.0 - film.grid.cover) * film.grid.size

@@ -77,7 +77,7 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         )  # fmt: skip
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field)
+    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field, solution.state.fraction)
 
 
 def _force_with_edges(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
@@ -121,4 +121,4 @@ def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution)
     )
     at_flow = [each[:2] - by_filling[:2] * each[2] / by_filling[2] for each in by_motion]
     here, slopes = np.array(force(film, film.mean_pressure(solution.state))), np.column_stack(at_flow) / c
-    return FilmForce(here, slopes[:, :2], slopes[:, 2:], solution.w)
+    return FilmForce(here, slopes[:, :2], slopes[:, 2:], solution.w, solution.state.fraction)

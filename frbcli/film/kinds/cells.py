@@ -19,7 +19,7 @@ from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, Volum
 from frbcli.film.cells.film import VolumeFilm, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import linear_film, lying
-from frbcli.film.cells.loads import CavitationFactor, force, loads
+from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
@@ -116,6 +116,18 @@ class CellFilms(Films):
                 sheared[i] *= [stress_factor(float(each), float(film.roughness)) for each in h[i]]
         return np.asarray(areas.sum(axis=1) / sheared.sum(axis=1))
 
+    def sheared_oil(self, places: Array, films: Sequence[FilmForce]) -> Array:
+        shares = np.ones(self.count)
+        if self.factor == "none":
+            return shares
+        for i, (own, place, film) in enumerate(
+            zip(self.own, places / np.array(self.clearances)[:, None], films, strict=True)
+        ):
+            if film.fraction is not None and film.fraction.shape == own.grid.shape:  # not of a mesh to start from
+                motion = Motion((float(place[0]), float(place[1])), (0.0, 0.0), 0.0)
+                shares[i] = float((shear_weights(own, motion, self.factor) * film.fraction).sum())
+        return shares
+
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         start = near.field if near is not None and self.sought_near[i] else None
         return steady_force(self.own[i], place, rate, total, start)
@@ -123,7 +135,7 @@ class CellFilms(Films):
     def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
         film = self.own[i]
         mesh = VolumeFilm(film.section, run_grid(film.section, cells), film.law, film.scales.reference)
-        return lambda share, place, total, start: linear_film(lying(mesh, share), place, total, start)
+        return lambda share, place, total, start: linear_film(lying(mesh, share), place, total, start, self.factor)
 
     @property
     def compared_states(self) -> int:

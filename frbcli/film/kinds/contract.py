@@ -98,6 +98,11 @@ class Films(ABC):
         eccentricity = np.linalg.norm(places, axis=1) / np.array(self.clearances)
         return np.asarray(np.sqrt(np.maximum(1.0 - eccentricity**2, 1e-6)))
 
+    def sheared_oil(self, places: Array, films: Sequence[FilmForce]) -> Array:
+        """(films,) share of Couette's torque that missing oil leaves, of films as they are solved, journals at places
+        (films, coordinates)."""
+        return np.ones(self.count)
+
     def compared(self) -> Compared | None:
         """The force beside that of a better film, None where there is no better one to be had."""
         return None

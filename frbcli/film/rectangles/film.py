@@ -73,20 +73,22 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 @dataclass(frozen=True)
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
-    field: of a film on cells, from which a film near by is sought, see VolumeSolution."""
+    field: of a film on cells, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
+    fractions, None of others."""
 
     force: Array
     by_displacement: Array
     by_velocity: Array
     field: Array | None = None
+    fraction: Array | None = None
 
     def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
         """This film with another force beside it, or without it."""
-        return FilmForce(
-            self.force + sign * other.force,
-            self.by_displacement + sign * other.by_displacement,
-            self.by_velocity + sign * other.by_velocity,
-            self.field,
+        return replace(
+            self,
+            force=self.force + sign * other.force,
+            by_displacement=self.by_displacement + sign * other.by_displacement,
+            by_velocity=self.by_velocity + sign * other.by_velocity,
         )
 
 

@@ -56,4 +56,5 @@ class ElasticShell:
             found.by_displacement @ felt + found.by_velocity @ rated - spring,
             found.by_velocity @ felt,
             found.field,
+            found.fraction,
         )

@@ -80,13 +80,13 @@ def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_ta
     film = VolumeFilm(section, grid, Bubbly(bunsen, free, saturation, time, time), 500.0)
     still = Motion((0.0, 0.0), (0.0, 0.0), 0.0)
     settled = next(march(film, lambda _: still, np.array([0.0, 1e-3]))).solution
-    found, s = linear_states(film, still, settled), 1j * rate
+    found, s = linear_states(film, still, settled, np.zeros(grid.shape)), 1j * rate
     compliance = (free + bunsen / (1.0 + s * time)) / (1.0 + free) ** 2
     stiffness = saturation * (2.0 - 2.0 * math.cos(angle)) / angle**2
     mode = s / (1.0 + free) / (stiffness + s * compliance)  # p / p_s per displacement, of H = 1 - d cos(phi)
     unit = saturation * np.cos(grid.centre)[:, None]
     expected = -mode * pushed(film, unit)[1]
-    whole = LinearFilm(*found[:4], found.by_total, found.push, settled.w)
+    whole = LinearFilm(*found, settled.w)
     assert stiffness_at(whole, s)[1, 1] == pytest.approx(expected, rel=1e-6)
 
 

@@ -42,7 +42,8 @@ STEP = 1e-6  # of the differences: balances are nearly linear in it
 class LinearStates(NamedTuple):
     """Derivatives of a film of n cells by its states, w and c of each cell: of its balances, flow (2 n, 2 n) and, by
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
-    (2 n, 2); by omega_J + omega_S, by_total (2 n,); of the force in N on the journal, push (2, 2 n)."""
+    (2 n, 2); by omega_J + omega_S, by_total (2 n,); of the force in N on the journal, push (2, 2 n), and of the
+    share of Couette's torque, sheared (2 n,)."""
 
     flow: csc_matrix
     storage: csc_matrix
@@ -50,10 +51,11 @@ class LinearStates(NamedTuple):
     by_rate: Array
     by_total: Array
     push: Array
+    sheared: Array
 
 
-def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> LinearStates:
-    """The film linearised about a settled solution, its journal being at rest."""
+def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution, weights: Array) -> LinearStates:
+    """The film linearised about a settled solution, its journal being at rest. weights: see shear_weights."""
     from scipy.sparse import coo_matrix  # takes long to load
 
     assert solution.gas is not None
@@ -89,6 +91,8 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
     by_total[at] = np.concatenate([each.ravel() for each in turned]) / pace
     slopes = np.concatenate([state.pressure_slope.ravel(), pressure.ravel()])
     push[:, at] = np.tile(pushing(film).reshape(2, -1), 2) * slopes
+    sheared = np.zeros(size)
+    sheared[at] = np.concatenate([(weights * slope).ravel() for slope in (state.fraction_slope, fraction)])
 
     def matrix(parts: Sequence[Entries]) -> csc_matrix:
         values, rows, columns = (np.concatenate(each) for each in zip(*parts, strict=True))
@@ -96,7 +100,7 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution) ->
         found.eliminate_zeros()  # nothing comes back against the flow
         return found
 
-    return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, by_total, push)
+    return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, by_total, push, sheared)
 
 
 def _numbers(shape: tuple[int, int]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:

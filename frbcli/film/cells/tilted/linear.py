@@ -29,6 +29,7 @@ def linear_tilted(
         by_rate=np.vstack([land.by_rate for land in lands]),
         by_total=np.concatenate([land.by_total for land in lands]),
         push=np.hstack([land.push for land in lands]),
+        sheared=np.concatenate([land.sheared for land in lands]),
         field=np.array([land.field for land in lands]),
     )
 
@@ -48,5 +49,6 @@ def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | No
         by_rate=by_v.reshape(-1, COORDINATES) @ to_u,
         by_total=by_total(film, motion, solution).ravel(),
         push=land.map.T @ (unit_loads(film) * solution.state.pressure_slope.ravel()),
+        sheared=np.zeros(stored.size),  # films that follow a tilt have the torque of a full one
         field=solution.field,
     )
