@@ -27,6 +27,7 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.entrypoints import init_all
 from numba.core.sigutils import normalize_signature
+from numba.extending import overload
 from numpy.typing import NDArray
 
 from frbcli.caches import KERNELS, take_shipped_kernels
@@ -124,6 +125,24 @@ def compiled(
     return decorated
 
 
+def compiled_for(kind: type, otherwise: object = None) -> Callable[[Kernel], Kernel]:
+    """Decorates a kernel of a machine that has something, its first argument, of the type `kind`: of any other one
+    the functions that call it have `otherwise` in its place, and compute nothing."""
+
+    def decorated(function: Kernel) -> Kernel:
+        kernel = compiled()(function)
+        has, has_not = _call_of_part(function, kernel), _told(function, "part", otherwise)
+
+        def asked(*given: Any) -> Any:
+            return kernel(*given) if isinstance(given[0], kind) else otherwise
+
+        chosen = overload(asked, jit_options=AS_KERNELS, inline="always", strict=False)
+        chosen(lambda *given: has if getattr(given[0], "instance_class", None) is kind else has_not)
+        return cast("Kernel", update_wrapper(asked, function))
+
+    return decorated
+
+
 def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
     """A function as a part of the kernels that call it."""
     options = {**options, "no_cpython_wrapper": True, "pipeline_class": _PartCompiler}
@@ -135,8 +154,13 @@ def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
 
 def _call_of_part(function: Callable[..., Any], part: Any) -> Callable[..., Any]:
     """A function that calls the part of a kernel: what Python calls."""
+    return _told(function, "part({names})", part)
+
+
+def _told(function: Callable[..., Any], told: str, part: Any) -> Callable[..., Any]:
+    """A function of the arguments of another one, {names}, that does what is told of them and of `part`."""
     names = ", ".join(signature(function).parameters)
-    call: Callable[..., Any] = eval(f"lambda {names}: part({names})", {"part": part})
+    call: Callable[..., Any] = eval(f"lambda {names}: {told.format(names=names)}", {"part": part})
     return update_wrapper(call, function)
 
 

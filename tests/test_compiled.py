@@ -221,7 +221,7 @@ def kernels(folder: Path) -> Iterator[tuple[str, str, str, set[str]]]:
             calls = [call.func for call in ast.walk(node) if isinstance(call, ast.Call)]
             called = {function.id for function in calls if isinstance(function, ast.Name)}
             for decorator in map(ast.unparse, node.decorator_list):
-                if decorator.startswith("compiled("):
+                if decorator.startswith(("compiled(", "compiled_for(")):
                     yield node.name, decorator, ast.unparse(node.returns) if node.returns else "", called
 
 

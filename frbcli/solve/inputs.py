@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, Array, Indices, compiled
+from frbcli.compiled import AS_KERNELS, Array, Indices, compiled, compiled_for
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.solve.films.kinds import by_kind
@@ -48,12 +48,6 @@ class Inputs(NamedTuple):
     ends: Any
 
 
-def set_inputs(inputs: Any, films: Any, heat: Any, t: float, step: float) -> None:
-    """Films and heat <- the inputs of a step from the time t in s on."""
-    if isinstance(inputs, Inputs):
-        _set(inputs, films, heat, t, step)
-
-
 def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
     """Films <- the pressures of the step at the viscosities of a stage."""
     raise NotImplementedError
@@ -62,13 +56,6 @@ def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
 def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
     """Films on cells <- a share of the gauge pressures of film f; tabulated films are asked for scaled velocities."""
     raise NotImplementedError
-
-
-@overload(set_inputs, jit_options=AS_KERNELS, inline="always")
-def _set_inputs(inputs, films, heat, t, step):  # type: ignore[no-untyped-def]
-    if getattr(inputs, "instance_class", None) is not Inputs:
-        return lambda inputs, films, heat, t, step: None
-    return lambda inputs, films, heat, t, step: _set(inputs, films, heat, t, step)
 
 
 @overload(supply_warm, jit_options=AS_KERNELS, inline="always")
@@ -107,8 +94,9 @@ def _give_temperatures(inputs, heat, t):  # type: ignore[no-untyped-def]
     return give
 
 
-@compiled()
-def _set(inputs: Inputs, films: Any, heat: Any, t: float, step: float) -> None:
+@compiled_for(Inputs)
+def set_inputs(inputs: Inputs, films: Any, heat: Any, t: float, step: float) -> None:
+    """Films and heat <- the inputs of a step from the time t in s on."""
     give_temperatures(inputs, heat, t + step)
     for i in range(inputs.pressures.shape[0]):
         f = inputs.pressures[i, 1]

@@ -10,13 +10,12 @@ Which of them a function means is decided by the type of the cones when the loop
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba.extending import overload
 from numpy.typing import NDArray
 
-from frbcli.compiled import AS_KERNELS, Array, compiled
+from frbcli.compiled import Array, compiled_for
 from frbcli.solve.stage.equations import FREE, LATE, U_0, V
 from frbcli.solve.stage.loads import solve_columns
 from frbcli.solve.state import RotorData
@@ -44,53 +43,23 @@ def make_cones(cones: Sequence[tuple[int, Array]], first: int) -> Cones | tuple[
     return Cones(rings, columns, np.zeros((count, n)), np.zeros(count), np.zeros((2, n, 2 * n + count)))
 
 
-def prepare_cones(cones: Any, rotor: RotorData, g: float, speed: float) -> None:
+@compiled_for(Cones)
+def prepare_cones(cones: Cones, rotor: RotorData, g: float, speed: float) -> None:
     """The inverse of `prepare` for this g and speed with the cones."""
-    if isinstance(cones, Cones):
-        solve_columns(cones.columns, cones.response, cones.elimination, rotor, g, speed)
+    solve_columns(cones.columns, cones.response, cones.elimination, rotor, g, speed)
 
 
+@compiled_for(Cones, 0.0)
 def turn_cones(
-    cones: Any, bodies: Array, s: int, known: int, g: float, selection: Array, at: Array, stage_a: Array, journal: Array
-) -> float:
+    cones: Cones, bodies: Array, s: int, known: int, g: float, selection: Array, at: Array, stage_a: Array,
+    journal: Array,
+) -> float:  # fmt: skip
     """Renew the pulls in stage s: in FREE and LATE of `at` and U_0 of `journal`. Returns the largest change of U_0 in
     m/s.
 
     bodies: speeds of the rotor and the rings; known: the stage whose accelerations the velocities follow from, at first
     the one before.
     """
-    if isinstance(cones, Cones):
-        return float(_turn(cones, bodies, s, known, g, selection, at, stage_a, journal))
-    return 0.0
-
-
-def _have_cones(cones: Any) -> bool:
-    return getattr(cones, "instance_class", None) is Cones
-
-
-@overload(prepare_cones, jit_options=AS_KERNELS, inline="always")
-def _prepare_cones(cones, rotor, g, speed):  # type: ignore[no-untyped-def]
-    if not _have_cones(cones):
-        return lambda cones, rotor, g, speed: None
-    return lambda cones, rotor, g, speed: solve_columns(
-        cones.columns, cones.response, cones.elimination, rotor, g, speed
-    )
-
-
-@overload(turn_cones, jit_options=AS_KERNELS, inline="always")
-def _turn_cones(cones, bodies, s, known, g, selection, at, stage_a, journal):  # type: ignore[no-untyped-def]
-    if not _have_cones(cones):
-        return lambda cones, bodies, s, known, g, selection, at, stage_a, journal: 0.0
-    return lambda cones, bodies, s, known, g, selection, at, stage_a, journal: _turn(
-        cones, bodies, s, known, g, selection, at, stage_a, journal
-    )
-
-
-@compiled()
-def _turn(
-    cones: Cones, bodies: Array, s: int, known: int, g: float, selection: Array, at: Array, stage_a: Array,
-    journal: Array,
-) -> float:  # fmt: skip
     change = 0.0
     for c in range(cones.rings.shape[0]):
         x, y, speed = 2 * c, 2 * c + 1, bodies[1 + cones.rings[c]]

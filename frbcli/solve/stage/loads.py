@@ -10,13 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numba.extending import overload
 from numpy.typing import NDArray
 
-from frbcli.compiled import AS_KERNELS, Array, compiled
+from frbcli.compiled import Array, compiled, compiled_for
 from frbcli.dense import solve_dense
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
 from frbcli.solve.stage.equations import FREE, U_0
@@ -63,36 +62,10 @@ def varying_loads(loads: Sequence[Load]) -> VaryingLoads | tuple[()]:
     )
 
 
-def prepare_loads(loads: Any, rotor: RotorData, g: float, speed: float) -> None:
+@compiled_for(VaryingLoads)
+def prepare_loads(loads: VaryingLoads, rotor: RotorData, g: float, speed: float) -> None:
     """The inverse of `prepare` for this g and speed with the loads."""
-    if isinstance(loads, VaryingLoads):
-        solve_columns(loads.columns, loads.response, loads.elimination, rotor, g, speed)
-
-
-def add_loads(loads: Any, t: float, angle: float, g: float, selection: Array, at: Array, journal: Array) -> None:
-    """Add the loads at the time t in s and the angle of the rotor then to FREE of `at` and U_0 of `journal`."""
-    if isinstance(loads, VaryingLoads):
-        _add(loads, t, angle, g, selection, at, journal)
-
-
-def _have_loads(loads: Any) -> bool:
-    return getattr(loads, "instance_class", None) is VaryingLoads
-
-
-@overload(prepare_loads, jit_options=AS_KERNELS, inline="always")
-def _prepare_loads(loads, rotor, g, speed):  # type: ignore[no-untyped-def]
-    if not _have_loads(loads):
-        return lambda loads, rotor, g, speed: None
-    return lambda loads, rotor, g, speed: solve_columns(
-        loads.columns, loads.response, loads.elimination, rotor, g, speed
-    )
-
-
-@overload(add_loads, jit_options=AS_KERNELS, inline="always")
-def _add_loads(loads, t, angle, g, selection, at, journal):  # type: ignore[no-untyped-def]
-    if not _have_loads(loads):
-        return lambda loads, t, angle, g, selection, at, journal: None
-    return lambda loads, t, angle, g, selection, at, journal: _add(loads, t, angle, g, selection, at, journal)
+    solve_columns(loads.columns, loads.response, loads.elimination, rotor, g, speed)
 
 
 @compiled()
@@ -135,10 +108,11 @@ def _cubic(coefficients: Array, s: float) -> float:
     return float(coefficients[0] + s * (coefficients[1] + s * (coefficients[2] + s * coefficients[3])))
 
 
-@compiled()
-def _add(
+@compiled_for(VaryingLoads)
+def add_loads(
     loads: VaryingLoads, t: float, angle: float, g: float, selection: Array, at: Array, journal: Array
 ) -> None:
+    """Add the loads at the time t in s and the angle of the rotor then to FREE of `at` and U_0 of `journal`."""
     harmonics = loads.turns.shape[0]
     for k in range(harmonics + loads.first.shape[0] - 1):
         if k < harmonics:

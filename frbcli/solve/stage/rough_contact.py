@@ -6,11 +6,9 @@ it is empty, and nothing is computed.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
-from numba.extending import overload
-
-from frbcli.compiled import AS_KERNELS, Array, compiled
+from frbcli.compiled import Array, compiled_for
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, X_0, U
 from frbcli.solve.state import SLIP, SUM
@@ -25,33 +23,9 @@ class RoughContact(NamedTuple):
     speeds: Array
 
 
-def _rough(rough: Any) -> bool:
-    """Whether a type that the compiler knows is that of rough surfaces."""
-    return getattr(rough, "instance_class", None) is RoughContact
-
-
-def set_sliding(rough: Any, turning: Array, bodies: Array) -> None:
+@compiled_for(RoughContact)
+def set_sliding(rough: RoughContact, turning: Array, bodies: Array) -> None:
     """Speeds of the surfaces of all films by those of the rotor and the rings (1 + rings,)."""
-    raise NotImplementedError
-
-
-def press(rough: Any, f: int, clearance: float, g: float, journal: Array) -> None:
-    """Add the summits of film f to FORCE, BY_X, BY_Y of its journal."""
-    raise NotImplementedError
-
-
-def rubbing(rough: Any, f: int, clearance: float, g: float, journal: Array) -> Rub:
-    """What the summits of film f do at the velocities U."""
-    raise NotImplementedError
-
-
-def sharpness(rough: Any, clearance: float) -> float:
-    """How sharply the force of summits bends, over the clearance: 1 / roughness; 0 between smooth surfaces."""
-    raise NotImplementedError
-
-
-@compiled()
-def _set_sliding(rough: RoughContact, turning: Array, bodies: Array) -> None:
     for f in range(turning.shape[0]):
         total, slip = 0.0, 0.0
         for b in range(bodies.shape[0]):
@@ -60,8 +34,9 @@ def _set_sliding(rough: RoughContact, turning: Array, bodies: Array) -> None:
         rough.speeds[f, SLIDES], rough.speeds[f, SHELL] = slip, 0.5 * (total - slip)
 
 
-@compiled()
-def _rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> Rub:
+@compiled_for(RoughContact, APART)
+def rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> Rub:
+    """What the summits of film f do at the velocities U."""
     x, y = 2 * f, 2 * f + 1
     return rub(
         rough.surfaces, f, clearance, journal[X_0, x] + g * journal[U, x], journal[X_0, y] + g * journal[U, y],
@@ -69,9 +44,10 @@ def _rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: A
     )  # fmt: skip
 
 
-@compiled()
-def _press(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> None:
-    x, y, found = 2 * f, 2 * f + 1, _rubbing(rough, f, clearance, g, journal)
+@compiled_for(RoughContact)
+def press(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> None:
+    """Add the summits of film f to FORCE, BY_X, BY_Y of its journal."""
+    x, y, found = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
     journal[FORCE, x] += found.f_x
     journal[FORCE, y] += found.f_y
     journal[BY_X, x] += found.d_xx + g * found.k_xx
@@ -80,29 +56,7 @@ def _press(rough: RoughContact, f: int, clearance: float, g: float, journal: Arr
     journal[BY_Y, y] += found.d_yy + g * found.k_yy
 
 
-@overload(set_sliding, jit_options=AS_KERNELS, inline="always")
-def _set(rough, turning, bodies):  # type: ignore[no-untyped-def]
-    if _rough(rough):
-        return lambda rough, turning, bodies: _set_sliding(rough, turning, bodies)
-    return lambda rough, turning, bodies: None
-
-
-@overload(press, jit_options=AS_KERNELS, inline="always")
-def _presses(rough, f, clearance, g, journal):  # type: ignore[no-untyped-def]
-    if _rough(rough):
-        return lambda rough, f, clearance, g, journal: _press(rough, f, clearance, g, journal)
-    return lambda rough, f, clearance, g, journal: None
-
-
-@overload(rubbing, jit_options=AS_KERNELS, inline="always")
-def _rubs(rough, f, clearance, g, journal):  # type: ignore[no-untyped-def]
-    if _rough(rough):
-        return lambda rough, f, clearance, g, journal: _rubbing(rough, f, clearance, g, journal)
-    return lambda rough, f, clearance, g, journal: APART
-
-
-@overload(sharpness, jit_options=AS_KERNELS, inline="always")
-def _bends(rough, clearance):  # type: ignore[no-untyped-def]
-    if _rough(rough):
-        return lambda rough, clearance: clearance / rough.surfaces.roughness
-    return lambda rough, clearance: 0.0
+@compiled_for(RoughContact, 0.0)
+def sharpness(rough: RoughContact, clearance: float) -> float:
+    """How sharply the force of summits bends, over the clearance: 1 / roughness; 0 between smooth surfaces."""
+    return clearance / rough.surfaces.roughness
