@@ -14,7 +14,7 @@ import numpy as np
 
 from frbcli.compiled import compiled
 from frbcli.solve.films.forces import left_over, solved
-from frbcli.solve.films.steps import accept_films, begin_stage, make_work, most_iterations, write_oil
+from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, warm_stage, write_heat
 from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
@@ -221,7 +221,8 @@ def _advance(
                 break
         error = UNSOLVED
         if solved:
-            error = local_error(tableau.defect, rotor.observed, stage_v, stage_a, step, g) / control.tolerance
+            error = local_error(tableau.defect, rotor.observed, stage_v, stage_a, step, g)
+            error = (error + film_error(films, work, flows, weights, tableau.defect, step)) / control.tolerance
         if not error <= 1.0:  # not a number counts as too large
             if reject(numbers, step, error, order):
                 continue

@@ -19,6 +19,19 @@ from frbcli.solve.stage.equations import lagrange
 PLAIN = 1.0  # by how much less a filling is off after it has risen by 1, at the least: the film takes the more
 
 
+def filling_error(films, work, flows, weights, defect, step):  # type: ignore[no-untyped-def]
+    """film_error of steps.py; a line that stays full has none."""
+    largest, last = 0.0, weights.shape[0] - 1
+    for f in range(films.films.shape[0]):
+        if films.films[f].given > 0.0:
+            filling, off = flows[PASSED, f, FILLING], 0.0
+            for p in range(last + 1):
+                filling += step * weights[last, p] * work.stage_flows[p, f, FILLING]
+                off += step * defect[p] * work.stage_flows[p, f, FILLING]
+            largest = max(largest, abs(within(films.films[f], filling) - within(films.films[f], filling - off)))
+    return largest
+
+
 @compiled(inline=True)
 def within(film: np.record, filling: float) -> float:
     """A filling within its bounds: what a full line cannot take up stays in the supply."""

@@ -19,6 +19,7 @@ from frbcli.solve.films.elements import (
     make_element_work,
     write_element_oil,
 )
+from frbcli.solve.films.fillings import filling_error
 from frbcli.solve.films.grid import GRID
 from frbcli.solve.films.kinds import CELLS, ELEMENTS, MODELS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
@@ -95,6 +96,12 @@ def begin_stage(
     raise NotImplementedError
 
 
+def film_error(films: Any, work: Work, flows: Array, weights: Array, defect: Array, step: float) -> float:
+    """Embedded error of what the films have of their own: the filling of openings whose supply gives a flow at the
+    most, over that of a full line. weights, defect: of the method."""
+    raise NotImplementedError
+
+
 def accept_films(films: Any, work: Work, wet: Array, flows: Array, weights: Array, step: float) -> None:
     """The step is done: the films' state moves on. flows: (2, F, FLOWS) oil that has passed so far, and passes now."""
     raise NotImplementedError
@@ -119,6 +126,12 @@ by_kind(
     cells=begin_cells,
     tilted=begin_cells,
     elements=begin_elements,
+)
+by_kind(
+    film_error,
+    others=lambda films, work, flows, weights, defect, step: 0.0,
+    cells=filling_error,
+    tilted=filling_error,
 )
 by_kind(
     accept_films,
