@@ -46,6 +46,9 @@ FADING = 0.01  # damping ratio of the vibration that a rotor begins with as it f
 # A whirl begins at this multiple of the frequency of the rotor on its shaft and on films of the stiffness load over
 # clearance: 1.8 to 3.0 as measured.
 WHIRL = 2.7
+# Revolutions above that speed until a whirl has come near the shell, 30 to 80 as measured, and until it presses the
+# journal into it: runs of 150 from 282 Hz on did not get there.
+GROWN, PRESSED = 40.0, 280.0
 NEAR = 0.9  # half the rotor speed over the natural frequency of the shaft, from where on it counts as near
 TABLE_POINTS = 400  # of the speed profile
 SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
@@ -71,8 +74,10 @@ def expected_course(case: Case, plan: Plan, profile: SpeedProfile) -> RunCourse:
     times = np.linspace(profile.times[0], profile.end, TABLE_POINTS)
     omega = np.abs(profile.speed(times))
     turns = omega / (2.0 * math.pi)
-    work, whirls = plan.form.work, omega >= whirl_speed(case)
-    presses = whirls & (omega >= _pressing_speed(case))
+    work, slowest = plan.form.work, whirl_speed(case)
+    since = _summed(np.where(omega >= slowest, turns, 0.0), times)  # revolutions; what whirls from the start has grown
+    whirls = (omega >= slowest) & ((since >= GROWN) | (slowest == 0.0))
+    presses = whirls & (omega >= _pressing_speed(case)) & ((since >= PRESSED) | (slowest == 0.0))
     rate = np.maximum(1.0 / longest_step(case, plan), work.crowded * steps_of_a_turn(case, plan) * turns)
     pieces = np.clip(np.searchsorted(profile.times, times, side="right") - 1, 0, len(profile.times) - 2)
     rate = np.maximum(rate, 1.0 / np.diff(profile.times)[pieces])  # a step ends at each kink of the profile
