@@ -41,6 +41,7 @@ PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
+CENTRE = 1e-9  # m: off the centre by less, a journal takes no notice of both surfaces turning
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 
 
@@ -215,7 +216,8 @@ def _trusted(film: DynamicFilm, s: complex) -> bool:
     for first in range(0, plain, 2):
         scale[first : first + 2] = math.sqrt(np.abs(exact[first : first + 2, first : first + 2]).max())
     own, exact = own / scale[:, None], exact / scale[:, None]
-    scale[plain:] = np.abs(exact[:plain, plain:]).max(axis=0)  # by the angle that both surfaces turn
+    turned = np.abs(exact[:plain, plain:]).max(axis=0)  # by the angle that both surfaces turn; round-off in the centre
+    scale[plain:] = np.maximum(turned, CENTRE * scale[:plain].max())
     own, exact = own / scale, exact / scale
     largest = np.abs(exact).max(axis=1, keepdims=True)
     largest[:plain] = largest[:plain].max()

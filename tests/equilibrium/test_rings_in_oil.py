@@ -13,7 +13,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.equilibrium import dynamic_films, static_films
 from frbcli.equilibrium.resting import resting_position
-from frbcli.equilibrium.ring_speed import across, ring_torques
+from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
@@ -69,6 +69,15 @@ def test_full_films_beside_rings_are_those_without_memory() -> None:
     assert np.count_nonzero(slow.imag == 0.0) % 2 == 1  # one of the speed of the ring
     for value in slow:
         assert np.abs(found - value).min() < 1e-7 * abs(value)
+
+
+def test_a_ring_in_the_centre_is_held_by_drag_alone() -> None:
+    """Without weight: J s + k_i + k_o = 0 beside the whirls, and both surfaces turning do nothing to forces."""
+    machine = at_rest("2 bar", "rotor.gravity=0 m/s^2")
+    rate = drags(machine.system, machine.at_rest.position.journals).sum() / machine.system.rotor.mass[-1, -1]
+    found = point_at_rest(machine, SPEED).eigenvalues
+    assert np.abs(found + rate).min() < 1e-6 * rate
+    assert found.imag.max() > 0.4 * OMEGA
 
 
 @pytest.mark.parametrize(("speed", "surfaces"), [(60.0, ()), (8.0, ROUGH)], ids=["smooth", "rough"])
