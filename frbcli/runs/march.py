@@ -107,7 +107,7 @@ class March:
         self._wear = RunWear(case.contact.wear_rate, case.output.step, system.bodies)
         self._apart = coupling_named(plan.coupling).in_turn
         if self._apart:
-            self._state = in_turn(self._heat.start, self._state, float(profile.speeds[0]))
+            self._state = in_turn(self._inputs.at_start(self._heat.start), self._state, float(profile.speeds[0]))
         rows = max(BUFFER, 4 * (int(self._control.longest_step / self._control.output_step) + 2))
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))

@@ -7,15 +7,11 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
-from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
-from frbcli.elements.pin import has_pins
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.films import turning_cartridges
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.rule import Rule, refusal
-from frbcli.scene.machine.elements import changes_with_speed
 from frbcli.scene.planning.film_choice import form_of
 
 KEY = "film.coupling"
@@ -49,8 +45,8 @@ def _where(holds: Callable[[Case], object]) -> Callable[[Case], str | None]:
     return lambda case: case.film.coupling if holds(case) else None
 
 
-def _over_time(case: Case) -> bool:
-    return any(math.isfinite(film.supply.largest_flow) for film in case.films) or any(True for _ in inputs_of(case))
+def _limited(case: Case) -> bool:
+    return any(math.isfinite(film.supply.largest_flow) for film in case.films)
 
 
 def _signals(case: Case) -> str | None:
@@ -87,21 +83,9 @@ APART = Coupling(
     film_steps=2.0,
     rules=(
         refusal(
-            (RUN,), KEY, _where(changes_with_speed),
-            "solves a rotor with constant coefficients, and those of a bearing depend on the speed", "Write auto.",
-        ),
-        refusal(
-            (RUN,), KEY, _where(turning_cartridges),
-            "solves a rotor with constant coefficients, and a cartridge has gyroscopic moments by its own speed",
-            "Write auto.",
-        ),
-        refusal(
-            (RUN,), KEY, _where(has_pins), "turns rings by the torques of their films alone, and one has a pin",
-            "Write auto.",
-        ),
-        refusal(
-            (RUN,), KEY, _where(_over_time),
-            "takes the pressure and the temperatures of the supply as constant", "Write auto.",
+            (RUN,), KEY, _where(_limited),
+            "exchanges motion and force alone, and the pressure of a supply that gives a flow at the most is told by "
+            "each step of the films", "Write auto.",
         ),
         refusal(
             (RUN,), "output.signals", _signals,

@@ -155,18 +155,18 @@ def make_law(case: Case, cavitation: str, section: Section) -> Law:
     return law_named(cavitation).scaled(case.film.given(cavitation), oil)
 
 
-def centrifugal_pressures(case: Case, volumes: Sequence[VolumeFilm]) -> tuple[float, ...]:
+def centrifugal_pressures(case: Case, sections: Sequence[Section]) -> tuple[float, ...]:
     """Fall of the pressure given in each film's channels over the square of its ring's speed, (4.27), scaled.
 
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
     end is that of the groove which they open to.
     """
     around = [bearing for bearing in case.bearings for _ in bearing.films]
-    centrifugal = [0.0] * len(volumes)
+    centrifugal = [0.0] * len(sections)
     for number, (place, bearing) in enumerate(zip(bearing_films(case), around, strict=True)):
         if isinstance(bearing, FloatingRingBearing) and 0 <= place.outside == place.grid_body and not coupled(bearing):
             pressure = centrifugal_pressure(case, bearing)
-            centrifugal[number] = 0.5 * pressure / volumes[number].section.pressure_scale
+            centrifugal[number] = 0.5 * pressure / sections[number].pressure_scale
     return tuple(centrifugal)
 
 

@@ -87,11 +87,15 @@ def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: An
     own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n), make_rings(rotor.spins.shape[0])
     )
+    return Space(make_scratch(rotor, state.numbers, stages), films_work(rotor, films, state, stages, heat), own, heat)
+
+
+def films_work(rotor: RotorData, films: Any, state: State, stages: int, heat: Any) -> Any:
+    """Scratch for the films of a machine in a state, see make_work."""
     scales, shares = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None, None
     if isinstance(rotor.inputs, Inputs) and len(rotor.inputs.pressures):
         scales, shares = rotor.inputs.scales, rotor.inputs.shares
-    work = make_work(films, state.wet, stages, scales, shares)
-    return Space(make_scratch(rotor, state.numbers, stages), work, own, heat)
+    return make_work(films, state.wet, stages, scales, shares)
 
 
 @compiled()

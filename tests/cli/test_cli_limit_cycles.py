@@ -38,7 +38,7 @@ def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        (["film.cavitation=two-phase", "film.two-phase.form=published"], "no motion returns to the same film"),
+        (["film.cavitation=two-phase", "film.two-phase.form=published"], "kinks in its force"),
         (["speed.to=0 Hz"], "no range of speeds"),
     ],
 )

@@ -24,6 +24,7 @@ from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.published.data import ElementFilm
 from frbcli.film.published.equations.unknown import unknowns_of
+from frbcli.film.published.film import PublishedFilm
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.state import WET
 from frbcli.runs.march import March
@@ -129,8 +130,8 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
     """A film with a shell that gives way, ready for stages with this g; films with cells go on from call to call."""
     system = system_of(kind)
     data, clearances = system.films.loop, np.array(system.clearances)
-    if isinstance(data, ElementFilm):
-        return _published(system, data, touches, omega, g, stiffness)
+    if kind == "published":
+        return _published(system, data[0], touches, omega, g, stiffness)
     cells = isinstance(data, VolumeFilms)
     shape = data.cells.shape[2:] if isinstance(data, VolumeFilms) else (0, 0)
     work = make_work(data, np.zeros((WET, int(cells), *shape)), 2)
@@ -155,20 +156,21 @@ def pressed(kind: str, touches: float, omega: float, g: float, stiffness: float 
 def _published(
     system: System, data: ElementFilm, touches: float, omega: float, g: float, stiffness: float
 ) -> Pressed:
-    assert system.films.film is not None
+    film = system.films.own[0]
+    assert isinstance(film, PublishedFilm)
     near = films.polar(touches - 0.006, -1.1)
-    start = system.films.film.steady(Motion((float(near[0]), float(near[1])), (0.0, 0.0), omega)).state
-    work, clearances = make_element_work(data, 2), np.array(system.clearances)
-    work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
-    work.past[:] = start.fraction / g
+    start = film.steady(Motion((float(near[0]), float(near[1])), (0.0, 0.0), omega)).state
+    work, clearances = make_element_work((data,), 2), np.array(system.clearances)
+    work.films[0].w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
+    work.films[0].past[:] = start.fraction / g
 
     control = contact_at(touches, stiffness)
 
     def ask(d: Array, v: Array) -> Array:
         rows, held = rows_of(system, d, v, omega, g), np.zeros((2, 2))  # a journal that no force moves
         for iteration in range(MOST_ITERATIONS):
-            forces(data, work, clearances, control, g, 1, iteration, rows)
-            share, _, _, unsettled = correct(data, work, held, clearances, control, g, rows, held.copy())
+            forces((data,), work, clearances, control, g, 1, iteration, rows)
+            share, _, _, unsettled = correct((data,), work, held, clearances, control, g, rows, held.copy())
             if share == 1.0 and unsettled == 0:
                 return rows
         raise AssertionError(f"the film did not settle at {d}")

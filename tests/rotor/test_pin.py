@@ -16,7 +16,7 @@ from frbcli.elements.pin import pin_torque
 from frbcli.errors import FrbError, InputError
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.speed_profile import speed_profile
-from frbcli.scene.gate.analysis import BEARING, RUN, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -181,7 +181,6 @@ def test_faults_of_a_pin(settings: list[str], key: str, problem: str) -> None:
 @pytest.mark.parametrize(
     ("analysis", "setting", "key"),
     [
-        (RUN, "film.coupling=co-simulation", "film.coupling"),
         (STABILITY, "rotor.gravity=9.81", "bearing.pin"),
         (BEARING, "rotor.gravity=9.81", "bearing.pin"),
         (SPEED_CYCLES, "film.cavitation=half-sommerfeld", "bearing.pin"),

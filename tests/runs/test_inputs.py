@@ -214,7 +214,6 @@ REFUSED = {
     "elements": (["film.cavitation=two-phase", "film.two-phase.form=published"], "does not follow"),
     "steps": (['bearing.clearance_steps=[{ time = "1 s", clearance = "40 um" }]'], "clearance_steps"),
     "pressures of two kinds": (["oil.cavitation_pressure=0.5 bar"], "cavitation_pressure"),
-    "co-simulation": (["film.coupling=co-simulation"], "the supply as constant"),
 }
 
 

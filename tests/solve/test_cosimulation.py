@@ -154,3 +154,54 @@ def test_a_co_simulation_of_a_floating_ring(tmp_path: Path) -> None:
     speeds = [run["ring_speed_Hz"] for run in runs]
     assert abs(speeds[0][-1]) > 1e-3
     np.testing.assert_allclose(speeds[1], speeds[0], atol=1e-3 * abs(speeds[0][-1]))
+
+
+MACRO = "accuracy.macro_step=4 us"
+PIN = 'bearing.pin={radius="16 mm", play="0.01 mm", stiffness="1e6 N/m"}'
+FROM_60 = ("speed.from=60 Hz", "speed.to=100 Hz", "speed.duration=10 ms", "output.step=0.5 ms")
+OVER_SPEED = ", ".join([
+    'speed=["0 Hz", "300 Hz"]',
+    *(f'{name}=["{low}", "{high}"]' for name, low, high in (
+        ("kxx", "1e5 N/m", "2e5 N/m"), ("kxy", "0 N/m", "5e4 N/m"), ("kyx", "0 N/m", "-5e4 N/m"),
+        ("kyy", "1e5 N/m", "2e5 N/m"), ("cxx", "10 N*s/m", "20 N*s/m"), ("cyy", "10 N*s/m", "20 N*s/m"),
+        ("cxy", "0 N*s/m", "0 N*s/m"), ("cyx", "0 N*s/m", "0 N*s/m"), ("mxx", "0 kg", "1 kg"), ("myy", "0 kg", "1 kg"),
+        ("mxy", "0 kg", "0 kg"), ("myx", "0 kg", "0 kg"),
+    )),
+])  # fmt: skip
+SEAL = (
+    'bearing=[{kind="single-film", width="20 mm", diameter="25 mm", clearance="35 um"}, '
+    f'{{kind="coefficients", name="seal", over_speed={{{OVER_SPEED}}}}}]'
+)
+RISING = (
+    'bearing.supply={kind="circumferential-groove", pressure=[["0 s", "1 bar"], ["5 ms", "3 bar"], ["1 s", "3 bar"]]}'
+)
+FINE = "accuracy.steps_per_revolution=4000"  # the pressure in the middle of a step counts for all of it
+FAST = ("speed.from=1500 Hz", "speed.to=1600 Hz", "speed.duration=4 ms", "output.step=0.05 ms")
+
+
+@pytest.mark.nightly  # each compiles two time loops
+@pytest.mark.parametrize(
+    ("name", "settings", "other", "share"),
+    [
+        ("jeffcott", (SEAL, *FROM_60), SEAL.replace("1 kg", "0 kg"), 1e-4),
+        ("jeffcott", (RISING, *FROM_60, FINE), RISING.replace("3 bar", "1.2 bar"), 1e-4),
+        ("floating-ring", (PIN, "start.displacement=[0.1, -0.3]", *FROM_60), PIN.replace("1e6 N/m", "1e5 N/m"), 2e-3),
+        ("turbocharger-car-cartridge", FAST, "bearing.ring.inertia=1e-9 kg*m^2", 1e-4),
+    ],
+    ids=["coefficients over the speed, with mass", "supply over time", "pin", "cartridge that turns"],
+)
+def test_what_acts_on_a_rotor_acts_in_a_co_simulation(
+    name: str, settings: tuple[str, ...], other: str, share: float, tmp_path: Path
+) -> None:
+    """As where rotor and films are solved together; the same machine without it moves otherwise."""
+    both = [*settings, "film.cavitation=half-sommerfeld"]
+    apart = runup(load_case(name, [*both, "film.coupling=co-simulation", MACRO]), tmp_path / "apart.h5")
+    exact = runup(load_case(name, [*both, "accuracy.tolerance=1e-7"]), tmp_path / "exact.h5")
+    without = runup(load_case(name, [*both, other, "accuracy.tolerance=1e-7"]), tmp_path / "without.h5")
+    moved = 0.0
+    for signal in [signal for signal in exact.signals if signal.startswith(("journal", "disk", "ring", "pin_angle"))]:
+        found, expected, changed = (np.array(run[signal]) for run in (apart, exact, without))
+        size = np.ptp(expected)
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=share * size, err_msg=signal)
+        moved = max(moved, float(np.max(np.abs(changed - expected)) / size))
+    assert moved > 5.0 * share

@@ -273,12 +273,12 @@ def test_channels_throw_oil_outwards_unless_told_not_to() -> None:
     centrifugal, level = (ringed("film.cavitation=half-sommerfeld", f"bearing.centrifugal_pressure={word}")
                      for word in ("true", "false"))  # fmt: skip
     system = system_of(centrifugal)
-    films = system.films.with_fields
-    inner, outer = centrifugal_pressures(centrifugal, films)
-    assert inner * films[0].section.pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))
+    sections = [film.section for film in system.films.with_fields]
+    inner, outer = centrifugal_pressures(centrifugal, sections)
+    assert inner * sections[0].pressure_scale == pytest.approx(830 / 4 * (20e-3**2 - 12.5e-3**2))
     assert outer == 0.0
-    assert centrifugal_pressures(level, films) == (0.0, 0.0)
-    assert centrifugal_pressures(ringed('bearing.ring.spin="blocked"'), films) == (0.0, 0.0)
+    assert centrifugal_pressures(level, sections) == (0.0, 0.0)
+    assert centrifugal_pressures(ringed('bearing.ring.spin="blocked"'), sections) == (0.0, 0.0)
 
 
 # --------------------------------------------------------------------------------------- a cavitation model per film

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.published.data import BY_W, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
+from frbcli.film.cells.balance.balances import GridMotion
+from frbcli.film.published.data import BY_W, GIVEN, PRESSURE, RESIDUAL, RIGHTS, ElementFilm, Room
 from frbcli.film.published.equations.assembly import (
     EDGE_VALUES,
     EDGE_WEIGHTS,
@@ -20,7 +21,9 @@ from frbcli.film.published.equations.assembly import (
 )
 from frbcli.film.published.equations.law import Step, oil_fraction
 from frbcli.film.published.equations.ring import make_ring, solve_ring
-from frbcli.film.published.equations.unknown import pressures_of
+from frbcli.film.published.equations.unknown import set_pressures_of
+
+NARROWEST = 1e-3  # over the clearance: of the gap in which oil is sheared
 
 
 @compiled(inline=True)
@@ -35,34 +38,42 @@ def _set_gap(film: ElementFilm, room: Room, d_x: float, d_y: float, v_x: float, 
             rate[e, q] = v_x * sine[e, q] - v_y * cosine[e, q]
 
 
-@compiled(internal=True, makes_arrays=True)
+@compiled()
+def set_openings(film: ElementFilm, room: Room, spin: float) -> None:
+    """GIVEN of the room <- the pressures at openings that turn with spin rad/s."""
+    for n in range(film.falls.shape[0]):
+        room.nodes[GIVEN, n] = film.unknowns.given[n] - film.falls[n] * spin * spin
+
+
+@compiled(internal=True)
 def set_pressures(film: ElementFilm, room: Room, w: Array) -> None:
-    """PRESSURE and BY_W of the room <- of the unknowns w (nodes,)."""
-    room.nodes[PRESSURE], room.nodes[BY_W] = pressures_of(film.unknowns, film.step, w)
+    """PRESSURE and BY_W of the room <- of the unknowns w (nodes,), with what is GIVEN there."""
+    set_pressures_of(film.unknowns, film.step, w, room.nodes[GIVEN], room.nodes[PRESSURE], room.nodes[BY_W])
 
 
 @compiled()
 def residual(
-    film: ElementFilm, room: Room, w: Array, past: Array, d_x: float, d_y: float, v_x: float, v_y: float,
-    omega: float, g: float,
+    film: ElementFilm, room: Room, w: Array, past: Array, motion: GridMotion
 ) -> tuple[float, float]:  # fmt: skip
-    """Assemble at the unknowns w (nodes,) with theta_t = theta / g - past, past (e, 9); the derivatives are by the
-    velocity at the end of a stage, which moves the journal by g times itself.
+    """Assemble at the unknowns w (nodes,) with theta_t = theta / g - past, past (e, 9); the motion is seen from
+    openings that turn with its spin. The derivatives are by the velocity at the end of a stage, seen from outside,
+    which moves the journal by g times itself.
 
     Returns the size of the residual, and its share of the sum of its terms.
     """
     elements, pressure, by_w, total = film.elements, room.nodes[PRESSURE], room.nodes[BY_W], room.nodes[RESIDUAL]
     set_pressures(film, room, w)
-    _set_gap(film, room, d_x, d_y, v_x, v_y)
-    gap = Gap(room.gap[0], room.gap[1], room.gap[2], 0.5 * omega)
-    assemble(elements, film.step, gap, pressure, by_w, 1.0 / g, past, room.matrix, room.derived)
-    terms = 1e-300
+    g, turned, terms = motion.g, motion.g * motion.spin, 1e-300
+    _set_gap(film, room, motion.d_x, motion.d_y, motion.v_x, motion.v_y)
+    gap = Gap(room.gap[0], room.gap[1], room.gap[2], 0.5 * motion.omega)
+    assemble(elements, film.step, gap, pressure, by_w, motion.rate, past, room.matrix, room.derived)
     total[:] = 0.0
     for e in range(elements.nodes.shape[0]):
         for a in range(9):
             r = room.derived[e, a]
             room.right[e, a, 0] = r[0]
-            room.right[e, a, 1], room.right[e, a, 2] = g * r[1] + r[3], g * r[2] + r[4]
+            room.right[e, a, 1] = g * r[1] + r[3] - turned * r[4]
+            room.right[e, a, 2] = g * r[2] + r[4] + turned * r[3]
             total[elements.nodes[e, a]] += r[0]
             terms += abs(r[0])
     size, left = 0.0, 0.0
@@ -118,6 +129,17 @@ def set_oil_fraction(film: ElementFilm, room: Room, w: Array, theta: Array) -> N
             for a in range(9):
                 here += values[q, a] * room.nodes[PRESSURE, nodes[e, a]]
             theta[e, q] = oil_fraction(film.step, here)[0]
+
+
+@compiled(internal=True)
+def sheared(film: ElementFilm, theta: Array, d_x: float, d_y: float, local: bool) -> float:
+    """Integral of 1 / H, or of theta / H, over the film outside of grooves and holes, theta (e, 9)."""
+    sine, cosine, total = film.elements.sine, film.elements.cosine, 0.0
+    for e in range(theta.shape[0]):
+        for q in range(9):
+            height = max(film.height[e, q] + d_x * sine[e, q] - d_y * cosine[e, q], NARROWEST)
+            total += film.open_area[e, q] / height * (theta[e, q] if local else 1.0)
+    return total
 
 
 @compiled(internal=True)

@@ -64,7 +64,8 @@ def _clearances(case: Case) -> tuple[float, ...]:
 def _cells(case: Case, plan: Plan, top_Hz: float | None) -> Films:
     cells, places = cells_of(plan), film_places(case)
     volumes = tuple(volume_film(case, place, cells, top_Hz, plan.edged) for place in places)
-    data = volume_films(volumes, centrifugal_pressures(case, volumes), settled_share(plan.tolerance))
+    drops = centrifugal_pressures(case, [film.section for film in volumes])
+    data = volume_films(volumes, drops, settled_share(plan.tolerance))
     data = with_channels(data, volumes, coupled_channels(case, volumes))
     return CellFilms(
         clearances=_clearances(case),
@@ -95,9 +96,12 @@ def settled_share(tolerance: float) -> float:
 
 
 def _elements(case: Case, plan: Plan, _: float | None) -> Films:
-    section = film_section(case, film_places(case)[0].geometry)
-    film = published_film(case, section, cells_of(plan))
-    return ElementFilms(_clearances(case), film, element_film(film))
+    sections = [film_section(case, place.geometry) for place in film_places(case)]
+    films = [published_film(case, section, cells_of(plan)) for section in sections]
+    most = max(film.mesh.around for film in films), max(film.mesh.along for film in films)
+    own = tuple(published_film(case, section, most) for section in sections)
+    data = map(element_film, own, centrifugal_pressures(case, sections))
+    return ElementFilms(_clearances(case), own, tuple(data), case.film.cavitation_factor)
 
 
 def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
@@ -133,7 +137,7 @@ def _tilted(case: Case, plan: Plan, top_Hz: float | None) -> TiltedFilms:
                     place.geometry.supply.mirrored)
         for place, film, section in zip(places, flat, sections, strict=True)
     )  # fmt: skip
-    drops = centrifugal_pressures(case, flat)
+    drops = centrifugal_pressures(case, sections)
     return TiltedFilms(
         _clearances(case), own, misalignments, cells, settled_share(plan.tolerance), compared_states(cells), drops
     )

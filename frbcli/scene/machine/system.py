@@ -145,12 +145,13 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
     rotor, default that of the run."""
     places, ringed = film_places(case), turning_rings(case)
     films = make_films(case, plan, top_Hz)
+    with_oil = [plan.form.turns_cells and turns_with_oil(case, place) for place in places]
     return System(
         rotor=make_rotor(case, COORDINATES[: films.coordinates]) if rotor is None else rotor,
         films=films,
         names=tuple(place.name for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
-        turning=turning(places, len(ringed), [turns_with_oil(case, place) for place in places]),
+        turning=turning(places, len(ringed), with_oil),
         drags=tuple(film_drag(case, place.geometry) for place in places),
         ring_count=len(ringed),
         laws=case.cavitations,

@@ -14,17 +14,20 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Indices, compiled
-from frbcli.dense import solve_dense
 from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
-from frbcli.solve.films.steps import make_work, write_oil
-from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, write_heat
+from frbcli.solve.films.steps import write_oil
+from frbcli.solve.heat import NO_HEAT, Taken, begin_heat, carry_heat, write_heat
+from frbcli.solve.inputs import set_inputs
+from frbcli.solve.pin import pinned
 from frbcli.solve.ring_spin import Rings, make_rings, spin_up
 from frbcli.solve.rotation import rotation
 from frbcli.solve.scratch import Scratch, make_scratch
+from frbcli.solve.stage.cones import prepare_cones, turn_cones
 from frbcli.solve.stage.equations import (
     FORCE,
     STAGE_ROWS,
     X_0,
+    Q,
     U,
     V,
     accelerate,
@@ -35,10 +38,11 @@ from frbcli.solve.stage.equations import (
     start_stage,
 )
 from frbcli.solve.stage.inverse import LAG_SWEEPS, outdated, prepare
-from frbcli.solve.stage.loads import add_loads, prepare_loads
+from frbcli.solve.stage.loads import add_loads, prepare_loads, solve_columns
 from frbcli.solve.state import (
     CONTACT,
     HISTORY,
+    INVERSE_SPEED,
     OUTPUTS,
     RUNNING,
     STEP,
@@ -63,18 +67,21 @@ from frbcli.solve.step import (
     write_outputs,
 )
 from frbcli.solve.tableau import Tableau
-from frbcli.thermal.exchange import SCALE
+from frbcli.solve.time_loop import films_work
 
 GROWTH = 1.25  # of a macro step at most: it cannot be taken back
 SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what else drives the films, at least this
 
 
 class Exchange(NamedTuple):
-    """The quantities that rotor and films exchange: responses (n, m + rings), see below; given (m + rings,) forces of
-    the films and torques on the rings; what the films are told; the rings; the scratch of the stages, and another one
-    to ask the films for torques alone."""
+    """The quantities that rotor and films exchange: columns (m + rings, n) of the films' forces and the torques on the
+    rings, responses, as they: what each does to the accelerations, elimination (2, n, 2 n + m + rings) to work in;
+    given (m + rings,) forces and torques; what the films are told; the rings; the scratch of the stages, and another
+    one to ask the films for torques alone."""
 
+    columns: Array
     responses: Array
+    elimination: Array
     given: Array
     told: Told
     rings: Rings
@@ -85,9 +92,13 @@ class Exchange(NamedTuple):
 def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
     """The exchange of a rotor and the scratch of its stages."""
     (m, n), rings = scratch.selection.shape, rotor.spins.shape[0]
-    unused = np.zeros((n, 1))
+    unused, columns = np.zeros((n, 1)), np.zeros((m + rings, n))
+    columns[:m] = np.repeat(rotor.multiplicity, 2)[:, None] * scratch.selection
+    columns[np.arange(m, m + rings), rotor.spins] = 1.0
     return Exchange(
-        _responses(rotor, scratch.selection),
+        columns,
+        np.zeros((m + rings, n)),
+        np.zeros((2, n, 2 * n + m + rings)),
         np.zeros(m + rings),
         Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
         make_rings(rings),
@@ -112,20 +123,6 @@ def _tell(selection: Array, spins: Indices, clearances: Array, q: Array, v: Arra
     for f in range(clearances.shape[0]):
         largest = max(largest, norm(motion[2 * f], motion[2 * f + 1]) / clearances[f])
     return largest
-
-
-@compiled(makes_arrays=True)
-def _responses(rotor: RotorData, selection: Array) -> Array:
-    """(n, m + rings) what forces on the journals and torques on the rings do to the accelerations."""
-    m, n = selection.shape
-    inertia, responses = rotor.mass.copy(), np.zeros((n, m + rotor.spins.shape[0]))
-    for k in range(m):
-        for i in range(n):
-            responses[i, k] = selection[k, i] * rotor.multiplicity[k // 2]
-    for r in range(rotor.spins.shape[0]):
-        responses[rotor.spins[r], m + r] = 1.0
-    solve_dense(inertia, responses)
-    return responses
 
 
 @compiled()
@@ -165,12 +162,15 @@ def _remember(past: Array, t_new: float, motion: Array, journal: Array, torque: 
 
 
 @compiled()
-def _amend(responses: Array, compliance: Array, clearances: Array, given: Array, a: Array) -> float:
+def _amend(rotor: RotorData, speed: float, exchange: Exchange, compliance: Array, a: Array) -> float:
     """Make the accelerations a (n,) consistent with forces that were off by `given`. Returns the largest velocity of a
     journal, over its clearance, that they were off by in a stage."""
+    responses, given, clearances = exchange.responses, exchange.given, rotor.clearances
+    if rotor.table_speeds.shape[0] > 0:  # the mass that bearings add may change with the speed
+        solve_columns(exchange.columns, responses, exchange.elimination, rotor, 0.0, speed)
     for i in range(a.shape[0]):
         for k in range(given.shape[0]):
-            a[i] += responses[i, k] * given[k]
+            a[i] += responses[k, i] * given[k]
     off = 0.0
     for k in range(compliance.shape[0]):
         rate = 0.0
@@ -182,14 +182,36 @@ def _amend(responses: Array, compliance: Array, clearances: Array, given: Array,
 
 @compiled()
 def _turn_rings(
-    spins: Indices, mass: Array, s: int, g: float, given: Array, at: Array, stage_v: Array, stage_a: Array
-) -> None:
-    """Accelerations and speeds of the rings in stage s from the torques on them, the last of `given`."""
+    spins: Indices, pins: Array, mass: Array, s: int, g: float, given: Array, at: Array, stage_v: Array,
+    stage_a: Array, bodies: Array,
+) -> None:  # fmt: skip
+    """Accelerations and speeds of the rings in stage s, also in `bodies`, from the torques on them, the last of
+    `given`, and their pins."""
     first = given.shape[0] - spins.shape[0]
     for r in range(spins.shape[0]):
         i = spins[r]
         stage_a[i, s] = given[first + r] / mass[i, i]
-        stage_v[i, s] = at[V, i] + g * stage_a[i, s]
+        if pins.shape[0] > 0:
+            stage_a[i, s] = pinned(pins[r], at[Q, i], at[V, i], g, mass[i, i], given[first + r])
+        stage_v[i, s] = bodies[1 + r] = at[V, i] + g * stage_a[i, s]
+
+
+@compiled()
+def _move_rotor(
+    rotor: RotorData, numbers: Array, s: int, g: float, speed: float, given: Array, bodies: Array, scratch: Scratch
+) -> None:
+    """Velocities and accelerations of the rotor and the rings in stage s, from forces and torques that are given."""
+    spins, pins, mass, journal, at = rotor.spins, rotor.pins, rotor.mass, scratch.journal, scratch.at
+    selection, stage_v, stage_a = scratch.selection, scratch.stage_v, scratch.stage_a
+    _turn_rings(spins, pins, mass, s, g, given, at, stage_v, stage_a, bodies)
+    turned = turn_cones(rotor.cones, bodies, s, s - 1, g, selection, at, stage_a, journal)
+    lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
+    sweeps = 0 if lag == 0.0 and turned == 0.0 else LAG_SWEEPS
+    for sweep in range(1 + sweeps):
+        accelerate(s, g, lag, scratch.products, scratch.spread, selection, at, journal, stage_v, stage_a)
+        if sweep < sweeps:
+            turn_cones(rotor.cones, bodies, s, s, g, selection, at, stage_a, journal)
+    _turn_rings(spins, pins, mass, s, g, given, at, stage_v, stage_a, bodies)
 
 
 @compiled()
@@ -234,8 +256,7 @@ def advance_in_turn(
     """
     stages = tableau.times.shape[0]
     begin_heat(heat, films, rotor, state.wet)
-    scales = heat.now[SCALE] if isinstance(heat, LumpedHeat) else None
-    work = make_work(films, state.wet, stages, scales)
+    work = films_work(rotor, films, state, stages, heat)
     exchange = make_exchange(rotor, make_scratch(rotor, state.numbers, stages))
     status, rows = _advance(rotor, films, tableau, control, state, work, exchange, budget, output, heat)
     return int(status), int(rows)
@@ -249,35 +270,35 @@ def _advance(
     """advance_in_turn with the arrays that it works in."""
     numbers, q, v, a, past = state.numbers, state.q, state.v, state.a, state.past
     spins, times, speeds, angles = rotor.spins, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles
-    clearances, observed, gyroscopic = rotor.clearances, rotor.observed, rotor.has_gyroscopic
+    clearances, observed = rotor.clearances, rotor.observed
     weights, moments, defect, stages = tableau.stage, tableau.times, tableau.defect, tableau.times.shape[0]
     tolerance, stiffness = control.tolerance, control.contact_stiffness
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    responses, given, told, turning, scratch, aside = exchange
+    _, _, _, given, told, turning, scratch, aside = exchange
     selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
     written, done = 0, 0
+    solve_columns(exchange.columns, exchange.responses, exchange.elimination, rotor, 0.0, numbers[INVERSE_SPEED])
 
     while done < budget:
         status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
         if step == 0.0:
             return status, written
+        set_inputs(rotor.inputs, films, heat, t, step)
         begin_stages(v, a, stage_v, stage_a)
         g, speed = gamma * step, 0.0
         for s in range(1, stages):
             t_s = t + moments[s] * step
             acceleration, speed, angle = rotation(times, speeds, angles, piece, t_s)
-            if outdated(numbers, g, speed, gyroscopic, rotor.follows_speed):
+            if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
                 prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
                 prepare_loads(rotor.loads, rotor, g, speed)
+                prepare_cones(rotor.cones, rotor, g, speed)
             predict(weights, s, step, q, v, stage_v, stage_a, at)
-            start_stage(acceleration, speed, angle, g, gyroscopic, products, loads, selection, at, journal)
+            start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
             add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
             _extrapolate(past, t_s, lagrange, given, journal)
-            lag = begin_lag(numbers, g, speed, at) if gyroscopic else 0.0
-            for _ in range(1 if lag == 0.0 else 1 + LAG_SWEEPS):
-                accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
-            _turn_rings(spins, rotor.mass, s, g, given, at, stage_v, stage_a)
+            _move_rotor(rotor, numbers, s, g, speed, given, turning.bodies, scratch)
         error = local_error(defect, observed, stage_v, stage_a, step, g) / tolerance
         if not error <= 1.0:  # not a number counts as too large
             if reject(numbers, step, error, order):
@@ -302,7 +323,7 @@ def _advance(
         _ask_for_torques(films, work, rotor, control, aside, turning)
         move_on(q, v, a, q_new, stage_v, stage_a)
         _remember(past, t_new, told.motions[2], journal, turning.torque, given)
-        off = _amend(responses, compliance, clearances, given, a)
+        off = _amend(rotor, speed, exchange, compliance, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)
         if status != RUNNING or hot != RUNNING:

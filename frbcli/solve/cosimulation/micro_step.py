@@ -9,9 +9,10 @@ import math
 from typing import Any, NamedTuple
 
 from frbcli.compiled import Array, compiled
-from frbcli.solve.films.forces import move_film
-from frbcli.solve.films.steps import NEWTON_LIMIT, accept_films, begin_stage
+from frbcli.solve.films.forces import move_film, step_back
+from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations
 from frbcli.solve.heat import warm_stage
+from frbcli.solve.inputs import supply_warm
 from frbcli.solve.ring_spin import set_speeds
 from frbcli.solve.rotation import rotation
 from frbcli.solve.stage.equations import FORCE, X_0, U, lagrange
@@ -63,8 +64,10 @@ def _move_journals(
 @compiled()
 def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: float, s: int, journal: Array) -> int:
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
-    for iteration in range(NEWTON_LIMIT):
+    for iteration in range(most_iterations(films)):
         forces(films, work, clearances, control, g, s, iteration, journal)
+        if step_back(films, work, journal):
+            continue
         unsettled = 0
         for f in range(clearances.shape[0]):
             if not math.isfinite(journal[FORCE, 2 * f] + journal[FORCE, 2 * f + 1]):
@@ -77,7 +80,7 @@ def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: 
 
 @compiled()
 def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
-    """Largest embedded error of the oil H theta of a cell."""
+    """Largest embedded error of the oil of a cell, H theta, or theta at the points of elements."""
     stages, count, m, k = stage_oil.shape
     error = 0.0
     for f in range(count):
@@ -116,6 +119,7 @@ def films_follow(
             _move_journals(told, t + reach, g, journal, bodies, angles, lagrange)
             set_speeds(turning, bodies, angles, journal, work.grids)
             warm_stage(heat, films, rotor.drag, clearances, state.wet, bodies, t + reach - told.times[1])
+            supply_warm(rotor.inputs, films, heat)
             lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
             begin_stage(films, work, state.wet, state.flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)
             iterations = _solve_films(films, work, clearances, control, g, s, journal)

@@ -86,11 +86,10 @@ def store_stage(film: np.record, ring: Array, cells: Array, work: Any, f: int, g
 
 
 @compiled(inline=True)
-def _turned_back(
-    cosine: float, sine: float, f_x: float, f_y: float, slopes: Array
+def turned_back(
+    cosine: float, sine: float, f_x: float, f_y: float, xx: float, xy: float, yx: float, yy: float
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
-    """The response of a film in whose grid's directions a force and its slopes (4,), B, are: with Q^T B Q."""
-    xx, xy, yx, yy = slopes[0], slopes[1], slopes[2], slopes[3]
+    """The response of a film in whose grid's directions a force and its slopes, B, are: with Q^T B Q."""
     a, b, p, q = cosine * xx - sine * yx, cosine * xy - sine * yy, sine * xx + cosine * yx, sine * xy + cosine * yy
     return (
         cosine * f_x - sine * f_y,
@@ -169,7 +168,7 @@ def cell_response(
         for i in range(m):
             for j in range(0 if rests(states, i) else k):
                 fields[i, j, KEPT_BY_X], fields[i, j, KEPT_BY_Y] = fields[i, j, k + BY_X], fields[i, j, k + BY_Y]
-    return _turned_back(cosine, sine, f_x, f_y, slopes)
+    return turned_back(cosine, sine, f_x, f_y, slopes[0], slopes[1], slopes[2], slopes[3])
 
 
 @compiled(inline=True)

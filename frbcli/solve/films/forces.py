@@ -23,7 +23,7 @@ from frbcli.solve.films.cells import (
     store_ahead,
 )
 from frbcli.solve.films.channels import follow_journals, join, set_laws, set_pressures
-from frbcli.solve.films.elements import back_off, element_response, left_of_elements, move_elements
+from frbcli.solve.films.elements import back_off, element_drag, element_response, left_of_elements, move_elements
 from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, TILTED, by_kind, kind_of
 from frbcli.solve.films.steps import Scaled, Supplied
 from frbcli.solve.films.tilted import ENDS, end_response, join_ends, meet_ends, move_end, tilted_sheared
@@ -158,13 +158,13 @@ def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-
         return lambda films, work, f, motion, g, s, iteration: _supplied(
             films, f, work.scales[f], work.shares[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
+    if kind == ELEMENTS:
+        return lambda films, work, f, motion, g, s, iteration: element_response(
+            films[f], work.films[f], work.grids[f], motion, g, s, iteration
+        )
     if isinstance(films, types.UniTuple):
         return lambda films, work, f, motion, g, s, iteration: film_force(
             films[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
-        )
-    if kind == ELEMENTS:
-        return lambda films, work, f, motion, g, s, iteration: element_response(
-            films, work, motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega, g, iteration
         )
     if kind == TILTED:
         return lambda films, work, f, motion, g, s, iteration: end_response(films, work, f, g, s, iteration)
@@ -241,7 +241,7 @@ by_kind(
     others=lambda films, work, smooth, moved, unsettled, allowed: smooth,
     cells=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
     tilted=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
-    elements=lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, unsettled, allowed),
+    elements=lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, allowed),
 )
 by_kind(
     move_film,
@@ -249,7 +249,9 @@ by_kind(
     others=lambda films, work, f, u_x, u_y, share, g: 0,
     cells=_move,
     tilted=lambda films, work, f, u_x, u_y, share, g: move_end(films, work, f, u_x, u_y, g),
-    elements=lambda films, work, f, u_x, u_y, share, g: move_elements(films, work, u_x, u_y, share, g),
+    elements=lambda films, work, f, u_x, u_y, share, g: move_elements(
+        films[f], work.films[f], work.grids[f], work.stage_oil[work.films[f].notes[0].stage, f], u_x, u_y, share, g
+    ),
 )
 by_kind(
     drag_integral,
@@ -258,5 +260,6 @@ by_kind(
     others=lambda films, work, f, d_x, d_y, factor: 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6)),
     cells=_sheared,
     tilted=lambda films, work, f, d_x, d_y, factor: tilted_sheared(films, work, f, factor),
+    elements=lambda films, work, f, d_x, d_y, factor: element_drag(films[f], work.films[f], d_x, d_y, factor),
 )
 by_kind(solved, inline=True, others=lambda films, count: count, tilted=lambda films, count: count // ENDS)

@@ -5,7 +5,7 @@
 - a tuple of BearingModelFilm, a tuple of FilmData that follow viscosity and clearance by functions of their own;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
 - TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py;
-- ElementFilm, the one film of a machine: elements of the published two-phase form, see elements.py.
+- a tuple of ElementFilm, of elements of the published two-phase form with unknowns of their own, see elements.py.
 """
 
 from __future__ import annotations
@@ -24,17 +24,18 @@ from frbcli.film.cells.tilted.data import TiltedVolumes
 from frbcli.film.published.data import ElementFilm
 
 NONE, TABLES, MODELS, CELLS, TILTED, ELEMENTS = "none", "tables", "models", "cells", "tilted", "elements"
-_KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED, ElementFilm: ELEMENTS}
+_KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED}
+_KINDS_IN_TUPLES = {BearingModelFilm: MODELS, ElementFilm: ELEMENTS}
 
 
 def kind_of(films: Any) -> str:
     """The kind of films, or of a type of films that the compiler knows."""
     if isinstance(films, types.BaseTuple) and not isinstance(films, types.BaseNamedTuple) and len(films) == 0:
         return NONE
-    if isinstance(films, types.UniTuple) and getattr(films.dtype, "instance_class", None) is BearingModelFilm:
-        return MODELS
-    if type(films) is tuple and films and isinstance(films[0], BearingModelFilm):
-        return MODELS
+    if isinstance(films, types.UniTuple):
+        return _KINDS_IN_TUPLES.get(getattr(films.dtype, "instance_class", type(films)), TABLES)
+    if type(films) is tuple and films:
+        return _KINDS_IN_TUPLES.get(type(films[0]), TABLES)
     return _KINDS.get(getattr(films, "instance_class", type(films)), TABLES)
 
 

@@ -71,10 +71,6 @@ def test_a_table_of_equal_rows_is_the_constant_coefficients(tmp_path: Path) -> N
     for name in runs[0].signals:
         first, second = (np.array(run[name]) for run in runs)
         np.testing.assert_allclose(first, second, atol=1e-9 * np.abs(first).max(), rtol=0.0)
-    with pytest.raises(InputError) as caught:
-        make_plan(in_film(rows, film={"theory": "short", "coupling": "co-simulation"}))
-    (fault,) = caught.value.faults
-    assert (fault.key, fault.value) == ("film.coupling", "co-simulation")
 
 
 def test_a_seal_shifts_the_threshold_as_its_stiffness_in_the_matrices() -> None:

@@ -15,13 +15,14 @@ import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
+from frbcli.film.cells.balance.balances import GridMotion
 from frbcli.film.cells.motion import Motion
-from frbcli.film.published.data import ElementFilm, make_room
+from frbcli.film.published.data import HELD, ElementFilm, make_room
 from frbcli.film.published.equations.unknown import pressures_of, unknowns_of
 from frbcli.film.published.film import PublishedFilm
 from frbcli.film.published.loads import oil_flows, open_area, published_loads
 from frbcli.film.published.moving import oil_held, oil_passing, residual
-from frbcli.film.state import OIL, W
+from frbcli.film.state import NOW, OIL, W
 from frbcli.runs.march import control_of
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System, make_system
@@ -80,8 +81,15 @@ def fixed_steps(case: Case, plan: Plan, steps: int) -> Control:
 
 
 def film_of(system: System) -> PublishedFilm:
-    assert system.films.film is not None
-    return system.films.film
+    (film,) = system.films.own
+    assert isinstance(film, PublishedFilm)
+    return film
+
+
+def data_of(system: System) -> ElementFilm:
+    (data,) = system.films.loop
+    assert isinstance(data, ElementFilm)
+    return data
 
 
 def test_a_full_film_is_that_of_the_other_forms() -> None:
@@ -127,17 +135,16 @@ def test_a_fed_film_starts_full() -> None:
 
 def stage_of(system: System, d: tuple[float, float]) -> tuple[ElementFilm, PublishedFilm, ElementWork, Array]:
     """A settled film with the unknowns, past and journal's rows of a stage of 0.1 ms."""
-    film, data, g, omega = film_of(system), system.films.loop, 1e-4, 2 * math.pi * 30.0
-    assert isinstance(data, ElementFilm)
+    film, data, g, omega = film_of(system), data_of(system), 1e-4, 2 * math.pi * 30.0
     start = film.steady(Motion(d, (0.0, 0.0), omega)).state
     rows = np.zeros((JOURNAL_ROWS, 2))
     clearance = film.section.clearance
     rows[X_0] = np.array(d) * clearance
     rows[U] = rows[U_0] = np.array([3.0, -8.0]) * clearance
     rows[OMEGA] = omega
-    work = make_element_work(data, 2)
-    work.w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
-    work.past[:] = start.fraction / g
+    work = make_element_work((data,), 2)
+    work.films[0].w[HERE] = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
+    work.films[0].past[:] = start.fraction / g
     return data, film, work, rows
 
 
@@ -148,24 +155,27 @@ def solve_stage(
     """Newton's method of a stage until the film has settled; the iterations."""
     clearances, newton, control = np.array([clearance]), np.zeros((2, 2)), Control(1e-4, 24.0, 1e-3, 1e-3, *contact)
     for iteration in range(MOST_ITERATIONS):
-        forces(data, work, clearances, control, g, 1, iteration, rows)
-        share, _, moved, unsettled = correct(data, work, compliance, clearances, control, g, rows, newton)
+        forces((data,), work, clearances, control, g, 1, iteration, rows)
+        share, _, moved, unsettled = correct((data,), work, compliance, clearances, control, g, rows, newton)
         if share == 1.0 and unsettled == 0 and moved < 1e-7:
             return iteration + 1
     raise AssertionError("the stage did not settle")
 
 
-@pytest.mark.parametrize("d", [(0.1, -0.5), (0.3, -0.92)])
-def test_right_sides_of_a_stage_are_derivatives(d: tuple[float, float]) -> None:
+@pytest.mark.parametrize(("d", "spin"), [((0.1, -0.5), 0.0), ((0.3, -0.92), 0.0), ((0.1, -0.5), 400.0)])
+def test_right_sides_of_a_stage_are_derivatives(d: tuple[float, float], spin: float) -> None:
+    """Also where the openings turn."""
     _, system = planned(case_of(SOFT))
     data, _, work, rows = stage_of(system, (0.1, -0.5))
-    g, omega = 1e-4, float(rows[OMEGA, 0])
+    g, omega, own = 1e-4, float(rows[OMEGA, 0]), work.films[0]
     v = np.array([3.0, -8.0])
 
     def missing(v: Array) -> Array:
         at = np.array(d) + g * v
-        residual(data, work.room, work.w[HERE], work.past, at[0], at[1], v[0], v[1], omega, g)
-        return work.room.right.copy()
+        against = v[0] + spin * at[1], v[1] - spin * at[0]
+        motion = GridMotion(at[0], at[1], omega - 2.0 * spin, *against, spin, g, 1.0 / g)
+        residual(data, own.room, own.w[HERE], own.past, motion)
+        return own.room.right.copy()
 
     exact, size = missing(v), 1e-3
     for k in range(2):
@@ -182,7 +192,7 @@ def test_a_stage_holds_both_equations() -> None:
     assert solve_stage(data, work, clearance, g, (0.99, 0.0), compliance, rows) <= 8
     d, v = (rows[X_0] + g * rows[U]) / clearance, rows[U] / clearance
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), float(rows[OMEGA, 0]))
-    alone = film.keep(motion, film.full().pressure, 1.0 / g, work.past)
+    alone = film.keep(motion, film.full().pressure, 1.0 / g, work.films[0].past)
     np.testing.assert_allclose(rows[FORCE], alone.response.force, rtol=1e-4)
     assert np.hypot(*(rows[U] - rows[U_0])) > 1e-2 * np.hypot(*rows[U])  # the force does move the journal
     np.testing.assert_allclose(rows[U], rows[U_0] + compliance @ rows[FORCE], rtol=1e-9)
@@ -192,8 +202,7 @@ def test_a_stage_holds_both_equations() -> None:
 def test_the_oil_of_the_loop_is_that_of_the_plain_flows(settings: tuple[str, ...]) -> None:
     """What comes in, leaves and is held while the journal moves, with the ends free to air and in an oil bath."""
     _, system = planned(case_of(SOFT, *settings))
-    film, data = film_of(system), system.films.loop
-    assert isinstance(data, ElementFilm)
+    film, data = film_of(system), data_of(system)
     motion = Motion((0.1, -0.5), (3.0, -8.0), 2 * math.pi * 30.0)
     start = film.steady(motion).state
     w = unknowns_of(data.unknowns, data.step, start.pressure.ravel())
@@ -279,9 +288,8 @@ def test_a_run_reports_it(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("name", "setting", "key"),
     [
-        ("floating-ring", "film.torque=all", "bearing.kind"),
-        ("turbocharger-car", "film.torque=all", "rotor.kind"),
-        ("jeffcott", "film.coupling=co-simulation", "film.coupling"),
+        ("floating-ring", "bearing.channels=coupled", "bearing.channels"),
+        ("floating-ring", "bearing.outer.cavitation=half-sommerfeld", "film.cavitation"),
         ("jeffcott", "film.grid=half-speed", "film.grid"),
         ("jeffcott", "film.two-phase.whirl_steepness=0.9", "film.two-phase.whirl_steepness"),
     ],
@@ -290,3 +298,51 @@ def test_what_the_published_form_cannot_do_is_refused(name: str, setting: str, k
     with pytest.raises(InputError) as refused:
         make_plan(load_case(name, [*PUBLISHED, setting]))
     assert key in [fault.key for fault in refused.value.faults]
+
+
+RINGED = ["film.two-phase.steepness=0.9", "accuracy.mesh=[3, 12]", "speed.from=100 Hz", "speed.to=101 Hz",
+          "speed.duration=3 ms", "output.step=0.1 ms"]  # fmt: skip
+
+
+@pytest.mark.nightly  # compiles two time loops of two films
+def test_a_floating_ring_moves_alike_however_rotor_and_films_are_solved(tmp_path: Path) -> None:
+    """Its inner film is fed by holes in the ring, whose elements turn with it."""
+    case = load_case("floating-ring", [*PUBLISHED, *RINGED])
+    whole = frbcli.runup(case, tmp_path / "whole.h5")
+    settings = {"film.coupling": "co-simulation", "accuracy.macro_step": "2 us"}
+    apart = frbcli.runup(case.with_settings(settings), tmp_path / "apart.h5")
+    for name in ("eccentricity_inner", "eccentricity_outer", "ring_speed_Hz"):
+        moved = np.ptp(whole[name])
+        assert moved > 1e-2
+        np.testing.assert_allclose(apart[name], whole[name], rtol=0.0, atol=5e-3 * moved)
+    assert "oil_created_m3" in apart.cost
+
+
+@pytest.mark.nightly  # compiles a time loop of two films
+def test_full_films_around_a_ring_are_those_of_the_other_forms(tmp_path: Path) -> None:
+    """The turning holes, too."""
+    full = [*RINGED, "accuracy.mesh=[5, 24]", "oil.ambient_pressure=11 bar", "oil.cavitation_pressure=1 bar",
+            "bearing.inner.supply.pressure=13 bar", "bearing.outer.supply.pressure=13 bar",
+            "bearing.inner.ends=oil-bath", "bearing.outer.ends=oil-bath"]  # fmt: skip
+    found = frbcli.runup(load_case("floating-ring", [*PUBLISHED, *full]), tmp_path / "found.h5")
+    other = [*full, "accuracy.mesh=[10, 96]", "film.cavitation=sommerfeld"]
+    expected = frbcli.runup(load_case("floating-ring", other), tmp_path / "expected.h5")
+    for name in ("eccentricity_inner", "eccentricity_outer", "ring_speed_Hz"):
+        moved = np.ptp(expected[name])
+        assert moved > 1e-2
+        np.testing.assert_allclose(found[name], expected[name], rtol=0.0, atol=2e-2 * moved)
+
+
+def test_a_wider_gap_keeps_its_oil_which_no_longer_fills_it() -> None:
+    """What the film creates is not what a step of the clearance moves; and there is no pressure left."""
+    case = case_of(SOFT, "start.position=resting")
+    _, system = planned(case)
+    _, after = planned(case.with_settings({"bearing.clearance": "36 um"}))
+    state = first_state(case.start, system, run_up_profile(case))
+    d = system.rotor.journals[0] @ state.q / after.films.clearances[0]
+    before, oil = system.films.oil_passed(state.flows)["oil_created_m3"], state.flows[NOW, 0, HELD]
+    force = after.films.refill(0, system.films, (float(d[0]), float(d[1])), state.wet, state.flows)
+    assert force is not None
+    assert np.hypot(*force) < 0.1 * 29.9  # N, the load
+    assert state.flows[NOW, 0, HELD] == pytest.approx(oil, rel=1e-2)
+    assert after.films.oil_passed(state.flows)["oil_created_m3"] == pytest.approx(before, abs=1e-18)

@@ -57,15 +57,23 @@ def unknowns_of(unknowns: Unknowns, step: Step, pressure: Array) -> Array:
     return w
 
 
-@compiled(makes_arrays=True)
 def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array]:
     """(nodes,) scaled gauge pressures of the nodes and their derivatives by the unknowns, none where they are given."""
     pressure, slope = np.empty_like(w), np.empty_like(w)
+    set_pressures_of(unknowns, step, w, unknowns.given, pressure, slope)
+    return pressure, slope
+
+
+@compiled()
+def set_pressures_of(
+    unknowns: Unknowns, step: Step, w: Array, given: Array, pressure: Array, slope: Array
+) -> None:  # fmt: skip
+    """pressure, slope (nodes,) <- pressures_of with other given pressures (nodes,)."""
     ratio = step.cavity / unknowns.reference
     amount = unknowns.amount / unknowns.reference
     for n in range(len(w)):
         if unknowns.fixed[n]:
-            pressure[n], slope[n] = unknowns.given[n], 0.0
+            pressure[n], slope[n] = given[n], 0.0
             continue
         pressure[n], slope[n] = step_pressure(step, ratio, w[n])
         if unknowns.free[n] and w[n] > 0.0:
@@ -75,7 +83,6 @@ def pressures_of(unknowns: Unknowns, step: Step, w: Array) -> tuple[Array, Array
             omega = _wright(reach)
             pressure[n] = step.cavitation + (w[n] + amount) * full - omega / c
             slope[n] = full / (1.0 + omega)
-    return pressure, slope
 
 
 @compiled()
