@@ -22,7 +22,6 @@ from frbcli.scene.costs.resolution import resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
-from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import require
 from frbcli.scene.inputs import input_decisions
@@ -136,27 +135,18 @@ def _plan(case: Case, target: float) -> Plan:
         decisions.append(Decision(choice, str(value), reason))
 
     _decide_scene(case, decide)
-    films = choose_films(case, target)
-    model = chosen_model(case)
-    if not case.films:
-        return _without_films(case, films, target, decisions, decide)
-    if model is not None:
-        for decided in model_decisions(model):
-            decide(*decided)
-    else:
-        _decide_models(case, films, decide)
-    for film in unfed_films(case):
-        decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
-    coupling, reason = plan_coupling(case)
-    decide("coupling", coupling, reason)
-    if model is None:
-        _decide_film(case, films, decide)
+    films, coupling, length = choose_films(case, target), FULL.name, 0.0
+    if case.films:
+        coupling = _decide_films(case, films, decide)
+    else:  # the bearings are all given by coefficients
+        length, reason = reference_length(case)
+        decide("length", display(length, "m"), f"what errors are relative to: {reason}")
     method, tolerance, steps = _time_integration(case, films, target, decide)
-    if not turning_rings(case):
-        decide("torque", "left out", "the rotor speed is given and no ring turns")
-    else:
+    if turning_rings(case):
         reason = "turns the rings" if case.film.torque == "all" else "turns the rings; set in the case"
         decide("torque", case.film.torque, reason)
+    elif case.films:
+        decide("torque", "left out", "the rotor speed is given and no ring turns")
     return Plan(
         theory=films.theory,
         cavitation=case.film.cavitation,
@@ -171,31 +161,26 @@ def _plan(case: Case, target: float) -> Plan:
         coupling=coupling,
         macro_step=case.accuracy.macro_step if coupling_named(coupling).in_turn else None,
         decisions=tuple(decisions),
+        length=length,
         eccentricity=films.eccentricity,
     )
 
 
-def _without_films(case: Case, films: FilmChoice, target: float, decisions: list[Decision], decide: Decide) -> Plan:
-    """The plan of a machine whose bearings are all given by coefficients."""
-    length, reason = reference_length(case)
-    decide("length", display(length, "m"), f"what errors are relative to: {reason}")
-    method, tolerance, steps = _time_integration(case, films, target, decide)
-    return Plan(
-        theory=str(NO_FILM),
-        cavitation=case.film.cavitation,
-        form=NO_FILM,
-        mesh=films.mesh,
-        films=(),
-        cells=None,
-        film_error=0.0,
-        method=method,
-        tolerance=tolerance,
-        steps_per_revolution=steps,
-        coupling=FULL.name,
-        macro_step=None,
-        decisions=tuple(decisions),
-        length=length,
-    )
+def _decide_films(case: Case, films: FilmChoice, decide: Decide) -> str:
+    """The films: their models, supply and form, and the coupling of rotor and films, which is returned."""
+    model = chosen_model(case)
+    if model is None:
+        _decide_models(case, films, decide)
+    else:
+        for decided in model_decisions(model):
+            decide(*decided)
+    for film in unfed_films(case):
+        decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
+    coupling, reason = plan_coupling(case)
+    decide("coupling", coupling, reason)
+    if model is None:
+        _decide_form(case, films, decide)
+    return coupling
 
 
 def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
@@ -284,7 +269,7 @@ def _coupling_of_films(case: Case, bearing: FloatingRingBearing) -> str:
     return f"oil flows between the inner film and {end}; resistance {resistance(case, bearing):.3g} Pa s/m^3 each"
 
 
-def _decide_film(case: Case, films: FilmChoice, decide: Decide) -> None:
+def _decide_form(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Form and mesh, with the error of the force."""
     for decided in films.form.decisions(case, films):
         decide(*decided)
