@@ -73,7 +73,7 @@ def limit_cycles(
     ------
     InputError
         If openings turn beside oil that a film keeps, without a speed range, for a speed outside of it, or
-        with_unbalance for a case without unbalance or with films that keep their oil or whose force has kinks.
+        with_unbalance for a case without unbalance.
     NotConverged
         Without a resting position at the highest speed.
 
@@ -88,7 +88,8 @@ def limit_cycles(
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     _check_asked(case, asked, slowest, fastest)
     if by_shooting(case):
-        return _with_missing(limit_cycles_by_shooting(case, slowest, fastest, asked, observe), speeds_Hz)
+        found = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
+        return _with_missing(found, speeds_Hz)
     plan = make_plan(case)
     system = make_system(case, plan)
     machine = make_machine(system, fastest)

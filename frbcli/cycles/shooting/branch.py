@@ -15,7 +15,7 @@ from frbcli.arrays import Array
 from frbcli.cycles.branch import AT_REST, LEFT
 from frbcli.cycles.method.continuation import halved_until
 from frbcli.cycles.method.cycle import ASKED, FLIP, FOLD, TORUS
-from frbcli.cycles.shooting.shots import Shooting, Shot
+from frbcli.cycles.shooting.shots import Rest, Shooting, Shot
 
 FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch
 MOST_POINTS = 150
@@ -60,7 +60,7 @@ def follow_shots(
             shots += [] if end is None else [*special_shots(shooting, shot, end, asked), end]
             return with_folds(shooting, shots), LEFT
         shots += [*special_shots(shooting, shot, found, asked), found]
-        if found.amplitude < SMALL:
+        if shooting.free and found.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
         if found.eccentricity_max.max() > limit:
             return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
@@ -71,6 +71,27 @@ def follow_shots(
         elif straight < BENT:
             length *= SHORTER
     return with_folds(shooting, shots), f"It was followed over {MOST_POINTS} cycles and goes on."
+
+
+def synchronous_shots(
+    shooting: Shooting,
+    rests: Sequence[Rest],
+    speeds: tuple[float, float],
+    asked: Sequence[float] = (),
+    observe: Callable[[Shot], None] | None = None,
+) -> tuple[tuple[Shot, ...], str]:
+    """The synchronous motions beside resting positions by falling speed, from the fastest one beside which such a
+    motion is found both ways, and why they end; the rest as for follow_shots."""
+    for rest in reversed(rests):
+        start = shooting.with_unbalance(rest)
+        if start is None:
+            continue
+        down, note = follow_shots(shooting, start, speeds, asked, observe)
+        if rest is rests[-1]:
+            return down, note
+        up, end = follow_shots(shooting, replace(start, tangent=-start.tangent), speeds, asked, observe)
+        return (*reversed(up[1:]), *down), " ".join(dict.fromkeys((end, note)))
+    return (), "No synchronous motion was found beside a resting position."
 
 
 def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:

@@ -11,9 +11,9 @@ import numpy as np
 
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
-from frbcli.cycles.branch import AT_REST
+from frbcli.cycles.branch import AT_REST, LEFT
 from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
-from frbcli.cycles.method.cycle import HOPF
+from frbcli.cycles.method.cycle import FLIP, HOPF, TORUS
 from frbcli.cycles.result import (
     SPEED,
     SUBCRITICAL,
@@ -26,11 +26,12 @@ from frbcli.cycles.result import (
     SpecialPoint,
     hertz,
 )
-from frbcli.cycles.shooting.branch import follow_shots
+from frbcli.cycles.shooting.branch import follow_shots, synchronous_shots
 from frbcli.cycles.shooting.other_cells import OtherCells, ShotError, other_cells, shot_errors, threshold_errors
 from frbcli.cycles.shooting.period_map import SAMPLES, PeriodMap, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
 from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
+from frbcli.cycles.shooting.whirls import whirls_of_branch
 from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
@@ -39,7 +40,12 @@ FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
 
 
 def limit_cycles_by_shooting(
-    case: Case, slowest: float, fastest: float, asked: Sequence[float], observe: Observer | None = None
+    case: Case,
+    slowest: float,
+    fastest: float,
+    asked: Sequence[float],
+    observe: Observer | None = None,
+    with_unbalance: bool = False,
 ) -> LimitCycles:
     """As limit_cycles, for films on cells that keep their oil or whose force has kinks; speeds in rad/s, asked: those
     at which cycles are computed exactly.
@@ -72,6 +78,11 @@ def limit_cycles_by_shooting(
         special.append(_hopf(shooting, other, begin, len(branches), shots[0] if shots else None))
         points = _points(shooting, other, begin, shots)
         branches.append(CycleBranch(len(special) - 1, points, _with_cells(flow, note, shots)))
+        if with_unbalance:
+            branches[-1] = whirls_of_branch(shooting, branches[-1], shots, fastest - slowest, observe)
+    response, remarks = (
+        _response(shooting, rests, (slowest, fastest), asked, tell) if with_unbalance else ((), [])
+    )
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -80,9 +91,30 @@ def limit_cycles_by_shooting(
         equilibria=tuple(_rest(shooting, rest) for rest in rests),
         branches=tuple(branches),
         special=(*special, *special_cycles(branches)),
-        notes=tuple(_notes(shooting, other, rests, hopf)),
+        notes=(*_notes(shooting, other, rests, hopf), *remarks),
         cost=Cost(working_time().cpu_s - begun, told.count),
+        synchronous=response,
     )
+
+
+def _response(
+    shooting: Shooting,
+    rests: Sequence[Rest],
+    speeds: tuple[float, float],
+    asked: Sequence[float],
+    tell: Callable[[Shot], None],
+) -> tuple[tuple[CyclePoint, ...], list[str]]:
+    """The synchronous response to the unbalance by falling speed, and what is to be said of it."""
+    driven = shooting.with_all_unbalance
+    shots, note = synchronous_shots(driven, rests, speeds, asked, tell)
+    names = {TORUS: "in a torus point", FLIP: "in a flip"}
+    remarks = [] if note == LEFT else [f"Synchronous response: {note}"]
+    remarks += [
+        f"The synchronous response changes its stability {names[shot.kind]} at {driven.speed_Hz(shot):.4g} Hz."
+        for shot in shots
+        if shot.kind in names
+    ]
+    return tuple(_cycle(driven, shot) for shot in shots), remarks
 
 
 def _branch(

@@ -152,15 +152,16 @@ def correction(
     return residual + space.images @ answer[:k] + space.by_parameters @ answer[k:], answer[k:]
 
 
-def direction_along(space: SlowSpace, phase: Array, before: Array) -> Array:
+def direction_along(space: SlowSpace, held: Array, before: Array) -> Array:
     """(N + P,) unit tangent of the curve of fixed points with one parameter more than conditions, which are that it is
-    across `phase` (N,); turned along `before` (N + P,)."""
+    across `held` (N + P,); turned along `before` (N + P,)."""
     k, parameters = space.states.shape[1], space.by_parameters.shape[1]
-    size = len(phase)
+    size = len(space.states)
     rows = np.zeros((k + parameters, k + parameters))
     rows[:k, :k] = np.eye(k) - space.reduced
     rows[:k, k:] = -space.states.T @ space.by_parameters
-    rows[k, :k], rows[k, k:] = phase @ space.images, phase @ space.by_parameters
+    rows[k, :k] = held[:size] @ space.images
+    rows[k, k:] = held[:size] @ space.by_parameters + held[size:]
     along = before[:size]
     rows[k + 1, :k] = along @ space.images
     rows[k + 1, k:] = along @ space.by_parameters + before[size:]

@@ -19,9 +19,9 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable, unit_vector
 from frbcli.cycles.method.cycle import FOLD
-from frbcli.cycles.shooting.fixed_point import NOISE, Conditions, SlowSpace
+from frbcli.cycles.shooting.fixed_point import NOISE, SlowSpace
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map
-from frbcli.cycles.shooting.shots import Shooting, Shot, largest
+from frbcli.cycles.shooting.shots import Shooting, Shot, both, largest
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.film.cavitation.law import FRONTS
@@ -109,8 +109,8 @@ def _again(own: Shooting, other: OtherCells, shot: Shot, held: Array) -> Array:
         near = flow.wet_on(twin.flow, shot.wet, math.exp(shot.mean_p[1]) * own.unit)
     except Unreachable:
         return np.full(len(_own(own, shot)), np.nan)
-    rows = np.stack([twin.phase(near), flow.states_on(twin.flow, held[:size, None])[:, 0]])
-    conditions = Conditions(rows, np.stack([np.zeros(2), held[size:]]))
+    across = np.append(flow.states_on(twin.flow, held[:size, None])[:, 0], held[size:])
+    conditions = both(twin.held(near), across)
     found = twin.again(near, shot.mean_p, _space_on(own, other, shot.space), conditions, shot.steps, NOISE)
     return _mean(twin.flow, found) if found else np.full(len(_own(own, shot)), np.nan)
 

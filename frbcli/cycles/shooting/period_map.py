@@ -86,11 +86,11 @@ class Passage:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """The time loop of a system without unbalance, which has J journals: one in each film, or both ends of one that
-    tilts. films: as the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned:
-    (F, 1 + rings) shares in the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at
-    the start, which say how the cells lie there; held: (n, m, k) which content is part of the state, and its units (n,
-    1, 1), see Wet; limited: (fields,) the films whose filling is."""
+    """The time loop of a system, which has J journals: one in each film, or both ends of one that tilts. films: as the
+    loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned: (F, 1 + rings) shares in
+    the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the
+    cells lie there; held: (n, m, k) which content is part of the state, and its units (n, 1, 1), see Wet; limited:
+    (fields,) the films whose filling is; driven: share of the unbalance, and of forces that turn with the rotor."""
 
     system: System
     films: Any
@@ -104,11 +104,17 @@ class PeriodMap:
     held: Truths
     units: Array
     limited: Truths
+    driven: float = 0.0
 
     @property
     def slow(self) -> int:
         """How many numbers of a state, which stand before those of the oil, belong to the rotor and to fillings."""
         return 2 * self.system.rotor.size - self.system.ring_count + int(np.count_nonzero(self.limited))
+
+    @property
+    def size(self) -> int:
+        """How many numbers a state has."""
+        return self.slow + int(np.count_nonzero(self.held))
 
     @property
     def scale(self) -> float:
@@ -124,8 +130,9 @@ class PeriodMap:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Further PLACES of the cells at the start of a cycle, which matter where cells turn."""
-        return PLACES if self.turned.any() else ()
+        """Further PLACES of the cells at the start of a cycle, which matter where cells turn; with the unbalance they
+        pass all places beside the motion within a period."""
+        return PLACES if self.turned.any() and self.driven == 0.0 else ()
 
     def middles(self, d: Array) -> Array:
         """(..., F, 2) displacements in the middle of the films, of those of the journals (..., J, 2)."""
@@ -198,9 +205,10 @@ class PeriodMap:
         """After a time in s at a speed in rad/s. Raises Unreachable where the run ends before."""
         rotor = rotor_data(self.system, speed_profile([0.0, time], [omega, omega]))
         rotor = rotor._replace(
-            unbalance_cos=np.zeros_like(rotor.unbalance_cos),
-            unbalance_sin=np.zeros_like(rotor.unbalance_sin),
+            unbalance_cos=self.driven * rotor.unbalance_cos,
+            unbalance_sin=self.driven * rotor.unbalance_sin,
             profile_angles=rotor.profile_angles + self.begun[0],
+            loads=rotor.loads and rotor.loads._replace(columns=self.driven * rotor.loads.columns),
         )
         control = self.control._replace(output_step=time / samples, longest_step=time / steps, steps_per_revolution=1.0)
         state = self._state(wet, time)

@@ -2,7 +2,8 @@
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
 the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
-a branch by the plane across the direction of the last step (branch.py).
+a branch by the plane across the direction of the last step (branch.py). With the unbalance the period is that of the
+rotor, T Omega = 2 pi, in place of the phase condition: the unbalance holds the motion in time.
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
 its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
@@ -18,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
-from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.continuation import Unreachable, halved_until, unit_vector
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.result import hertz
 from frbcli.cycles.shooting.fixed_point import (
@@ -42,6 +43,7 @@ REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next 
 AT_REST_DIFFERENCE = 2e-2  # by which states with oil are disturbed at rest: the kinks blur less, and the gap is wide
 DOUBLE = 0.02  # distance of a second multiplier from 1 below which both are separated by their sum
 WIDE = 0.2  # smallest gap from which on disturbances have their full size
+SMALLEST_SHARE = 1.0 / 32.0  # of the unbalance in a step
 
 
 @dataclass(frozen=True)
@@ -130,10 +132,21 @@ class Rest:
 
 
 class Shooting:
-    """Finds cycles and resting positions of one machine. unit: rad/s, of speeds and frequencies."""
+    """Finds cycles and resting positions of one machine, or, where its unbalance acts, synchronous motions. unit: that
+    of speeds and frequencies in rad/s."""
 
     def __init__(self, flow: PeriodMap, unit: float) -> None:
         self.flow, self.unit = flow, unit
+
+    @property
+    def free(self) -> bool:
+        """Whether the period is that of a whirl, and not that of the rotor."""
+        return self.flow.driven == 0.0
+
+    @property
+    def with_all_unbalance(self) -> Shooting:
+        """The same machine with its unbalance."""
+        return Shooting(replace(self.flow, driven=1.0), self.unit)
 
     def speed_Hz(self, shot: Shot) -> float:
         """The rotor speed of a cycle in Hz."""
@@ -174,8 +187,7 @@ class Shooting:
     def stepped(self, shot: Shot, length: float, along: Array) -> Shot | None:
         """The cycle behind a step along a direction (N + 2,) of length 1; None if it is not found."""
         size = len(shot.x)
-        row = np.stack([self.phase(shot.wet), along[:size]])
-        conditions = Conditions(row, np.stack([np.zeros(2), along[size:]]))
+        conditions = both(self.held(shot.wet), along)
         guess_x, guess_p = shot.x + length * along[:size], shot.p + length * along[size:]
         return self._found(replace(shot, tangent=along), guess_x, guess_p, conditions)
 
@@ -183,44 +195,78 @@ class Shooting:
         """(N + 2,) direction of length 1 from one cycle to the next, without what they differ by in time.
 
         A branch is followed along it: where multipliers lie next to 1 their error turns the tangent to and fro."""
-        phase = np.concatenate([self.phase(after.wet), np.zeros(2)])
+        phase = self.held(after.wet) / float(np.linalg.norm(self.held(after.wet)))
         chord = np.concatenate([after.x - shot.x, after.p - shot.p])
         chord = chord - phase * (phase @ chord)
         return np.asarray(chord / np.linalg.norm(chord))
 
     def at_speed(self, shot: Shot, other: Shot, omega: float) -> Shot | None:
         """The cycle at a speed in rad/s between two, found from the nearer one's slow motions or from the other's."""
-        size = len(shot.x)
         share = (math.log(omega / self.unit) - shot.p[1]) / (other.p[1] - shot.p[1])
         x, p = shot.x + share * (other.x - shot.x), shot.p + share * (other.p - shot.p)
         for one in (shot, other) if share < 0.5 else (other, shot):
-            row = np.stack([self.phase(one.wet), np.zeros(size)])
-            found = self._found(one, x, p, Conditions(row, np.array([[0.0, 0.0], [0.0, 1.0]])))
+            found = self._found(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
             if found is not None:
                 return found
         return None
 
     def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
         """The cycle of a small size beside a Hopf point; number: of the eigenvalue that crosses there."""
-        mode, nu, size = rest.states[:, number], rest.eigenvalues[number].imag, len(rest.x)
+        mode, nu = rest.states[:, number], rest.eigenvalues[number].imag
         steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
         across = across - along * (along @ across)
         p = np.log([2.0 * math.pi / nu * self.unit, rest.omega / self.unit])
         guess = rest.x + length * along
         tangent = np.concatenate([along, np.zeros(2)])
-        rows = np.stack([across / np.linalg.norm(across), along])
-        start = Shot(
-            rest.x, p, rest.wet, np.zeros((1, 1, 2)), SlowSpace(np.zeros((size, 0)), np.zeros((size, 0)),
-            np.zeros((size, 2))), tangent, Multipliers(np.ones(1, dtype=complex), 0.0), steps,
-        )  # fmt: skip
+        rows = np.stack([np.append(across / np.linalg.norm(across), np.zeros(2)), tangent])
+        start = self._near(rest.wet, p, tangent, steps)
+        found = self.begun(start, guess, both(*rows))
+        return None if found is None else replace(found, tangent=self.direction(start, found))
+
+    def with_unbalance(self, rest: Rest) -> Shot | None:
+        """The synchronous motion at the speed of a resting position, the tangent to lower speeds; None if it is not
+        found. The unbalance is raised in steps where one step does not lead there."""
+        size, speed = len(rest.x), math.log(rest.omega / self.unit)
+        p = np.array([math.log(2.0 * math.pi) - speed, speed])
+        down = np.append(np.zeros(size), [1.0, -1.0]) / math.sqrt(2.0)
+        found, share = self._near(rest.wet, p, down, STEPS_PER_REVOLUTION), 0.0
+
+        def raised(by: float) -> Shot | None:
+            partly = Shooting(replace(self.flow, driven=(share + by) * self.flow.driven), self.unit)
+            held = both(self.held(found.wet), unit_vector(size + 2))
+            return partly.begun(found, found.x, held)
+
+        while share < 1.0:
+            there, step = halved_until(raised, 1.0 - share, SMALLEST_SHARE)
+            if there is None:
+                return None
+            found, share = there, share + step
+        return found
+
+    def _near(self, wet: Wet, p: Array, tangent: Array, steps: int) -> Shot:
+        """A machine as a motion of which nothing is known."""
+        x = self.flow.packed(wet, self.unit)
+        nothing = np.zeros((len(x), 0))
+        none = Multipliers(np.ones(1, dtype=complex), 0.0)
+        space = SlowSpace(nothing, nothing, np.zeros((len(x), 2)))
+        return Shot(x, p, wet, np.zeros((1, 1, 2)), space, tangent, none, steps)
+
+    def locked_in(self, wet: Wet, omega: float) -> Shot | None:
+        """The motion of two periods of the rotor next to a machine at a speed in rad/s; None if it is not found."""
+        x, speed = self.flow.packed(wet, self.unit), math.log(omega / self.unit)
+        p = np.array([math.log(4.0 * math.pi) - speed, speed])
+        start = self._near(wet, p, unit_vector(len(x) + 2), 2 * STEPS_PER_REVOLUTION)
+        return self.begun(start, x, both(self.held(wet), unit_vector(len(x) + 2)))
+
+    def begun(self, start: Shot, guess: Array, conditions: Conditions) -> Shot | None:
+        """The motion near a guess about which the slow motions are still to be found; None if it is not found."""
         try:
-            asked = _Asked(self, rest.wet, steps)
-            space = slow_space(asked.at, guess, p, self._first(guess))
+            asked = _Asked(self, start.wet, start.steps)
+            space = slow_space(asked.at, guess, start.p, self._first(guess))
         except Unreachable:
             return None
-        found = self._found(replace(start, space=space), guess, p, Conditions(rows, np.zeros((2, 2))))
-        return None if found is None else replace(found, tangent=self.direction(start, found))
+        return self._found(replace(start, space=space), guess, start.p, conditions)
 
     def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
         asked = _Asked(self, shot.wet, shot.steps)
@@ -236,11 +282,12 @@ class Shooting:
             space = slow_space(asked.at, x, p, self._first(x, found.space), by)
         except Unreachable:
             return None
-        phase = self.phase(wet)
-        tangent = direction_along(space, phase, shot.tangent)
+        held = self.held(wet)
+        tangent = direction_along(space, held, shot.tangent)
+        multipliers = multipliers_of(space, held[: len(x)]) if self.free else driven_multipliers(space)
         others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in self.flow.places)
         return Shot(
-            x, p, wet, passage.displacements, space, tangent, multipliers_of(space, phase), shot.steps,
+            x, p, wet, passage.displacements, space, tangent, multipliers, shot.steps,
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
@@ -275,10 +322,13 @@ class Shooting:
             return None
         return None if found is None else (found.p, asked.passage.displacements)
 
-    def phase(self, wet: Wet) -> Array:
-        """The direction in which a state moves in time, of the rotor alone."""
+    def held(self, wet: Wet) -> Array:
+        """(N + 2,) what holds a motion in time: nothing along the direction in which its state moves, of the rotor
+        alone; with the unbalance no change of T Omega."""
+        if not self.free:
+            return np.append(np.zeros(self.flow.size), np.ones(2))
         found = self.flow.motion_of(wet, self.unit)
-        return found / float(np.linalg.norm(found))
+        return np.append(found / float(np.linalg.norm(found)), np.zeros(2))
 
     def _first(self, x: Array, known: SlowSpace | None = None) -> Array:
         """(N, j) unit states of the rotor and of fillings, and the slow motions that are known already, oil that stays
@@ -313,6 +363,12 @@ class _Asked:
         self.near = self.flow.unpacked(x, self.passage.end, self.shooting.unit)
 
 
+def both(held: Array, along: Array) -> Conditions:
+    """Nothing along two directions (N + 2,)."""
+    rows = np.stack([held, along])
+    return Conditions(rows[:, :-2], rows[:, -2:])
+
+
 def largest(displacements: Array) -> Array:
     """(J,) largest eccentricity of an orbit (SAMPLES + 1, J, 2), between samples by parabolas."""
     e = np.hypot(displacements[:-1, :, 0], displacements[:-1, :, 1])
@@ -320,6 +376,11 @@ def largest(displacements: Array) -> Array:
     before, here, after = e[at - 1, films], e[at, films], e[(at + 1) % len(e), films]
     bend = np.maximum(2.0 * here - before - after, 1e-300)
     return np.asarray(here + (after - before) ** 2 / (8.0 * bend))
+
+
+def driven_multipliers(space: SlowSpace) -> Multipliers:
+    """The multipliers of a motion with the unbalance; none is trivial, and a 1 stands in its place."""
+    return Multipliers(np.append(1.0 + 0.0j, ritz(space)[0]), BLURRED)
 
 
 def multipliers_of(space: SlowSpace, phase: Array) -> Multipliers:

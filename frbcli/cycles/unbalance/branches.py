@@ -57,16 +57,12 @@ def _with_unbalance(
 ) -> tuple[list[UnbalancedWhirl], list[str]]:
     """The whirls of a branch in its order, and what is to be said of them."""
     chain, motions = Chain(at_its_heat), {}
-    for place in _taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
+    for place in taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
         point = branch.points[place]
         motions[place] = chain.next(follower.course.machine(2.0 * math.pi * point.speed_Hz), point)
         if (motion := motions[place]) is not None:
             tell(motion.whirl)
-    remarks, missing = [], [branch.points[place].speed_Hz for place, motion in motions.items() if motion is None]
-    if missing:
-        where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
-        between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
-        remarks.append(f"no motion was found {between} {where}.")
+    remarks = not_found([branch.points[place].speed_Hz for place, motion in motions.items() if motion is None])
     ends = [end for place in motions for way in (-1, 1) if (end := _end(follower, branch.points, motions, place, way))]
     behind: dict[tuple[int, int], list[UnbalancedWhirl]] = {}
     reached: list[_End] = []
@@ -84,14 +80,23 @@ def _with_unbalance(
     return whirls, remarks
 
 
-def _taken(branch: CycleBranch, apart: float) -> list[int]:
+def taken(branch: CycleBranch, apart: float) -> list[int]:
     """Places in a branch of stable cycles at some distance from each other in Hz, with those that were asked for."""
-    taken: list[int] = []
+    places: list[int] = []
     for place, point in enumerate(branch.points):
-        far = not taken or abs(point.speed_Hz - branch.points[taken[-1]].speed_Hz) >= apart
+        far = not places or abs(point.speed_Hz - branch.points[places[-1]].speed_Hz) >= apart
         if point.stable and (far or point.kind == ASKED):
-            taken.append(place)
-    return taken
+            places.append(place)
+    return places
+
+
+def not_found(missing: Sequence[float]) -> list[str]:
+    """What is to be said of speeds in Hz at which no motion was found."""
+    if not missing:
+        return []
+    where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
+    between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
+    return [f"no motion was found {between} {where}."]
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,7 @@ class Chain:
         return torus
 
     def _locked(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
-        if not _nearly_half(nu, omega):
+        if not nearly_half(nu, omega):
             return None
         if self.locked is not None:
             near = unpacked(self.locked.y[:-2], machine.size)
@@ -114,7 +114,7 @@ class Chain:
         return with_unbalance(machine, before)
 
     def _beating(self, machine: Machine, before: Torus) -> Torus:
-        if not _nearly_half(before.nu, before.omega):
+        if not nearly_half(before.nu, before.omega):
             raise Unreachable
         return beating(machine, before.motion[before.orders[:, 1] == 0], before.nu, before.omega)
 
@@ -136,7 +136,8 @@ def _moments_of_cycle(motion: Complex, nu: float) -> tuple[Array, Array]:
     return u, nu * rate
 
 
-def _nearly_half(nu: float, omega: float) -> bool:
+def nearly_half(nu: float, omega: float) -> bool:
+    """Whether a whirl may lock in; both in rad/s."""
     return abs(2.0 * nu - omega) <= NEAR_HALF * omega
 
 
@@ -165,18 +166,13 @@ def free_whirl(machine: Machine, torus: Torus, stable: bool | None, kind: str = 
     """Results of a motion of two frequencies."""
     films = 2 * machine.film_count
     displacements = samples(torus.orders, torus.motion[:, :films], _phases(torus.orders))
-    lines = [
-        SpectralLine(_combination(int(j), int(k), frequency), abs(hertz(frequency)), _axis(harmonic[:films]))
-        for (j, k), frequency, harmonic in zip(torus.orders, torus.frequencies, torus.motion, strict=True)
-        if (j, k) != (0, 0)
-    ]
     return UnbalancedWhirl(
         speed_Hz=hertz(torus.omega),
         frequency_Hz=hertz(torus.nu),
         locked=False,
         eccentricity_max=largest_of(displacements.reshape(-1, films)),
         ring_speeds_Hz=hertz(machine.pace) * torus.motion[0, films:].real,
-        lines=_main(lines, ("nu", "Omega")),
+        lines=free_lines(torus.orders, torus.frequencies, torus.motion[:, :films]),
         stable=stable,
         kind=kind,
         temperatures_K=machine.temperatures,
@@ -188,21 +184,37 @@ def _locked_whirl(machine: Machine, cycle: Cycle) -> UnbalancedWhirl:
     films = 2 * machine.film_count
     motion, omega = unpacked(cycle.y[:-2], machine.size), float(cycle.y[-1] * machine.pace)
     displacements, _ = motion_along(motion[:, :films], max(MOMENTS, 4 * len(motion)))
-    lines = [
-        SpectralLine(_half(order), 0.5 * order * hertz(omega), _axis(harmonic[:films]))
-        for order, harmonic in enumerate(motion)
-        if order > 0
-    ]
     return UnbalancedWhirl(
         speed_Hz=hertz(omega),
         frequency_Hz=0.5 * hertz(omega),
         locked=True,
         eccentricity_max=largest_of(displacements),
         ring_speeds_Hz=hertz(machine.pace) * motion[0, films:].real,
-        lines=_main(lines, (_half(1), _half(2))),
+        lines=locked_lines(omega, motion[:, :films]),
         stable=cycle.multipliers.stable,
         temperatures_K=machine.temperatures,
     )
+
+
+def free_lines(orders: Orders, frequencies: Array, harmonics: Complex) -> tuple[SpectralLine, ...]:
+    """The lines of a motion of two frequencies. orders: (l, 2); frequencies: (l,) rad/s; harmonics: (l, 2 F) of the
+    displacements over the clearance."""
+    lines = [
+        SpectralLine(_combination(int(j), int(k), frequency), abs(hertz(frequency)), _axis(harmonic))
+        for (j, k), frequency, harmonic in zip(orders, frequencies, harmonics, strict=True)
+        if (j, k) != (0, 0)
+    ]
+    return _main(lines, ("nu", "Omega"))
+
+
+def locked_lines(omega: float, harmonics: Complex) -> tuple[SpectralLine, ...]:
+    """The lines of a motion of two periods of the rotor. omega: rad/s; harmonics: (H + 1, 2 F), as for free_lines."""
+    lines = [
+        SpectralLine(_half(order), 0.5 * order * hertz(omega), _axis(harmonic))
+        for order, harmonic in enumerate(harmonics)
+        if order > 0
+    ]
+    return _main(lines, (_half(1), _half(2)))
 
 
 def _axis(harmonic: Complex) -> Array:

@@ -19,13 +19,13 @@ from frbcli.scene.forms.tilted import (
     misalignment_faults,
     run_faults,
 )
-from frbcli.scene.gate.analysis import FILMS, RANGE, SHEETS, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.analysis import FILMS, RANGE, SHEETS, SPEED_CYCLES, STABILITY, WHIRLS
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text, misaligned
 
-AT_REST = (FILMS, STABILITY, RANGE, *SHEETS, SPEED_CYCLES)
+AT_REST = (FILMS, STABILITY, RANGE, *SHEETS, SPEED_CYCLES, WHIRLS)
 WITHOUT = "Leave bearing.misalignment out."
 
 

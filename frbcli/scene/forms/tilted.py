@@ -26,6 +26,7 @@ from frbcli.scene.gate.analysis import (
     RUN,
     SPEED_CYCLES,
     STABILITY,
+    WHIRLS,
 )
 from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
@@ -38,7 +39,8 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED, RUNS, LOOPS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES), (RUN, COMPARISON, LADDER), (RUN, SPEED_CYCLES)
+FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES, WHIRLS), (RUN, COMPARISON, LADDER)
+LOOPS = (RUN, SPEED_CYCLES, WHIRLS)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 

@@ -23,7 +23,6 @@ from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
 CONSTANT = "these limit cycles are computed for one rotor with constant coefficients"
-TWO_FREQUENCIES = "a whirl with unbalance has two frequencies and no period"
 HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
 
 
@@ -106,17 +105,10 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
 
 
 def unbalance_faults(case: Case) -> Iterator[Fault]:
-    """Whirls with unbalance are found by harmonic balance, of rotors that have an unbalance."""
+    """Whirls with unbalance are those of rotors that have one."""
     if not drives(case):
         problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
-    if by_shooting(case):
-        problem = (
-            "has a force with kinks or a memory in its oil, so that limit cycles are computed over one period of a "
-            f"run; {TWO_FREQUENCIES}."
-        )
-        remedy = "Take half-sommerfeld without openings but grooves here, and a run-up for this model."
-        yield from (Fault(key, name, None, problem, remedy) for key, name in cavitation_keys(case))
 
 
 def drives(case: Case) -> list[str]:

@@ -1,0 +1,225 @@
+"""Whirls with the unbalance in films on cells, as closed curves that the map over a period of the rotor maps onto
+themselves (period_map.py).
+
+Seen once in each period of the rotor, a motion of two frequencies nu and Omega is a point x(a) of a closed curve that
+moves on by rho = nu / Omega of a turn, M(x(a)) = x(a + 2 pi rho). The curve has N points at equal phases a, and is a
+trigonometric polynomial between them, so that turned back by S(rho) it is a fixed point,
+
+    x = S(rho) M(x),
+
+with a shift of a excluded by <dx_0/da, x - x_0> = 0. As in fixed_point.py the derivative of M is taken in the slow
+motions alone: at each point those of the rotor, and what of the oil of a film moves along with them one period later;
+the rest of the oil is repeated. Its eigenvalues lie on circles about 0, one for each Lyapunov exponent, and those of
+smooth disturbances tell their radii: one is 1, of a shift of a, and the motion is stable if no other one is above 1.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from frbcli.arrays import Array, Complex
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.shooting.fixed_point import DIFFERENCE
+from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
+from frbcli.cycles.shooting.shots import BLURRED, WIDE, Shooting, Shot
+
+POINTS = (33, 65, 129)  # of a curve, odd: the number is raised until the last harmonics are small
+TAIL, TAIL_AT_MOST = 1e-4, 1e-3  # of a displacement over the clearance in the last eighth of the harmonics
+ITERATIONS = 30
+CLOSE, NOISE = 3e-6, 1e-4  # corrections of the rotor that end the iteration: always, and if they become no smaller
+PATIENCE = 4  # iterations in which corrections have to become half of what they were
+RENEWED = 2  # times that the derivative is computed
+STRAY = 0.5  # a correction beyond which the iteration is given up
+NEW = 1e-3  # oil that moves along with the rotor by less is not a direction of its own
+SMOOTH, LOW = 0.9, 6  # share of a disturbance in the lowest N / LOW harmonics from which on it is smooth
+
+
+@dataclass(frozen=True)
+class InvariantCurve:
+    """wets: the machine at N equal phases; states: (N, n) x; rho: turns of the whirl in a turn of the rotor; omega:
+    rad/s; displacements: (N, SAMPLES + 1, J, 2) over the period behind each point, see Passage; radii: of the circles
+    on which multipliers lie, by falling size, that of a shift among them."""
+
+    wets: tuple[Wet, ...]
+    states: Array
+    rho: float
+    omega: float
+    displacements: Array
+    radii: Array
+
+    @property
+    def stable(self) -> bool:
+        """Whether all disturbances decay."""
+        shift = int(np.argmin(np.abs(self.radii - 1.0)))
+        others = np.delete(self.radii, shift)
+        return bool(np.all(others < 1.0 + max(BLURRED, abs(self.radii[shift] - 1.0))))
+
+    @property
+    def largest(self) -> Array:
+        """(J,) largest eccentricity."""
+        fine = between(len(self.states), 2.0 * np.pi * np.arange(8 * len(self.states)) / (8 * len(self.states)))
+        found = np.tensordot(fine, self.displacements, axes=1)
+        return np.asarray(np.hypot(found[..., 0], found[..., 1]).max(axis=(0, 1)))
+
+    def harmonics(self, displacements: Array) -> tuple[NDArray[np.int64], Complex]:
+        """(l, 2) orders (j, k) and (l, ...) harmonics u of displacements (N, SAMPLES + 1, ...), which are the sum of
+        u exp(i (j a + k b)) and of what is conjugate to it; a, b: phases of the whirl and of the rotor."""
+        found, count = displacements[:, :-1], len(displacements)
+        samples, rest = found.shape[1], (1,) * (found.ndim - 2)
+        j = np.fft.fftfreq(count, 1.0 / count).round().astype(int)
+        k = np.fft.fftfreq(samples, 1.0 / samples).round().astype(int)
+        by_j = np.fft.fft(found, axis=0, norm="forward")
+        turned = np.exp(-2j * np.pi * self.rho * np.outer(j, np.arange(samples)) / samples)
+        both = np.fft.fft(by_j * turned.reshape(*turned.shape, *rest), axis=1, norm="forward")
+        orders = np.array([(one, other) for one in j for other in k])
+        half = (orders[:, 1] > 0) | ((orders[:, 1] == 0) & (orders[:, 0] >= 0))
+        return orders[half], both.reshape(len(orders), *found.shape[2:])[half]
+
+
+def between(count: int, phases: Array, slope: bool = False) -> Array:
+    """(len(phases), count) matrix that gives a curve of an odd number of equal phases, or its slope, at others."""
+    orders = np.arange(1, (count - 1) // 2 + 1)
+    apart = (phases[:, None] - 2.0 * np.pi * np.arange(count) / count)[..., None] * orders
+    if slope:
+        return np.asarray(-2.0 / count * (np.sin(apart) @ orders))
+    return np.asarray((1.0 + 2.0 * np.cos(apart).sum(axis=-1)) / count)
+
+
+def along_cycle(shooting: Shooting, shot: Shot) -> tuple[tuple[Wet, ...], float]:
+    """The machine at the first number of POINTS of equal phases of a cycle, and rho. Raises Unreachable."""
+    omega, time, count = shooting.unit * math.exp(shot.p[1]), math.exp(shot.p[0]) / shooting.unit, POINTS[0]
+    wets = [shot.wet]
+    while len(wets) < count:
+        wets.append(shooting.flow.passage(wets[-1], time / count, omega, math.ceil(shot.steps / count), 1).end)
+    return tuple(wets), 2.0 * math.pi / (time * omega)
+
+
+class _Curves:
+    """Finds the curve of a machine at a speed in rad/s. unit: of its states, rad/s."""
+
+    def __init__(self, flow: PeriodMap, unit: float, omega: float) -> None:
+        self.flow, self.unit, self.omega = flow, unit, omega
+
+    def passage(self, x: Array, near: Wet) -> Passage:
+        wet = self.flow.unpacked(x, near, self.unit)
+        return self.flow.passage(wet, 2.0 * math.pi / self.omega, self.omega, STEPS_PER_REVOLUTION)
+
+    def image(self, x: Array, near: Wet) -> Array:
+        return self.flow.packed(self.passage(x, near).end, self.unit)
+
+    def changed(self, x: Array, near: Wet, directions: Array, by: float) -> Array:
+        """(n, k) what the map makes of directions (n, k) at a state."""
+        return np.transpose([
+            (self.image(x + by * each, near) - self.image(x - by * each, near)) / (2.0 * by) for each in directions.T
+        ])  # fmt: skip
+
+    def slow(self, states: Array, near: tuple[Wet, ...], turn: Array, gap: float) -> tuple[Array, Array]:
+        """(N, n, k) slow motions at each point and what the map makes of them. turn: S(rho)."""
+        rotor, by = np.eye(states.shape[1])[:, : self.flow.slow], DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
+        images = np.array([self.changed(x, wet, rotor, by) for x, wet in zip(states, near, strict=True)])
+        if not self.flow.held.any():
+            return np.broadcast_to(rotor, images.shape), images
+        oil = np.tensordot(turn, images, axes=1)
+        oil[:, : self.flow.slow] = 0.0
+        along, sizes, _ = np.linalg.svd(oil, full_matrices=False)
+        along = along * (sizes > NEW)[:, None, :]
+        moved = np.array([
+            self.changed(x, wet, each, by) for x, wet, each in zip(states, near, along, strict=True)
+        ])  # fmt: skip
+        both = np.broadcast_to(rotor, images.shape)
+        return np.concatenate([both, along], axis=2), np.concatenate([images, moved], axis=2)
+
+    def solved(self, wets: tuple[Wet, ...], states: Array, rho: float) -> InvariantCurve | None:
+        """The curve next to a guess; None if it does not converge. Raises Unreachable."""
+        count, slow = len(states), self.flow.slow
+        phases = 2.0 * np.pi * np.arange(count) / count
+        row = (between(count, phases, slope=True) @ states)[:, :slow]
+        first, sizes, renewed, age = states, [np.inf], 0, 0
+        directions = images = np.zeros((0, 0, 0))
+        for _ in range(ITERATIONS):
+            passages = [self.passage(x, wet) for x, wet in zip(states, wets, strict=True)]
+            found = np.array([self.flow.packed(each.end, self.unit) for each in passages])
+            orbits = np.array([each.displacements for each in passages])
+            gap = 1.0 - float(np.hypot(orbits[..., 0], orbits[..., 1]).max())
+            turn = between(count, phases - 2.0 * np.pi * rho)
+            turned = turn @ found
+            by_rho = -2.0 * np.pi * between(count, phases - 2.0 * np.pi * rho, slope=True) @ found
+            residual = turned - states
+            stays = age > PATIENCE and sizes[-1] > 0.5 * min(sizes[:-PATIENCE])
+            if sizes[-1] < CLOSE or (stays and min(sizes) < NOISE):
+                directions, images = self.slow(states, wets, turn, gap)
+                radii = self._radii(directions, images, turn)
+                return InvariantCurve(wets, states, rho, self.omega, orbits, radii)
+            if stays and renewed == RENEWED:
+                return None
+            if renewed == 0 or stays:
+                directions, images = self.slow(states, wets, turn, gap)
+                renewed, age = renewed + 1, 0
+            reduced = np.einsum("ina,ij,jnb->iajb", directions, turn, images, optimize=True)
+            k = directions.shape[2]
+            matrix = np.eye(count * k + 1)
+            matrix[:-1, :-1] -= reduced.reshape(count * k, count * k)
+            matrix[:-1, -1] = -np.einsum("ina,in->ia", directions, by_rho).ravel()
+            matrix[-1, :-1] = np.einsum("in,ina->ia", row, directions[:, :slow]).ravel()
+            matrix[-1, -1] = 0.0
+            right = np.append(
+                np.einsum("ina,in->ia", directions, residual).ravel(), -np.sum(row * (states - first)[:, :slow])
+            )
+            answer = np.linalg.solve(matrix, right)
+            step, on = answer[:-1].reshape(count, k), float(answer[-1])
+            change = residual + np.einsum("ij,jna,ja->in", turn, images, step, optimize=True) + by_rho * on
+            if not np.isfinite(change).all() or np.abs(change[:, :slow]).max() > STRAY:
+                return None
+            states, rho = states + change, rho + on
+            beside = np.round(np.arange(count) - count * rho).astype(int) % count
+            wets = tuple(passages[each].end for each in beside)
+            sizes.append(float(np.abs(change[:, :slow]).max()))
+            age += 1
+        return None
+
+    @staticmethod
+    def _radii(directions: Array, images: Array, turn: Array) -> Array:
+        """Moduli of the eigenvalues of smooth disturbances, by falling size."""
+        count, _, k = directions.shape
+        reduced = np.einsum("ina,ij,jnb->iajb", directions, turn, images, optimize=True)
+        values, vectors = np.linalg.eig(reduced.reshape(count * k, count * k))
+        waves = np.abs(np.fft.fft(vectors.reshape(count, k, -1), axis=0)) ** 2
+        waves = waves.sum(axis=1)
+        low = np.abs(np.fft.fftfreq(count, 1.0 / count)) <= count / LOW
+        smooth = waves[low].sum(axis=0) > SMOOTH * waves.sum(axis=0)
+        return np.sort(np.abs(values[smooth]))[::-1]
+
+
+def invariant_curve(
+    flow: PeriodMap, unit: float, omega: float, start: tuple[tuple[Wet, ...], float]
+) -> InvariantCurve | None:
+    """The curve next to machines at equal phases and rho, with as many points as it needs; None if it is not found."""
+    wets, rho = start
+    states = np.array([flow.packed(wet, unit) for wet in wets])
+    curves = _Curves(flow, unit, omega)
+    for count in POINTS:
+        if count != len(states):
+            phases = 2.0 * np.pi * np.arange(count) / count
+            wets = tuple(wets[each] for each in np.round(phases / (2.0 * np.pi) * len(wets)).astype(int) % len(wets))
+            states = between(len(states), phases) @ states
+        try:
+            found = curves.solved(wets, states, rho)
+        except (Unreachable, np.linalg.LinAlgError):
+            return None
+        if found is None:
+            return None
+        tail = _tail(found)
+        if tail < TAIL:
+            return found
+        wets, states, rho = found.wets, found.states, found.rho
+    return found if tail < TAIL_AT_MOST else None
+
+
+def _tail(curve: InvariantCurve) -> float:
+    """The largest displacement over the clearance in the last eighth of the harmonics."""
+    sizes = np.abs(np.fft.rfft(curve.displacements[:, 0], axis=0, norm="forward")).max(axis=(1, 2))
+    return float(sizes[-(len(sizes) // 8 + 1) :].max())
