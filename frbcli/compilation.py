@@ -55,6 +55,29 @@ def counted(observe: Callable[[], None] | None = None) -> Iterator[Compilations]
         yield compilations
 
 
+class CompilationNeededError(Exception):
+    """A kernel is not on disk where nothing is to be compiled."""
+
+
+class _Refusing(Listener):
+    def on_start(self, _event: Any) -> None:
+        raise CompilationNeededError
+
+    def on_end(self, _event: Any) -> None:
+        """Nothing was compiled."""
+
+
+@contextmanager
+def without_compiling() -> Iterator[None]:
+    """Within it kernels come from disk.
+
+    Raises:
+        CompilationNeededError: one is not there.
+    """
+    with install_listener(COMPILE, _Refusing()):
+        yield
+
+
 class Clock(NamedTuple):
     """Times in s of this process, in which it did not compile."""
 

@@ -58,6 +58,17 @@ def test_kernels_are_compiled_once(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", RUN, str(tmp_path / "run.h5")], env=environment, check=True)
 
 
+def test_a_check_for_people_compiles_nothing(tmp_path: Path) -> None:
+    """Not with heat either, whose films it would have to solve: it names the command that compiles their kernels."""
+    words = [sys.executable, "-m", "frbcli", "check", "turbocharger-car-heat"]
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(tmp_path)}
+    done = subprocess.run(words, env=environment, capture_output=True, text=True, check=True)
+    assert "frb warm-up compiles" in done.stdout
+    assert "heat at the top speed" not in done.stdout
+    assert "Compiling" not in done.stderr
+    assert not list(tmp_path.rglob("*.nbc"))
+
+
 SUMMITS = ("contact.model=asperities", "contact.roughness=0.5 um", "contact.summit_radius=20 um",
            "contact.summit_density=4e10 1/m^2")  # fmt: skip
 # A case, what it is set to, and settings of which each has other kernels

@@ -139,18 +139,29 @@ def _value_documents(values: Sequence[ListedValue]) -> list[dict[str, object]]:
 
 
 def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
-    """Temperatures at the top speed, when everything is warm. They are solutions of the films, whose kernels may have
-    to be compiled; all else that a check says needs none."""
-    from frbcli.cli.progress import computing
+    """Temperatures at the top speed, when everything is warm. They are solutions of the films, whose kernels come from
+    disk or are compiled for JSON: a look at a case does not wait for a compiler."""
+    from frbcli.cli.progress import computing, display
+    from frbcli.compilation import CompilationNeededError, without_compiling
     from frbcli.equilibrium.warm_machine import warm_machine
     from frbcli.errors import NotConverged
 
     try:
-        with computing(terminal, case, kernels="rest"):
-            warm = warm_machine(case)
+        if terminal.json:
+            with computing(terminal, case, kernels="rest"):
+                warm = warm_machine(case)
+        else:
+            with display(terminal), without_compiling():
+                warm = warm_machine(case)
     except NotConverged as error:
         terminal.sentence(f"No steady temperatures at the top speed: {error}")
         return {"problem": str(error)}
+    except CompilationNeededError:
+        terminal.sentence(
+            "Steady temperatures at the top speed are solutions of the films, whose kernels are not compiled yet. "
+            "frb warm-up compiles all that this case needs, once; afterwards frb check tells the temperatures."
+        )
+        return {}
     tell_heat(terminal, warm, "heat at the top speed, when everything is warm")
     return heat_document(warm)
 
