@@ -39,8 +39,8 @@ Array = NDArray[np.float64]
 
 CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
 # How far coefficients are off is not even from mesh to mesh as edges of cavities cross cells, so that one coarser mesh
-# may agree by chance; their order lies between one and two, and is taken as low as the scatter asks for.
-COARSER, ORDER = ((72, 10), (96, 14)), 1.3
+# may agree by chance.
+COARSER = ((72, 10), (96, 14))
 # Films without cells: lines along which films at rest are clipped, whose number costs little there; times the elements
 # each way of the finer mesh, and its share: differences scatter as the edge of the cavity crosses the lines.
 RESTING_LINES = 3
@@ -118,7 +118,7 @@ class StaticFilms:
             return tuple(FieldFilms(*films, other.share) for films in both)
         own, fewer = self.system.films.with_fields or self._on(CELLS), COARSER[0]
         pairs = zip(map(EvenFilm, own), map(EvenFilm, self._on(fewer)), strict=True)
-        return tuple(FieldFilms(*films, share_of_cells(fewer, CELLS, ORDER)) for films in pairs)
+        return tuple(FieldFilms(*films, share_of_cells(fewer, CELLS)) for films in pairs)
 
     def _on(self, cells: tuple[int, int]) -> tuple[VolumeFilm, ...]:
         return tuple(volume_film(self.case, each, cells, self.top_Hz, edged=True) for each in film_places(self.case))
@@ -144,8 +144,7 @@ def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
         return ()
     if plan.form.by_cells:
         own, *coarser = plan.form.static_cells or (CELLS, *COARSER)
-        order = ORDER if plan.edged else FRONTS
-        return tuple((replace(plan, cells=cells), share_of_cells(cells, own, order)) for cells in coarser)
+        return tuple((replace(plan, cells=cells), share_of_cells(cells, own)) for cells in coarser)
     finer = [Mesh(FINER * mesh.axial, FINER * mesh.circumferential, 2 * mesh.lines + 1) for _, mesh in plan.films]
     meshes = [DEFAULT_MESH] * len(finer) if plan.theory == "short" else finer
     films = tuple((form, mesh) for (form, _), mesh in zip(plan.films, meshes, strict=True))

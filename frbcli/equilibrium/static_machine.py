@@ -38,9 +38,10 @@ SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a h
 # law follows, those of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
-# Where all meshes agree by chance, coefficients on cells may still be off by so much of the square of a cell's length
-# over 1 - e, that of the narrow gap.
-NARROW = 0.15
+# Differences of coefficients between meshes of cells scatter, and may be so much less than those of the mean over places.
+# Where all meshes agree by chance, coefficients may still be off by so much of the square of a cell's length over 1 - e,
+# that of the narrow gap.
+SCATTER, NARROW = 1.25, 0.15
 CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
 
 
@@ -185,7 +186,7 @@ def _resting_film(
     places = [(other.position.journals[i][:2] / clearance, share) for other, share in others]
     error = coefficient_error(force, forces, omega)
     if plan.edged and plan.cells:
-        error = max(error, NARROW * (2.0 * math.pi / plan.cells[0]) ** 2 / (1.0 - float(np.hypot(*place))))
+        error = max(SCATTER * error, NARROW * (2.0 * math.pi / plan.cells[0]) ** 2 / (1.0 - float(np.hypot(*place))))
     return resting_film(system.names[i], force, place, error, place_error(place, places), tilt=tilt)
 
 
