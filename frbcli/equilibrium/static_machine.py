@@ -38,9 +38,9 @@ SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a h
 # law follows, those of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
-# Differences of coefficients between meshes of cells scatter, and may be so much less than those of the mean over places.
-# Where all meshes agree by chance, coefficients may still be off by so much of the square of a cell's length over 1 - e,
-# that of the narrow gap.
+# Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
+# meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, that of the
+# narrow gap.
 SCATTER, NARROW = 1.25, 0.15
 CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
 
