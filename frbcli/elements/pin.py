@@ -45,11 +45,6 @@ class PinElement(MachineElement):
         return "pin", value, f"the ring turns by {free}, then touches {display(pin.stiffness, 'N/m')}{damped}"
 
 
-def has_pins(case: Case) -> bool:
-    """Whether a pin holds one of the rings of a case."""
-    return any(bearing.pin is not None for bearing in case.given_bearings)
-
-
 def pin_rows(pins: Sequence[Pin | None]) -> Array:
     """(rings, 4) PLAY, STIFFNESS, DAMPING and RADIUS of solve/pin.py of the pins of all rings; without rows if there is
     none."""

@@ -15,6 +15,7 @@ from scipy.linalg import expm
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
+from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
 from frbcli.film.roughness.asperities import touch
 from frbcli.film.roughness.summits import LAST
@@ -85,6 +86,13 @@ def test_drive_gives_what_films_and_friction_take_and_what_is_stored(started: Ru
     assert 0.1 * drive < whole(2.0 * started["contact_power_W"]) < 0.9 * drive
 
 
+@pytest.fixture
+def lines_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Tabulated films are clipped along the same lines at rest, where they have more by default, and in runs."""
+    monkeypatch.setattr(static_films, "RESTING_LINES", 1)
+
+
+@pytest.mark.usefixtures("lines_of_the_run")
 def test_a_slow_rotor_stays_where_the_sheet_has_it(tmp_path: Path) -> None:
     case = rigid('speed={points=[["0 s", "0.2 Hz"], ["0.2 s", "0.2 Hz"]]}', "output.step=1e-3 s")
     run = runup(case, tmp_path / "run.h5")
@@ -96,6 +104,7 @@ def test_a_slow_rotor_stays_where_the_sheet_has_it(tmp_path: Path) -> None:
     assert run["power_W"][-1] == pytest.approx(state.power, rel=5e-3)  # the sheet solves its film on cells
 
 
+@pytest.mark.usefixtures("lines_of_the_run")
 def test_a_disturbance_goes_on_as_the_linearised_machine_has_it(tmp_path: Path) -> None:
     """Next to rest, on film and summits: x(t) = exp(A t) x(0) with stiffness and damping of `stability`."""
     (point,) = stability(rigid(), [0.2]).points

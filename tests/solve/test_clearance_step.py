@@ -188,7 +188,6 @@ def test_the_case_in_the_file_is_the_case(tmp_path: Path) -> None:
         ([step_to("2 mm")], "too large for a thin film"),
         ([step_to("-2 um")], "greater than 0"),
         (['bearing.clearance_steps=[{time="2s",clearance="30um"},{time="1s",clearance="33um"}]'], "not after the step"),
-        ([step_to("40 um"), "film.cavitation=two-phase", "film.two-phase.form=published"], "published two-phase form"),
     ],
 )
 def test_what_cannot_be(settings: list[str], said: str) -> None:

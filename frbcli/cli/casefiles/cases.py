@@ -14,7 +14,7 @@ from frbcli.cli.files import OUTPUT, check_outputs
 @click.command()
 @click.argument("names", nargs=-1, metavar="[NAME]...")
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
-              help=f"{SETTING} Repeatable. The text is then without comments.")
+              help=f"{SETTING} Repeatable. [the text with its comments]")
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
 @click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")

@@ -19,7 +19,6 @@ from frbcli.cycles.unbalance.synchronous import WHIRLS
 from frbcli.cycles.unbalance.whirls import free_lines, locked_lines, nearly_half
 
 Observer = Callable[[int, float, float], None]
-Start = tuple[tuple[Wet, ...], float]
 
 SMALLEST = 0.25  # share of the unbalance in a step, where one does not lead to all of it
 APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
