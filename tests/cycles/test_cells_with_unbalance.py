@@ -15,7 +15,7 @@ from known_flows import KnownFlow
 
 import frbcli
 from frbcli.cycles.result import CycleBranch, CyclePoint
-from frbcli.cycles.shooting.invariant_curve import InvariantCurve, along_cycle, between, invariant_curve
+from frbcli.cycles.shooting.invariant_curve import TAIL, InvariantCurve, along_cycle, between, invariant_curve
 from frbcli.cycles.shooting.period_map import SAMPLES, Passage, PeriodMap, Wet, period_map, wet_at
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
@@ -172,7 +172,8 @@ def test_a_whirl_of_two_frequencies_is_what_the_time_loop_stays_on() -> None:
     for _ in range(900):
         wet, orbit = after(driven, wet, omega, 1)
         seen.append(orbit[:-1, 0])
-    assert np.hypot(*np.concatenate(seen).T).max() == pytest.approx(curve.largest[0], abs=1e-4)
+    # The last harmonics of a curve, of which a few add up, are smaller than TAIL.
+    assert np.hypot(*np.concatenate(seen).T).max() == pytest.approx(curve.largest[0], abs=3.0 * TAIL)
 
 
 @pytest.mark.nightly
