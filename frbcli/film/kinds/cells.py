@@ -129,8 +129,7 @@ class CellFilms(Films):
         return shares
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        start = near.field if near is not None and self.sought_near[i] else None
-        return steady_force(self.own[i], place, rate, total, start)
+        return steady_force(self.own[i], place, rate, total, None if near is None else near.field)
 
     def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
         film = self.own[i]

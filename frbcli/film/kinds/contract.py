@@ -223,8 +223,8 @@ class Films(ABC):
 
     @property
     def sought_near(self) -> tuple[bool, ...]:
-        """(films,) whether a film at rest is sought from one near by: of one that keeps oil alone, fronts lie between
-        other cells there."""
+        """(films,) whether a film at rest is sought from that of another speed: of one that keeps oil alone, fronts lie
+        between other cells there."""
         return tuple(not keeps for keeps in self.remembering)
 
     @property
