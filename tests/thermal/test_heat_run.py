@@ -92,7 +92,8 @@ def test_a_warm_rotor_comes_to_rest(films: str, tmp_path: Path) -> None:
         (["film.cavitation=two-phase"], 0.8),
         (["film.cavitation=penalty"], 0.4),
         (["film.cavitation=two-phase", "thermal.clearance=follows", "thermal.shaft=130 degC", HOT_HOUSING], 0.4),
-        (["film.cavitation=elrod", HOT_HOUSING], 0.4),  # the bulk modulus of its oil is infinite
+        # The bulk modulus of its oil is infinite: fronts pass whole cells, and in longer steps by 0.06 K of chance.
+        (["film.cavitation=elrod", HOT_HOUSING, "accuracy.tolerance=1e-6"], 0.4),
     ],
     ids=str,
 )
