@@ -27,7 +27,7 @@ Kernels = Literal["loop", "rest", "both"]
 
 DENSE_s, SPARSE_s = 0.5, 6e-4  # of the modes of a shaft: at DENSE degrees of freedom, and for each of more
 CRITICAL_s = 0.5  # of the critical speeds of a machine on cells
-PROGRAM_B = 2.9e8  # bytes of the program, its libraries and its compiled kernels
+PROGRAM_B = 2.3e8  # bytes of the program, its libraries and its compiled kernels
 MATRICES = 6  # of a rotor, of the modes of a shaft
 SAMPLE_s = 3.3e-7  # to write an output time and to look at it again
 SAMPLES_HELD, COPIES = 16384, 3  # output times between two writes, and in how many forms
