@@ -108,7 +108,7 @@ def command(
             found = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
             found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
-    _tell(terminal, found)
+    _tell(terminal, found, with_unbalance)
     terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
 
 
@@ -225,7 +225,7 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
     )
 
 
-def _tell(terminal: Terminal, found: LimitCycles) -> None:
+def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
     from frbcli.cycles.columns import special_columns
 
     terminal.show(found.case.heading, table_of(special_columns(found.films, found.over, found.unit), found.special))
@@ -242,7 +242,7 @@ def _tell(terminal: Terminal, found: LimitCycles) -> None:
             if point.kind == ASKED:
                 terminal.result(f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {_in_words(point)}")
     _tell_with_unbalance(terminal, found)
-    for note in (*found.notes, *_left_out(found)):
+    for note in (*found.notes, *_left_out(found, with_unbalance)):
         terminal.sentence(note)
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
 
@@ -272,14 +272,13 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
             terminal.result(f"{told}: the whirl at {', '.join(speeds)} Hz.")
 
 
-def _left_out(found: LimitCycles) -> list[str]:
+def _left_out(found: LimitCycles, with_unbalance: bool) -> list[str]:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.gate.cycles import drives
 
     notes = []
     if driven := " and ".join(drives(found.case)):
-        asked = any(branch.with_unbalance for branch in found.branches)
-        more = "." if asked else ": with it a whirl has two frequencies (--with-unbalance)."
+        more = "." if with_unbalance else ": with it a whirl has two frequencies (--with-unbalance)."
         notes.append(f"Branches are those without {driven}{more}")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
