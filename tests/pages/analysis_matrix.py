@@ -5,7 +5,7 @@ Each cell asks the gate that the analysis itself passes, with a case that has th
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from paths import DOCS
 
@@ -32,6 +32,10 @@ PAGE = DOCS / "matrix.md"
 MODEL, FLOWLESS = "own", "own-without-flow"
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
 TWO_PHASE = "film.cavitation=two-phase"
+ELROD, BUBBLY = "film.cavitation=elrod", "film.cavitation=bubbly"
+TILTS = "film.tilt=follows"
+ASKEW = 'bearing.misalignment=["0.1 mrad", "0 mrad"]'
+LOBES = "bearing.lobes={count=3, preload=0.5}"
 GROOVES = 'bearing.supply={kind="axial-grooves", opening_angle="15 deg", pressure="2 bar"}'
 HOLES = 'bearing.supply={{kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="{}"}}'
 POCKET = 'bearing.supply={kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
@@ -52,6 +56,7 @@ DAMPER = (
     'cavitation="sommerfeld"}'
 )
 PIN = 'bearing.pin={radius="16 mm", play="0.1 mm", stiffness="1e6 N/m"}'
+HOUSING = 'housing={mass="40 kg", mounts=[{stiffness="1e8 N/m"}]}'
 SUPPORT = 'bearing.support={mass="2 kg", stiffness="1e7 N/m"}'
 THRUST = (
     'thrust_bearing=[{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, pad_angle="75 deg", '
@@ -72,6 +77,12 @@ SEAL = (
 )
 FILM = 'kind="single-film", width="5 mm", diameter="7 mm", clearance="15 um"'
 SINGLE_FILMS = f'bearing=[{{name="left", position="42 mm", {FILM}}}, {{name="right", position="74 mm", {FILM}}}]'
+LIMITED = tuple(f"bearing.{i}.{FLOW.split('.', 1)[1]}" for i in range(2))
+FED = tuple(f'bearing.{i}.supply={{kind="circumferential-groove", pressure="2 bar"}}' for i in range(2))
+BODY = (
+    'housing={position="58 mm", mass="4 kg", inertia="1e-2 kg*m^2", mounts=[{position="20 mm", stiffness="1e8 N/m"}, '
+    '{position="90 mm", stiffness="1e8 N/m"}]}',
+)
 SPRING = '{kind="coefficients", name="seal", stiffness="1e5 N/m"}'
 
 # Row of the table: a shipped case, and what is set in it.
@@ -83,8 +94,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Reynolds": ("jeffcott", ("film.cavitation=reynolds",)),
     "penalty": ("jeffcott", ("film.cavitation=penalty",)),
     "Peeken": ("jeffcott", ("film.cavitation=peeken",)),
-    "bubbly": ("jeffcott", ("film.cavitation=bubbly",)),
-    "Elrod": ("jeffcott", ("film.cavitation=elrod",)),
+    "bubbly": ("jeffcott", (BUBBLY,)),
+    "Elrod": ("jeffcott", (ELROD,)),
     "two-phase": ("jeffcott", (TWO_PHASE,)),
     "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),
     "a bearing model of one's own": ("jeffcott", (f"film.theory={MODEL}",)),
@@ -112,7 +123,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
     "pocket": ("jeffcott", (POCKET,)),
     "axial slots": ("jeffcott", (SLOTS,)),
-    "lobes": ("jeffcott", ("bearing.lobes={count=3, preload=0.5}",)),
+    "lobes": ("jeffcott", (LOBES,)),
     "heat": ("jeffcott", (OIL, HEAT)),
     "clearance steps": ("jeffcott", (STEP,)),
     "elastic contact": ("jeffcott", (SHELL,)),
@@ -125,21 +136,21 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
-    "rigid housing": ("jeffcott", ('housing={mass="40 kg", mounts=[{stiffness="1e8 N/m"}]}',)),
-    "supply that gives a flow at the most": ("jeffcott", ("film.cavitation=elrod", FLOW)),
+    "rigid housing": ("jeffcott", (HOUSING,)),
+    "supply that gives a flow at the most": ("jeffcott", (ELROD, FLOW)),
     "sealed ends": ("jeffcott", ("bearing.ends={sealed=0.3}",)),
     "magnetic pull": ("jeffcott", ('magnetic_pull=[{at="disk", pull="1e5 N/m"}]',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "harmonic forces": ("jeffcott", (HARMONIC,)),
     "forces over time": ("jeffcott", (TABLE,)),
     "motion of the ground": ("jeffcott", (GROUND,)),
-    "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, "film.tilt=follows")),
-    "floating rings that tilt": ("turbocharger-car", ("film.tilt=follows",)),
+    "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS)),
+    "floating rings that tilt": ("turbocharger-car", (TILTS,)),
     "floating rings that tilt, grooves in place of feed holes, Elrod": (
-        "turbocharger-car", ("film.tilt=follows", "film.cavitation=elrod", *INNER_GROOVES)
+        "turbocharger-car", (TILTS, ELROD, *INNER_GROOVES)
     ),
-    "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", ("film.tilt=follows",)),
-    "shells that are not in line": ("jeffcott", ('bearing.misalignment=["0.1 mrad", "0 mrad"]',)),
+    "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", (TILTS,)),
+    "shells that are not in line": ("jeffcott", (ASKEW,)),
     "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearing under an axial load": (
         "turbocharger-car", (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld")
@@ -147,7 +158,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "thrust bearings alone": ("thrust", ()),
 }
 
-# Pairs of features that a run may have together.
+# Pairs of features that a machine may have together.
 MODEL_THEORY = f"film.theory={MODEL}"
 PUBLISHED = (TWO_PHASE, "film.two-phase.form=published")
 APART = "film.coupling=co-simulation"
@@ -175,6 +186,38 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "co-simulation and rings that turn": ("floating-ring", (APART,)),
     "co-simulation and cartridges that turn": ("turbocharger-car-cartridge", (APART,)),
     "co-simulation and several bearings": ("turbocharger-heavy", (APART,)),
+    "heat and oil of its own (Elrod)": ("jeffcott", (OIL, HEAT, ELROD)),
+    "heat and bubbly oil": ("jeffcott", (OIL, HEAT, BUBBLY)),
+    "heat and a supply that gives a flow at the most": ("jeffcott", (OIL, HEAT, ELROD, FLOW)),
+    "heat and rough surfaces": ("jeffcott", (OIL, HEAT, ROUGH)),
+    "heat and an elastic shell": ("jeffcott", (OIL, HEAT, SHELL)),
+    "heat and feed holes in the journal": ("jeffcott", (OIL, HEAT, HOLES.format("journal"))),
+    "heat and feed holes in a ring that turns": ("floating-ring-heat", ("film.cavitation=half-sommerfeld",)),
+    "heat and clearances that follow it": (
+        "jeffcott", (OIL, 'thermal={model="lumped", supply_temperature="70 degC", clearance="follows"}')
+    ),
+    "heat and films that follow a tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS, OIL, HEAT)),
+    "heat and shells that are not in line": ("jeffcott", (OIL, HEAT, ASKEW)),
+    "films that follow a tilt, and bubbly oil": ("turbocharger-car", (SINGLE_FILMS, TILTS, BUBBLY, *FED)),
+    "films that follow a tilt, and a supply that gives a flow at the most": (
+        "turbocharger-car", (SINGLE_FILMS, TILTS, ELROD, *LIMITED)
+    ),
+    "films that follow a tilt, and rough surfaces": ("turbocharger-car", (SINGLE_FILMS, TILTS, ROUGH)),
+    "films that follow a tilt, and an elastic shell": ("turbocharger-car", (SINGLE_FILMS, TILTS, SHELL)),
+    "films that follow a tilt, and bearings on supports": (
+        "turbocharger-car", (SINGLE_FILMS, TILTS, *(f"bearing.{i}.{SUPPORT.split('.', 1)[1]}" for i in range(2)))
+    ),
+    "films that follow a tilt, and a rigid housing": ("turbocharger-car", (SINGLE_FILMS, TILTS, *BODY)),
+    "shells that are not in line, and bubbly oil": ("jeffcott", (ASKEW, BUBBLY)),
+    "shells that are not in line, and a supply that gives a flow at the most": ("jeffcott", (ASKEW, ELROD, FLOW)),
+    "shells that are not in line, and rough surfaces": ("jeffcott", (ASKEW, ROUGH)),
+    "rough surfaces and oil of its own (Elrod)": ("jeffcott", (ROUGH, ELROD)),
+    "rough surfaces and bubbly oil": ("jeffcott", (ROUGH, BUBBLY)),
+    "rough surfaces and a supply that gives a flow at the most": ("jeffcott", (ROUGH, ELROD, FLOW)),
+    "rough surfaces and lobes": ("jeffcott", (ROUGH, LOBES)),
+    "bubbly oil and a supply that gives a flow at the most": ("jeffcott", (BUBBLY, FLOW)),
+    "bubbly oil and feed holes in the journal": ("jeffcott", (BUBBLY, HOLES.format("journal"))),
+    "oil of its own (Elrod) and feed holes in the journal": ("jeffcott", (ELROD, HOLES.format("journal"))),
 }  # fmt: skip
 
 
@@ -189,6 +232,7 @@ ANALYSES: dict[str, str] = {
     "whirls with unbalance": WHIRLS,
     "accuracy": LADDER,
 }
+TOGETHER = "run", "stability, response", "limit cycles", "whirls with unbalance"  # of two features
 HEAD = """# What goes with what
 
 Every analysis against every film and feature. The table is made by the program: each cell asks the gate that the
@@ -207,19 +251,24 @@ def page() -> str:
     frbcli.add_bearing(BearingModel(FLOWLESS, "one's own, without its flow", _force))
     try:
         reasons: dict[Reason, list[str]] = {}  # with the values of the key
-        names = list(ANALYSES)
-        rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
-        for name, (case, settings) in FILMS.items():
-            asked = ((case, settings, analysis) for analysis in ANALYSES.values())
-            rows.append(f"| {name} | " + " | ".join(_cell(reasons, refused(*each)) for each in asked) + " |")
-        rows += ["", "Two features together in a run:", "", "| | run |", "| --- | --- |"]
-        for name, (case, settings) in PAIRS.items():
-            rows.append(f"| {name} | {_cell(reasons, refused(case, settings, RUN))} |")
+        rows = _table(reasons, FILMS, tuple(ANALYSES))
+        rows += ["", "Two features together:", "", *_table(reasons, PAIRS, TOGETHER)]
     finally:
         frbcli.remove_bearing(MODEL)
         frbcli.remove_bearing(FLOWLESS)
     notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
     return "\n".join([HEAD, *rows, "", "Why not, and what to do:", "", *notes, ""])
+
+
+def _table(
+    reasons: dict[Reason, list[str]], cases: Mapping[str, tuple[str, tuple[str, ...]]], names: Sequence[str]
+) -> list[str]:
+    """The table of cases and of the names of analyses, in lines."""
+    rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
+    for name, (case, settings) in cases.items():
+        asked = (refused(case, settings, ANALYSES[analysis]) for analysis in names)
+        rows.append(f"| {name} | " + " | ".join(_cell(reasons, each) for each in asked) + " |")
+    return rows
 
 
 def _cell(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:
