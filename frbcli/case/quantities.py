@@ -89,7 +89,7 @@ class Quantity:
         number: dict[str, Any] = {"type": "number", "description": "without unit" if bare else f"in {unit}"}
         bounds = {"exclusiveMinimum": self.above, "minimum": self.least,
                   "exclusiveMaximum": self.below, "maximum": self.most}  # fmt: skip
-        number |= {key: bound for key, bound in bounds.items() if bound is not None}
+        number |= {key: _plain(bound) for key, bound in bounds.items() if bound is not None}
         text = {
             "type": "string",
             "description": "a number, or per cent" if bare else f"number and unit, taken to {unit}",
@@ -135,6 +135,11 @@ class Count:
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         return {"type": "integer", "minimum": self.least, "maximum": self.most, "examples": [self.example]}
+
+
+def _plain(bound: float) -> float:
+    """A bound as people write it: 0, not 0.0."""
+    return int(bound) if float(bound).is_integer() else bound
 
 
 def _printable(text: str) -> str:

@@ -14,7 +14,7 @@ import sys
 from _thread import interrupt_main
 from contextlib import suppress
 from threading import Timer, main_thread
-from time import monotonic
+from time import monotonic, process_time
 from types import FrameType
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -25,7 +25,8 @@ from frbcli.runs.record.interrupt import SIGNALS
 if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
-AGAIN_s, WITHIN_s = 0.01, 10.0
+AGAIN_s = 0.01
+WITHIN_s, WAITS_s = 10.0, 60.0  # CPU time and time for which an import is not interrupted: beside other work it is slow
 YOUNG = 300_000  # objects between two searches for garbage: what imports make stays, and searches find nothing
 IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 
@@ -36,19 +37,19 @@ PICTURES, ARTISTS, DESCRIBE = "matplotlib.", "matplotlib.artist", "_update_set_s
 class Interruption:
     """The handler of the signals. asked: the one that came, 0 if none did.
 
-    An import is not interrupted, at least not for WITHIN_s: libraries drop what is raised there, or show it and raise
-    something else.
+    An import is not interrupted, at least not for WITHIN_s of work or WAITS_s of waiting: libraries drop what is raised
+    there, or show it and raise something else.
     """
 
     def __init__(self) -> None:
         self.asked = 0
-        self._until = 0.0
+        self._until = 0.0, 0.0
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
         """The handler of the signals."""
         if not self.asked:
-            self.asked, self._until = number, monotonic() + WITHIN_s
-        if _imports(frame) and monotonic() < self._until:
+            self.asked, self._until = number, (process_time() + WITHIN_s, monotonic() + WAITS_s)
+        if _imports(frame) and process_time() < self._until[0] and monotonic() < self._until[1]:
             self._again()
             return
         raise KeyboardInterrupt

@@ -39,7 +39,7 @@ from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
-from frbcli.runs.errors.account import about_certainty, account
+from frbcli.runs.errors.account import about_certainty, account, grows_late
 from frbcli.runs.record.header import FILM_SIGNALS, POWER
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
@@ -214,7 +214,8 @@ def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedWords) -> list[
         cards.append((f"{max(max(eccentricities), 0.0):.3f}", "largest eccentricity"))
     if run.error.get("eccentricity") is not None:
         until = f", until {run.error['quiet_until_s']:.3g} s" if "quiet_until_s" in run.error else ""
-        cards.append((f"{run.error['eccentricity']:.1e}", f"stated error of the eccentricity{until}"))
+        words = f"stated error of the eccentricity{until}{grows_late(run.error)}"
+        cards.append((f"{run.error['eccentricity']:.1e}", words))
     if "cpu_s" in run.cost:
         cards.append((f"{run.cost['cpu_s']:.3g} s", "CPU time"))
     return cards

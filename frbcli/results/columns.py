@@ -7,10 +7,29 @@ from typing import Any
 
 from frbcli.columns import Column, Shown, with_uncertainty
 
+# by the kind of an event: what a ring does with its pin, and what the asperities of a film do
+TOUCHING = {"touch": ("touches its pin", "asperities touch"), "lift-off": ("leaves its pin", "asperities part")}
+
+
+def touching_name(event: Mapping[str, Any]) -> str:
+    """What touches or leaves what, "" of an event at which nothing does, and of a contact of journal and shell, whose
+    kind and film say it."""
+    film, point = (str(event.get(key) or "").replace("_", " ") for key in ("film", "point"))
+    body = point.split(" ")[0]
+    if body == "collar" and event["kind"] == "contact":
+        return "collar touches pads"
+    if event["kind"] not in TOUCHING:
+        return ""
+    of_pin, of_asperities = TOUCHING[event["kind"]]
+    return f"{point} {of_pin}" if body == "ring" else ", ".join(word for word in (of_asperities, film) if word)
+
 
 def event_name(event: Mapping[str, Any]) -> str:
     """The kind of an event for people, its whirl where it has been named ("whirl", as Sub 1), and where it was found:
-    its film, or else the point whose motion shows it; files of earlier versions have neither."""
+    its film, or else the point whose motion shows it; files of earlier versions have neither. Where something touches,
+    who touches what."""
+    if touching := touching_name(event):
+        return touching
     place = str(event["film"] or event.get("point") or "").replace("_", " ")
     return " ".join(word for word in (event["kind"], event.get("whirl", ""), place) if word)
 
@@ -35,7 +54,8 @@ EVENTS = (
     Column("event", "", "", event_name, shown=(Shown("event"),),
            key="", flat=False),
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
-           "`lift-off`, `clearance-step`"),
+           "`lift-off`, `clearance-step`",
+           more="touch and lift-off are those of asperities, or of a ring and its pin where `point` is a ring"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),

@@ -15,7 +15,7 @@ from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import budget_of_segments, quick_budget, summed
+from frbcli.runs.errors.error_budget import budget_of_segments, grows_from, quick_budget, summed
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
@@ -338,7 +338,12 @@ class March:
         steps = summed(self._state.errors, until / self._profile.end)
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
         passed = self._segments[: self._current + 1]
-        return budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+        found = budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+        if fewer is not None and len(passed) == 1:
+            found["error_grows_from_s"] = grows_from(
+                self._now, self._state.errors, fewer, times, self._samples, until, self._profile.end
+            )
+        return found
 
     @property
     def film_error_s(self) -> float:

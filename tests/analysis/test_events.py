@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import asdict, replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,7 @@ from scipy.special import expit
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.analysis import signals as signals_of_a_run
-from frbcli.analysis.events import WHIRL_BEGINS, Event, find_events
+from frbcli.analysis.events import WHIRL_BEGINS, Event, Kind, find_events
 from frbcli.analysis.orders import subsynchronous
 from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.case.reading.load import load_case
@@ -21,6 +21,8 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.linear import critical_speeds
 from frbcli.linear.critical_speeds import linear_critical_speeds
+from frbcli.plot.run.summary import _words
+from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import CRITICAL_s, before_s
@@ -175,6 +177,24 @@ def test_an_event_names_the_point_that_shows_it(kinds: tuple[str, ...], point: s
     columns = {name: values for name, values in signals(Rotor()).items() if name.startswith((*kinds, "time", "speed"))}
     critical, onset = find_events(as_run(columns))
     assert (critical.point, onset.point) == (point, "journal")
+
+
+@pytest.mark.parametrize(
+    ("kind", "film", "point", "told"),
+    [
+        ("touch", None, "ring", "ring touches its pin"),
+        ("lift-off", None, "ring_turbine", "ring turbine leaves its pin"),
+        ("touch", "inner", None, "asperities touch, inner"),
+        ("lift-off", None, None, "asperities part"),
+        ("contact", None, "collar", "collar touches pads"),
+        ("contact", "inner", None, "contact inner"),
+        ("onset", None, "ring_turbine", "onset ring turbine"),
+    ],
+)
+def test_an_event_says_who_touches_what(kind: Kind, film: str | None, point: str | None, told: str) -> None:
+    event = asdict(Event(kind, film, 1.0, 50.0, None, None, point))
+    assert event_name(event) == told
+    assert kind == "onset" or _words(event) == f"{told}\n50.0 Hz"
 
 
 def test_resonance_after_the_onset_of_whirl_is_not_told_as_critical_speed() -> None:

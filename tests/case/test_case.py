@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import re
 
 import pytest
 from case_texts import SMALL, TURBOCHARGER, faults_of
@@ -182,10 +184,15 @@ def test_json_schema_describes_the_file() -> None:
     assert set(schema["$defs"]["SpeedRamp"]["required"]) == {"from", "to", "duration"}
 
 
+def test_bounds_of_the_schema_are_written_alike() -> None:
+    """0 where a row of a law has 0.0, as an editor shows it."""
+    written = re.findall(r'"(?:exclusiveM|m)(?:in|ax)imum": ([^,}\s]+)', json.dumps(json_schema()))
+    assert len(written) > 200
+    assert not [bound for bound in written if bound.endswith(".0")]
+
+
 def test_examples_of_the_schema_are_valid() -> None:
     """What remedies tell people to write must itself be right."""
-    import re
-
     from frbcli.case import quantities
 
     kinds = [getattr(quantities, name).__metadata__[0] for name in dir(quantities) if _is_quantity(quantities, name)]

@@ -11,6 +11,7 @@ from output_options import MODELS, SETTINGS, SHORT
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
+from frbcli.cli.progress import Display
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import March
@@ -22,6 +23,12 @@ QUICK = ["jeffcott", *SHORT]
 @pytest.fixture(autouse=True)
 def in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
+def without_progress(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside other work commands announce how long they will take yet; what they say of files is the same."""
+    monkeypatch.setattr(Display, "line", lambda *_: None)
 
 
 WAYS = {
@@ -103,6 +110,7 @@ def test_what_is_in_place_of_the_lock_of_a_run_is_named(
 FULL = Path("/dev/full")
 
 
+@pytest.mark.usefixtures("without_progress")
 @pytest.mark.parametrize("way", ["runup", "compare", "stability", "accuracy", "rotation", "sweep"])
 def test_a_picture_that_the_disk_does_not_take_is_a_remark(way: str, capsys: pytest.CaptureFixture[str]) -> None:
     words, output, place = WAYS[way]
@@ -131,6 +139,7 @@ def test_a_file_that_a_command_is_for_is_an_error(words: list[str], capsys: pyte
     assert Path("a.png").is_symlink()
 
 
+@pytest.mark.usefixtures("without_progress")
 def test_a_picture_that_cannot_be_drawn_leaves_run_document_and_code(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -159,6 +168,7 @@ def test_an_older_picture_stays_where_a_new_one_cannot_be_drawn(monkeypatch: pyt
     assert Path("run-summary.png").read_text() == "older"
 
 
+@pytest.mark.usefixtures("without_progress")
 @pytest.mark.parametrize("suffix", [".png", ".pdf", ".svg"])
 def test_letters_that_a_font_lacks_are_one_remark(suffix: str, capsys: pytest.CaptureFixture[str]) -> None:
     words = ["stability", *QUICK, "--speed", "30 Hz", "--set", "title=漢字 漢", "-o", f"a{suffix}"]
@@ -169,6 +179,7 @@ def test_letters_that_a_font_lacks_are_one_remark(suffix: str, capsys: pytest.Ca
     assert said.err in (expected, f"a{suffix}: the font has no 漢, 字; boxes are drawn instead.\n")
 
 
+@pytest.mark.usefixtures("without_progress")
 def test_a_dollar_in_a_title_is_one(capsys: pytest.CaptureFixture[str]) -> None:
     words = ["stability", *QUICK, "--speed", "30 Hz", "--set", r"title=$\nonsense$ for 5 $", "-o", "a.svg"]
     assert frb(words) == 0

@@ -12,8 +12,9 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
+from frbcli.runs.errors.account import grows_late
 from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FilmErrors, quiet_until, summed
+from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FilmErrors, grows_from, quiet_until, summed
 from frbcli.runs.errors.fewer_cells import (
     SAFETY,
     SAFETY_OF_OPENINGS,
@@ -65,6 +66,23 @@ def test_quiet_until_a_whirl_grows() -> None:
     assert quiet_until(events, 10.0) == BEFORE_WHIRL * 4.0
     assert quiet_until(events, 2.0) == 2.0
     assert quiet_until([], 3.0) == 3.0
+
+
+def test_an_error_that_arises_late_says_from_when_on() -> None:
+    """Of two runs that part with exp(10 t), a third of what they differ by at 1 s is reached at 1 - ln(3)/10."""
+    times = np.linspace(0.0, 2.0, 201)
+    case = load_case("jeffcott-two-phase")
+    system = make_system(case, make_plan(case))
+    samples = np.zeros((201, 2 * system.rotor.size + 2))
+    other, along_x = samples.copy(), system.films.seen(system.rotor.journals)[0][0]
+    other[:, : system.rotor.size] = 1e-9 * np.exp(10.0 * times)[:, None] * along_x
+    other[times > 1.5] = 1.0  # afterwards nothing counts
+    fewer = FewerCells(1.0, other)
+    late = grows_from(system, np.zeros((2, ERROR_SPANS)), fewer, times, samples, 1.0, 2.0)
+    assert late == pytest.approx(1.0 - np.log(3.0) / 10.0, abs=0.01)
+    assert grows_late({"quiet_until_s": 1.0, "error_grows_from_s": late}) == ", two thirds of it after 0.89 s"
+    assert grows_late({"quiet_until_s": 2.0, "error_grows_from_s": late}) == ""
+    assert grows_from(system, np.zeros((2, ERROR_SPANS)), FewerCells(1.0, other[:50]), times, samples, 1.0, 2.0) is None
 
 
 @pytest.mark.parametrize("settings", [(), ("film.theory=short",), ("accuracy.mesh=[2, 24]",)])

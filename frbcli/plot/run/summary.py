@@ -29,6 +29,7 @@ from frbcli.plot.style import (
     set_title,
     styled,
 )
+from frbcli.results.columns import touching_name
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 
@@ -42,8 +43,6 @@ NAMES = {
     "offset": "end of whirl",
     "lock-in": "lock-in",
     "contact": "contact",
-    "touch": "touch",
-    "lift-off": "lift-off",
     "clearance-step": "clearance step",
 }
 
@@ -121,9 +120,9 @@ def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
 
 
 def _words(event: dict[str, Any]) -> str:
-    """Label of an event: kind, speed, frequency."""
-    name = NAMES.get(event["kind"], event["kind"])
+    """Label of an event: kind or who touches what, speed, frequency."""
     film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
+    name = touching_name(event) or f"{NAMES.get(event['kind'], event['kind'])}{film}"
     ratio = event.get("frequency_ratio")
     share = f", {ratio:.2f} ω" if ratio is not None and ratio != 1.0 else ""
-    return f"{name}{film}\n{event['speed_Hz']:.1f} Hz{share}"
+    return f"{name}\n{event['speed_Hz']:.1f} Hz{share}"

@@ -14,6 +14,7 @@ from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends
 from frbcli.plot.style import COLOURS, MOST_MARKED, new_figure, styled
+from frbcli.results.columns import touching_name
 from frbcli.results.store import Run
 from frbcli.studies.compare import Comparison, Variant
 
@@ -23,8 +24,7 @@ LINES: tuple[Line, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 
 MARKS = {"critical-speed": "o", "self-excited": "D", "onset": "^", "offset": "v", "lock-in": "s", "contact": "X",
          "touch": "1", "lift-off": "2", "clearance-step": "|"}  # fmt: skip
 WORDS = {"critical-speed": "critical", "self-excited": "self-excited", "onset": "whirl", "offset": "whirl ends",
-         "lock-in": "locks in", "contact": "contact", "touch": "touch", "lift-off": "lift-off",
-         "clearance-step": "step"}  # fmt: skip
+         "lock-in": "locks in", "contact": "contact", "clearance-step": "step"}  # fmt: skip
 ROW_HEIGHT = 0.32  # inches of a variant's row
 LEFT_SHARE = 0.85  # of the time axis; the label of an event beyond stands left of it
 
@@ -71,7 +71,7 @@ def _draw_events(axes: Axes, run: Run, row: int, colour: str, line: Line) -> Non
         axes.plot(at, row, marker=MARKS.get(event["kind"], "."), markersize=6.0, color=colour, clip_on=False)
         after = at < left + LEFT_SHARE * (right - left)
         axes.annotate(
-            f"{WORDS.get(event['kind'], event['kind'])} {event['speed_Hz']:.1f} Hz",
+            f"{touching_name(event) or WORDS.get(event['kind'], event['kind'])} {event['speed_Hz']:.1f} Hz",
             (at, row),
             xytext=(6 if after else -6, 3),
             textcoords="offset points",

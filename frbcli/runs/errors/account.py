@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,6 +11,7 @@ from frbcli.results.store import Run
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
 from frbcli.scene.costs.cost import clock
 
+LATE = 0.5  # of the time until which the error is stated: from then on its growth is told
 SLOW_WORDS = (
     ("ring_speed_uncertainty_Hz", "ring speeds", " Hz"),
     ("temperature_uncertainty_K", "temperatures", " K"),
@@ -121,6 +123,13 @@ def _predicted(cost: dict[str, Any]) -> str:
     return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
 
 
+def grows_late(error: Mapping[str, Any]) -> str:
+    """Words on an error that arises late, "" of any other."""
+    late_s = error.get("error_grows_from_s") or 0.0
+    late = late_s > LATE * error.get("quiet_until_s", math.inf)
+    return f", two thirds of it after {late_s:.3g} s" if late else ""
+
+
 def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
     """The parts of the error that not every run has."""
     rows = [
@@ -131,6 +140,6 @@ def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
     if error.get("modal_reduction") is not None:
         rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
     if error.get("eccentricity") is not None:
-        until = f"total, until {error['quiet_until_s']:.3g} s"
+        until = f"total, until {error['quiet_until_s']:.3g} s{grows_late(error)}"
         rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))
     return rows

@@ -4,6 +4,7 @@ on a finer mesh, and the total error of the displacements."""
 from __future__ import annotations
 
 import math
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -35,6 +36,7 @@ BEFORE_WHIRL = 0.85  # of the time of its event: a whirl grows before it is dete
 PARTING = ("onset", "self-excited", "contact")  # afterwards two runs differ in phase, whatever their accuracy
 
 SMALL_FORCE, NO_FORCE = 0.1, 1e-9  # of the median one; of the largest one of a run, which counts as none
+GROWN = 1.0 / 3.0  # share of the error of a run, before which it counts as small
 QUANTILE = 0.9  # quantile of the errors, weighted with the force
 
 
@@ -106,6 +108,27 @@ def summed(errors: Array, share: float) -> tuple[float, float]:
     The span in which that share ends counts in full."""
     spans = max(1, math.ceil(share * errors.shape[1]))
     return float(errors[ERRORS_LARGEST, :spans].max()), float(errors[ERRORS_SUM, :spans].sum())
+
+
+def grows_from(
+    system: System, errors: Array, fewer: FewerCells, times: Array, samples: Array, until: float, end: float
+) -> float | None:
+    """Time in s until which a run has only GROWN of the error of its eccentricities that it states until a time; None
+    if the run on fewer cells does not reach that far. errors: of State; end: of the run, s; others: see error_budget.
+
+    An error that arises late is that of the phase of a vibration which grows slowly: it begins to part two runs long
+    before it is found.
+    """
+    quiet = times[times <= until]
+
+    def stated(t: float) -> float:
+        cells = fewer.error(samples[times <= t], system)
+        return math.inf if cells is None else _counted(system) * summed(errors, t / end)[0] + cells.eccentricity
+
+    whole = stated(until)
+    if not math.isfinite(whole) or not len(quiet):
+        return None
+    return float(quiet[max(0, bisect_right(quiet.tolist(), GROWN * whole, key=stated) - 1)])
 
 
 def _reach(system: System, samples: Array, parts: Iterable[tuple[Array, float]]) -> float:
