@@ -152,12 +152,14 @@ def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, A
 
     Journal and shell put P = -M_J omega_J - M_S omega_S - F . (v_J - v_S) into a film. With Couette's resistance k to
     the slip and the force F at the displacement e this is k (omega_J - omega_S)^2 + (e x F)(omega_J + omega_S)/2 -
-    F . e'.
+    F . e'. Between rough surfaces the friction of the summits makes heat in the same film.
     """
-    speeds = zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True)
+    speeds = list(zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True))
     found = [
         system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
         for i, (place, (total, slip), drag) in enumerate(speeds)
     ]
     power, flow = np.array(found).T
+    if system.asperities is not None:
+        power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns, _) in enumerate(speeds)]
     return power, flow

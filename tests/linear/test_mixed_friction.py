@@ -14,13 +14,14 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.dynamic_films import dynamic_film
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
+from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.film_state import FilmState, MixedFriction
 from frbcli.linear.stability import stability
-from frbcli.scene.gate.analysis import BEARING, HEAT, SPEED_CYCLES, STABILITY
-from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -154,11 +155,23 @@ def test_the_plan_tells_what_rough_surfaces_do() -> None:
     assert not any(decision.choice == "contact" for decision in make_plan(load_case("rigid")).decisions)
 
 
-@pytest.mark.parametrize("analysis", [HEAT, STABILITY, SPEED_CYCLES])
-def test_heat_without_runs_does_not_know_of_friction(analysis: str) -> None:
-    heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
+HOT = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
+
+
+def test_heat_in_cycles_does_not_know_of_friction() -> None:
     with pytest.raises(InputError, match="makes heat by friction"):
-        require(rigid(*heat), analysis)
+        require(rigid(*HOT), SPEED_CYCLES)
+
+
+def test_friction_heats_a_film_at_rest() -> None:
+    """The power of the balance is that of film and friction in the sheet at its viscosity, and friction is a part of
+    it. It was left out, and so refused."""
+    case = rigid(*HOT, "rotor.gravity=100 m/s^2")
+    (film,) = warm_machine(case, 1.0).films
+    (state,) = bearing_sheet(case, [1.0]).points
+    assert mixed(state).power > 0.2 * state.power
+    assert film.power == pytest.approx(state.power, rel=1e-2)
+    assert not faults(case, STABILITY)
 
 
 def test_a_sheet_has_the_friction_that_holds_a_ring() -> None:

@@ -17,6 +17,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.film.roughness.asperities import touch
 from frbcli.film.roughness.summits import LAST
 from frbcli.linear.bearing_sheet import bearing_sheet
@@ -223,6 +224,18 @@ def test_friction_heats_the_film(tmp_path: Path) -> None:
     assert friction > 0.2 * whole
     assert run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
     assert run.error["heat_balance_relative"] < 1e-12
+
+
+@pytest.mark.nightly  # the same loop as above
+def test_friction_warms_a_run_to_the_temperature_of_rest(tmp_path: Path) -> None:
+    heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
+    slow = "speed.from=1 Hz", "speed.to=1 Hz", "speed.duration=3 s", "output.step=1e-2 s", "rotor.gravity=100 m/s^2"
+    case = rigid(*slow, *heat)
+    run = runup(case, tmp_path / "run.h5")
+    (film,) = warm_machine(case, 1.0).films
+    assert run["contact_power_W"][-1] > 0.2 * run["power_W"][-1]
+    assert run["temperature_K"][-1] == pytest.approx(film.temperature, abs=0.05)
+    assert run["power_W"][-1] == pytest.approx(film.power, rel=5e-3)
 
 
 @pytest.mark.nightly  # likewise

@@ -48,6 +48,15 @@ class Rubbing:
         found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
         return found.torque, found.shell_torque, e_x * found.f_y - e_y * found.f_x
 
+    def power(self, place: Array, total: float, slip: float) -> float:
+        """Heat in W that friction makes while the journal rests at `place` (2,) in m; total, slip: omega_J + omega_S
+        and omega_J - omega_S in rad/s."""
+        if self.surfaces is None:
+            return 0.0
+        e_x, e_y = place[:2].tolist()
+        shell = 0.5 * (total - slip)
+        return rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell).power
+
     def slopes(self, motions: Array) -> Array:
         """(k, FOUND, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
         if self.surfaces is None:

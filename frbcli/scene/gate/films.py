@@ -211,8 +211,8 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
         yield Fault("film.coupling", case.film.coupling, None, problem, f'{SMOOTH}, or film.coupling = "auto".')
 
 
-def rough_rest_faults(case: Case) -> Iterator[Fault]:
-    """Heat at rest, in cycles and in tests does not know of boundary friction."""
+def rough_heat_faults(case: Case) -> Iterator[Fault]:
+    """Heat in cycles and in tests does not know of boundary friction."""
     if case.contact.rough and case.heat is not None:
-        problem = "makes heat by friction, and outside of runs the heat is that of the films alone."
+        problem = "makes heat by friction, and in cycles and tests the heat is that of the films alone."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

@@ -71,7 +71,7 @@ RULES = (
     Rule(films.rough_faults, ALL),
     Rule(films.rough_tilt_faults, KINEMATIC),
     Rule(films.rough_coupling_faults, (RUN,)),
-    Rule(films.rough_rest_faults, (*KINEMATIC, HEAT, *SHEETS, STABILITY, RANGE, *EVERY_CYCLE)),
+    Rule(films.rough_heat_faults, (*KINEMATIC, *EVERY_CYCLE)),
     Rule(films.saturation_faults, ALL),
     Rule(films.moved_gas_faults, (RUN, *EVERY_CYCLE), moving=True),
     Rule(films.enclosed_faults, KINEMATIC),
