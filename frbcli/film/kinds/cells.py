@@ -16,7 +16,7 @@ from frbcli.film.cells.balance.feed import ALL, supply_line
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
-from frbcli.film.cells.film import VolumeFilm, refilled, supplied, unknown_with_fraction
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import linear_film, lying
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
@@ -79,18 +79,10 @@ class CellFilms(Films):
 
     @property
     def gas_contents(self) -> Array:
-        laws = [film.law for film in self.own]
-        gassy = any(law.carries_gas for law in laws)
-        return np.array([law.gas_content if law.carries_gas else 0.0 for law in laws if gassy])
+        return contents_of(self.own)
 
     def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        count = self.count
-        return np.stack([
-            unknown_with_gas(film, content[i::count], near[i::count], w[i])
-            if film.law.carries_gas
-            else unknown_at(film, content[i], near[i], w[i])
-            for i, film in enumerate(self.own)
-        ])  # fmt: skip
+        return unknowns_of(self.own, content, near, w)
 
     @property
     def cavitation_factor(self) -> str:  # type: ignore[override]
@@ -161,25 +153,19 @@ class CellFilms(Films):
 
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
         """See Films.first_state. The oil does not change at first: the journals stand still."""
-        layers = WET_WITH_GAS if any(film.law.carries_gas for film in self.own) else WET
-        wet = np.zeros((layers, self.count, *self.own[0].grid.shape))
+        wet = no_wet(self.own)
         flows = np.zeros((2, self.count, FLOWS))
         flows[PASSED, :, FILLING] = ALL
         lines = [supply_line(film) for film in self.own]  # nothing flows at first: lines take up what is given
         flows[NOW, :, FILLING] = [line.given / line.line if line.given > 0.0 else 0.0 for line in lines]
         for i, film in enumerate(self.own):
             at = places[i] / self.clearances[i]
-            motion = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(totals[i]))
-            w, gas = film.full(), None
+            motion, solution = Motion((float(at[0]), float(at[1])), (0.0, 0.0), float(totals[i])), None
             if np.any(at != 0.0) and totals[i] != 0.0:
                 with contextlib.suppress(NotConverged):
                     solution = steady_solution(film, motion)
-                    w, gas = solution.w, solution.gas
                     flows[PASSED, i, FILLING] = solution.filling
-            wet[W, i] = wet[W_BEFORE, i] = w
-            wet[OIL, i] = film.content(motion, w, None if gas is None else gas.carried)
-            if film.law.carries_gas:
-                wet[GAS, i] = wet[OIL, i] * (film.law.free_gas(film.cells(w), film.scales) if gas is None else gas.free)
+            begin_wet(film, motion, solution, wet[:, i])
         return wet, flows
 
     def refill(
@@ -188,7 +174,7 @@ class CellFilms(Films):
         if not self.remembering[i]:
             return None
         film, old = self.own[i], before.with_fields[i]
-        gas = self._gas_of(i, wet)
+        gas = gas_of(film, wet[:, i])
         w, oil = refilled(old, film, d, wet[OIL, i], wet[W, i], gas)
         wet[W, i] = wet[W_BEFORE, i] = w
         wet[OIL, i] = film.content(Motion(d, (0.0, 0.0), 0.0), w, gas)
@@ -199,10 +185,6 @@ class CellFilms(Films):
         for flow in (OUTFLOW, ENDS_NET):
             flows[PASSED, i, flow] += spilled
         return force(film, film.mean_pressure(film.cells(w, gas)))
-
-    def _gas_of(self, i: int, wet: Array) -> Carried | None:
-        """The free gas that the oil of film i has in a state."""
-        return with_own_gas(wet[GAS, i] / wet[OIL, i]) if self.own[i].law.carries_gas else None
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         """Oil in the cells that their unknowns do not account for, over what has passed through.
@@ -215,7 +197,7 @@ class CellFilms(Films):
         for i, film in enumerate(self.own):
             if not self.remembering[i]:
                 continue
-            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i], self._gas_of(i, wet))
+            now = film.content(Motion(displacements[i], (0.0, 0.0), 0.0), wet[W, i], gas_of(film, wet[:, i]))
             worst = max(worst, missing_oil(film, now, wet[OIL, i], flows[PASSED, i]))
         return worst
 
@@ -295,6 +277,44 @@ class CellFilms(Films):
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))
         return tuple(found)
+
+
+def no_wet(films: Sequence[VolumeFilm]) -> Array:
+    """(WET or WET_WITH_GAS, fields, m, k) room for the state of fields of cells."""
+    layers = WET_WITH_GAS if any(film.law.carries_gas for film in films) else WET
+    return np.zeros((layers, len(films), *films[0].grid.shape))
+
+
+def begin_wet(film: VolumeFilm, motion: Motion, solution: VolumeSolution | None, wet: Array) -> None:
+    """wet (layers, m, k) <- of a film that has settled, or without a solution is full at the ambient pressure."""
+    w, gas = (film.full(), None) if solution is None else (solution.w, solution.gas)
+    wet[W] = wet[W_BEFORE] = w
+    wet[OIL] = film.content(motion, w, None if gas is None else gas.carried)
+    if film.law.carries_gas:
+        wet[GAS] = wet[OIL] * (film.law.free_gas(film.cells(w), film.scales) if gas is None else gas.free)
+
+
+def gas_of(film: VolumeFilm, wet: Array) -> Carried | None:
+    """The free gas that the oil of a film has in its state (layers, m, k)."""
+    return with_own_gas(wet[GAS] / wet[OIL]) if film.law.carries_gas else None
+
+
+def contents_of(films: Sequence[VolumeFilm]) -> Array:
+    """See Films.gas_contents."""
+    laws = [film.law for film in films]
+    gassy = any(law.carries_gas for law in laws)
+    return np.array([law.gas_content if law.carries_gas else 0.0 for law in laws if gassy])
+
+
+def unknowns_of(films: Sequence[VolumeFilm], content: Array, near: Array, w: Array) -> Array:
+    """See Films.oil_unknowns."""
+    count = len(films)
+    return np.stack([
+        unknown_with_gas(film, content[i::count], near[i::count], w[i])
+        if film.law.carries_gas
+        else unknown_at(film, content[i], near[i], w[i])
+        for i, film in enumerate(films)
+    ])  # fmt: skip
 
 
 def missing_oil(film: VolumeFilm, now: Array, oil: Array, passed: Array) -> float:

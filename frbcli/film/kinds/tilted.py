@@ -32,12 +32,21 @@ from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
 from frbcli.film.grid import Array
-from frbcli.film.kinds.cells import least_gaps, missing_oil, passed_oil, unknown_at
+from frbcli.film.kinds.cells import (
+    begin_wet,
+    contents_of,
+    gas_of,
+    least_gaps,
+    missing_oil,
+    no_wet,
+    passed_oil,
+    unknowns_of,
+)
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.kinds.fields import FieldFilm, Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
-from frbcli.film.state import OIL, PASSED, W_BEFORE, WET, W
+from frbcli.film.state import OIL, PASSED, W
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a film, and their shares of it
@@ -96,14 +105,13 @@ class TiltedFilms(Films):
     def first_state(self, places: Array, totals: Array) -> tuple[Array, Array]:
         moves = [place.any() and total != 0.0 for place, total in zip(places, totals, strict=True)]
         of = self._lands
-        wet = np.zeros((WET, len(of), *of[0][1].film.grid.shape))
+        wet = no_wet([land.film for _, land in of])
         for number, (i, land) in enumerate(of):
-            w, motion = land.film.full(), land.motion(places[i], np.zeros(COORDINATES), float(totals[i]))
+            solution, motion = None, land.motion(places[i], np.zeros(COORDINATES), float(totals[i]))
             if moves[i]:
                 with contextlib.suppress(NotConverged):
-                    w = land_solution(land.film, motion).w
-            wet[W, number] = wet[W_BEFORE, number] = w
-            wet[OIL, number] = land.film.content(motion, w)
+                    solution = land_solution(land.film, motion)
+            begin_wet(land.film, motion, solution, wet[:, number])
         return wet, np.zeros((2, len(of), FLOWS))
 
     @property
@@ -130,8 +138,17 @@ class TiltedFilms(Films):
         return np.asarray(near[:, :, None] + along[:, None, :] * (far - near)[:, :, None])
 
     def oil_unknowns(self, content: Array, near: Array, w: Array) -> Array:
-        films = [land.film for _, land in self._lands]
-        return np.stack([unknown_at(*each) for each in zip(films, content, near, w, strict=True)])
+        return unknowns_of([land.film for _, land in self._lands], content, near, w)
+
+    @property
+    def gas_contents(self) -> Array:
+        return contents_of([land.film for _, land in self._lands])
+
+    @property
+    def sought_near(self) -> tuple[bool, ...]:
+        """See CellFilms.sought_near."""
+        laws = [film.lands[0].film.law for film in self.own]
+        return tuple(not law.keeps_oil or law.carries_gas for law in laws)
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         if not any(self.remembering):
@@ -140,7 +157,7 @@ class TiltedFilms(Films):
         for number, (i, land) in enumerate(self._lands):
             if self.remembering[i]:
                 motion = land.motion_of(np.array(displacements[2 * i : 2 * i + 2]))
-                now = land.film.content(motion, wet[W, number])
+                now = land.film.content(motion, wet[W, number], gas_of(land.film, wet[:, number]))
                 worst = max(worst, missing_oil(land.film, now, wet[OIL, number], flows[PASSED, number]))
         return worst
 

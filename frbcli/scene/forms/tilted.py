@@ -71,10 +71,6 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     if case.contact.rough:
         problem = "is not modelled with films that tilt: its gap is the same along the axis."
         yield Fault("contact.model", "asperities", None, problem, f'Write contact.model = "spring". {without}')
-    for key, name in dict(cavitation_keys(case)).items():
-        if law_named(name).carries_gas:
-            problem = "carries free gas, which is followed where the gap is the same along the axis."
-            yield Fault(key, name, None, problem, f"Take peeken, its limit of fast exchange. {without}")
     if case.heat is not None:
         problem = "computes temperatures only of films whose gap is the same along the axis."
         yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
@@ -101,9 +97,6 @@ def run_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
         problem = "is that of a journal in the middle of its shell, and one that tilts touches at an end."
         yield Fault("contact.policy", "elastic", None, problem, f'Write policy = "stop". {without}')
     for place, key in zip(film_places(case), film_keys(case), strict=True):
-        if place.geometry.supply.surface == "journal":
-            problem = "lets the openings turn with the journal, which a film that tilts does not follow."
-            yield Fault(f"{key}.supply.on", "journal", None, problem, f'Write on = "shell". {without}')
         if getattr(place.geometry, "clearance_steps", ()) and law_named(case.cavitation(place.geometry)).keeps_oil:
             problem = "moves the oil of a film into another gap, which one that tilts does not follow."
             yield Fault(f"{key}.clearance_steps", "", None, problem, f"Take a law that keeps no oil. {without}")

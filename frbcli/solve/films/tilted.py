@@ -26,7 +26,9 @@ from frbcli.film.cells.balance.states import (
 )
 from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
 from frbcli.film.cells.elimination.ring_solver import solve_ring_at
+from frbcli.film.cells.gas.carry import store_gas_rates
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
+from frbcli.film.cells.tilted.gas import take_land_gas_along
 from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, gap_at_ends, land_balances
 from frbcli.film.cells.tilted.loads import land_loads
 from frbcli.solve.films.cell_steps import cell_arrays, oil_fraction
@@ -152,6 +154,16 @@ def _follow(film: np.record, d: Array, v: Array, omega: float, spin: float, law:
 
 
 @compiled()
+def _stray_gas(films: TiltedVolumes, work: Any, land: int, motion: EndsMotion, law: Array, drop: float) -> float:
+    """stray_gas of cells.py."""
+    film, ring, cells, along = films.films[land], films.ring[land], films.cells[land], films.places[land]
+    states, past, paths = work.states[land], work.gas_past[land], work.gas_paths[land]
+    stray = take_land_gas_along(film, ring, cells, along, states, motion, past, paths)
+    cell_states(film, cells, law, drop, work.w[land], states)
+    return float(stray / film.gas_content)
+
+
+@compiled()
 def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s: int, iteration: int) -> None:
     """cell_response of cells.py: loads and slopes of a land of film f, in the directions of its grid."""
     film, ring, cells, along = films.films[land], films.ring[land], films.cells[land], films.places[land]
@@ -163,17 +175,22 @@ def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s:
     grid.stage = s
     if iteration == 0:
         _follow(film, d, v, work.omega[f], grid.speed, grid.law)
-    cell_states(film, cells, grid.law, film.centrifugal * grid.speed * grid.speed, w, states)
+    drop = film.centrifugal * grid.speed * grid.speed
+    cell_states(film, cells, grid.law, drop, w, states)
     if iteration == 0:
         hold(states, omega)
     motion = EndsMotion(d, v, omega, g, 1.0 / g if remembers else 0.0)
+    stray = _stray_gas(films, work, land, motion, grid.law, drop) if film.carries_gas else 0.0
     land_balances(film, ring, cells, along, states, motion, past, stencil, fields, flows)
     mean, largest = imbalance(cells, fields)
     pace = _pace(omega, v)
     left = max(mean, (CELL_SHARE if remembers else LOOSE_SHARE) * largest) / (film.settled * pace)
+    left = max(left, stray / film.settled)
     balanced = left < 1.0
     if balanced and remembers:
         _store_rates(ring, cells, along, states, d, g, past, fields, work.stage_oil[s, land])
+        if film.carries_gas:
+            store_gas_rates(film, cells, states, work.gas_paths[land], work.stage_gas[s, land], flows)
     if balanced and iteration > 0 and grid.ratio < SLOW:
         grid.balance = HELD
         for i in range(m):  # the journal takes the film along as it did before
@@ -183,7 +200,8 @@ def _solve_land(films: TiltedVolumes, work: Any, land: int, f: int, g: float, s:
                     fields[i, j, k + BY_ENDS + a] = fields[i, j, a]
         land_loads(film, ring, cells, along, states, fields, work.push, loads, work.unused)
         return
-    soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and iteration < PLAIN
+    alone = iteration < PLAIN and not film.carries_gas  # gas has to balance as it is
+    soon = left < (GAINS_CARRIED if remembers else NEWTON_GAINS) and alone
     grid.balance = SOLVED if balanced else AHEAD if soon else OPEN
     if iteration >= PLAIN:
         damp(cells, pace * DAMPING ** (iteration - PLAIN), stencil)

@@ -110,7 +110,7 @@ def tilted_of(film: VolumeFilm) -> TiltedFilm:
     return tilted_film(whole_width(film.section), film.law, (m, 2 * k), reference)
 
 
-@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize("law", [*LAWS, "bubbly"])
 def test_a_journal_that_is_parallel_has_the_same_film_with_tilts(law: str) -> None:
     """On the same cells to 1e-9: that of its displacements, and by the sum of the speeds; tilts do nothing to forces,
     nor displacements and speeds to moments."""
@@ -139,10 +139,30 @@ def test_at_rest_a_tilted_film_has_the_stiffness_of_the_settled_one(law: str) ->
     np.testing.assert_allclose(found.real, expected, atol=1e-7 * np.abs(expected).max())
 
 
-@pytest.mark.parametrize("law", LAWS)
+def test_a_tilted_film_with_gas_has_the_stiffness_of_differences_of_settled_ones() -> None:
+    film = tilted_of(film_of("bubbly", (24, 4)))
+
+    def settled(place: np.ndarray) -> np.ndarray:
+        total = np.zeros(4)
+        for land in film.lands:
+            state = FilmSolver(land.film).steady(land.motion(place, np.zeros(4), OMEGA), upwind=True).state
+            total += land.map.T @ (unit_loads(land.film) @ state.pressure.ravel())
+        return total
+
+    steps = 1e-5 * np.array([40e-6, 40e-6, 4e-3, 4e-3])
+    expected = [(settled(TILTED - by) - settled(TILTED + by)) / (2.0 * by.sum()) for by in np.diag(steps)]
+    arms = np.array([1.0, 1.0, WIDTH, WIDTH])
+    differences, found = (
+        each / np.outer(arms, arms)
+        for each in (np.column_stack(expected), stiffness_at(linear_tilted(film, 0.0, TILTED, OMEGA), 0.0).real)
+    )
+    np.testing.assert_allclose(found, differences, atol=1e-5 * np.abs(differences).max())
+
+
+@pytest.mark.parametrize("law", [*LAWS, "bubbly"])
 def test_a_tilted_film_does_what_a_small_step_in_time_does(law: str) -> None:
     """As above, by all four coordinates, and by an angle by which both surfaces turn: s times it is a speed."""
-    film, s = tilted_of(film_of(law)), 0.5 * OMEGA
+    film, s = tilted_of(film_of(law, (24, 4))), 0.5 * OMEGA
     linear = linear_tilted(film, 0.0, TILTED, OMEGA).turning()
     steps = 1e-5 * np.array([40e-6, 40e-6, 4e-3, 4e-3, OMEGA / s])
 
@@ -151,10 +171,13 @@ def test_a_tilted_film_does_what_a_small_step_in_time_does(law: str) -> None:
         total = np.zeros(4)
         for land, field in zip(film.lands, linear.field, strict=True):
             solver, still = FilmSolver(land.film), np.zeros(4)
-            solver._before = np.full(land.film.grid.shape, UPWIND)
             rest, moved = land.motion(TILTED, still, OMEGA), land.motion(TILTED + by[:4], still, OMEGA + s * by[4])
-            storage = Storage(s * land.film.gaps(moved), s * land.film.content(rest, field))
-            pressure = land.film.mean_pressure(solver._solve(moved, field, storage).state)
+            begun, gap = solver.steady(rest, field, upwind=True), land.film.gaps(moved)
+            past = s * land.film.gaps(rest) * begun.state.fraction
+            solver._before = np.full(land.film.grid.shape, UPWIND)
+            if begun.gas is not None:
+                solver._hold_gas(gap, Storage(s * gap, past), past * begun.gas.free)
+            pressure = land.film.mean_pressure(solver._solve(moved, begun.w, Storage(s * gap, past)).state)
             total += land.map.T @ (unit_loads(land.film) @ pressure.ravel())
         return total
 

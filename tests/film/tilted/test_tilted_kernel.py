@@ -20,9 +20,12 @@ from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATE
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, gap_height
+from frbcli.film.cells.gas.balance import oil_paths, path_layers
+from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import TiltedLand, _loads, tilted_film
+from frbcli.film.cells.tilted.gas import follow_land_oil
 from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, COLUMNS, EndsMotion, land_balances
 from frbcli.film.cells.tilted.loads import land_loads
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
@@ -120,6 +123,28 @@ def test_balances_are_the_plain_ones(law: Law, section: Section, keeps: bool, ar
         assert flows[ENDS_NET] == pytest.approx(ends, abs=1e-12 * np.abs(residual).sum())
         if film.grid.fixed.any():
             assert flows[SUPPLY_NET] != 0.0
+
+
+@pytest.mark.parametrize("total", [TOTAL, -TOTAL])
+@pytest.mark.parametrize("section", SECTIONS.values(), ids=SECTIONS)
+def test_the_oil_that_carries_gas_takes_the_plain_paths(section: Section, total: float) -> None:
+    data, lands = lands_of(section, TwoPhase(0.9))
+    for number, land in enumerate(lands):
+        film = land.film
+        states, state = some_states(film)
+        states[BEFORE_UPSTREAM] = before_upstream(state.fraction, total)
+        motion = replace(motion_of(land, D, V), omega=total)
+        balances = CellBalances(film.section, film.grid, motion, states[BEFORE_UPSTREAM])
+        paths, expected = np.ones((PATHS, *film.grid.shape)), np.zeros((PATHS, *film.grid.shape))
+        path_layers(oil_paths(balances, state.pressure, state.fraction), expected)
+        given = (part[number] for part in (data.films, data.ring, data.cells, data.places))
+        follow_land_oil(*given, states, EndsMotion(D, V, total, G, 0.0), paths)
+        free = ~film.grid.fixed  # what given cells take and give is not asked for
+        for layer in (ONWARD, BACKWARD, UPWARD, DOWNWARD, OUT, GIVEN):
+            of = slice(None, -1) if layer in (UPWARD, DOWNWARD) else slice(None)
+            found, plain = paths[layer][:, of][free[:, of]], expected[layer][:, of][free[:, of]]
+            assert found == pytest.approx(plain, abs=1e-12 * np.abs(expected[:KEPT]).max())
+        assert expected[GIVEN].max() > 0.0
 
 
 @pytest.mark.parametrize("keeps", [False, True])

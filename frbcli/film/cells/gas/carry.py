@@ -83,7 +83,7 @@ LITTLE = 0.1  # of what a film in a time step may be off by: sweeps that change 
 
 
 @compiled(inline=True)
-def _outside(flow: float, i: int, j: int, paths: Array) -> None:
+def outside(flow: float, i: int, j: int, paths: Array) -> None:
     """Oil leaves cell (i, j) for an opening or an end, or comes from there where the flow is less than 0."""
     if flow > 0.0:
         paths[OUT, i, j] += flow
@@ -128,14 +128,14 @@ def _around(
             if share != 1.0 or share_n != 1.0:
                 enters = pressed + share_n * drawn
                 shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
-                _outside(leaves - shared, i, j, paths)
-                _outside(shared - enters, n, j, paths)
+                outside(leaves - shared, i, j, paths)
+                outside(shared - enters, n, j, paths)
             onward, backward = max(shared, 0.0), max(-shared, 0.0)
             paths[ONWARD, i, j], paths[BACKWARD, i, j] = onward, backward
             paths[OUT, i, j] += onward
             paths[OUT, n, j] += backward
             if cells[EXCESS, i, j] != 0.0:
-                _outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
+                outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
 
 
 @compiled()
@@ -175,7 +175,7 @@ def _through_ends(
                     kind, states[PRESSURE, i, j], states[PRESSURE, i, b], conductance, bend, groove, steepness,
                     falls[i], ring[BATHED, i],
                 )  # fmt: skip
-                _outside(flow, i, j, paths)
+                outside(flow, i, j, paths)
 
 
 @compiled()
@@ -293,6 +293,15 @@ def carry_gas(film: np.record, forward: bool, close: float, paths: Array, states
     return first
 
 
+@compiled(inline=True)
+def bring_gas(film: np.record, cells: Array, forward: bool, paths: Array, states: Array) -> float:
+    """The gas of states <- of a film in a time step with the flows of paths, see carry_gas. Returns the most that free
+    gas has changed by."""
+    off = replace_oil(film, cells, states, paths)
+    close = LITTLE * film.settled * film.gas_content
+    return max(off, carry_gas(film, forward, close, paths, states))
+
+
 @compiled()
 def take_gas_along(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, past: Array,
@@ -306,9 +315,7 @@ def take_gas_along(
         for j in range(k):
             paths[HEIGHT, i, j], paths[FACTOR, i, j], paths[GAS_PAST, i, j] = h, motion.rate * h, past[i, j]
     follow_oil(film, ring, width, cells, states, motion, paths)
-    off = replace_oil(film, cells, states, paths)
-    close = LITTLE * film.settled * film.gas_content
-    return max(off, carry_gas(film, motion.omega >= 0.0, close, paths, states))
+    return bring_gas(film, cells, motion.omega >= 0.0, paths, states)
 
 
 @compiled(inline=True)

@@ -22,10 +22,11 @@ from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import GridMotion
 from frbcli.film.cells.balance.carried import UPWIND
+from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, PRESSURE, STATES, TURNOVER, cell_states
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import FreeGas, brought, paths_of, with_own_gas
+from frbcli.film.cells.gas.balance import FreeGas, OilPaths, brought, oil_paths, paths_of, with_own_gas
 from frbcli.film.cells.gas.carry import PATHS, follow_oil
 from frbcli.film.cells.loads import pushing
 from frbcli.film.cells.motion import Motion
@@ -42,8 +43,8 @@ STEP = 1e-6  # of the differences: balances are nearly linear in it
 class LinearStates(NamedTuple):
     """Derivatives of a film of n cells by its states, w and c of each cell: of its balances, flow (2 n, 2 n) and, by
     the rates of the states, storage (2 n, 2 n); by displacement and velocity over the clearance, by_place and by_rate
-    (2 n, 2); by omega_J + omega_S, by_total (2 n,); of the force in N on the journal, push (2, 2 n), and of the
-    share of Couette's torque, sheared (2 n,)."""
+    (2 n, c); by omega_J + omega_S, by_total (2 n,); of the c loads in N, push (c, 2 n), and of the share of Couette's
+    torque, sheared (2 n,). c: the 2 of the displacement, or 4 with its growth over the width, see tilted/force.py."""
 
     flow: csc_matrix
     storage: csc_matrix
@@ -54,13 +55,16 @@ class LinearStates(NamedTuple):
     sheared: Array
 
 
-def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution, weights: Array) -> LinearStates:
-    """The film linearised about a settled solution, its journal being at rest. weights: see shear_weights."""
+def linear_states(
+    film: VolumeFilm, motion: Motion, solution: VolumeSolution, weights: Array, tilts: bool = False
+) -> LinearStates:
+    """The film linearised about a settled solution, its journal being at rest. weights: see shear_weights; tilts:
+    whether the growth of the displacement over the width counts, too."""
     from scipy.sparse import coo_matrix  # takes long to load
 
     assert solution.gas is not None
     grid, w, free = film.grid, solution.w, solution.gas.free
-    settled, (w_at, c_at) = _Settled(film, solution.gas, solution.state.pressure), _numbers(grid.shape)
+    settled, (w_at, c_at) = _Settled(film, solution.gas, solution.state.pressure, tilts), _numbers(grid.shape)
     size, at = 2 * w.size, np.concatenate([w_at, c_at])
     given = at[np.tile(grid.fixed.ravel(), 2)]  # their states stay as they are
     flow = [(np.ones(given.size), given, given)]
@@ -71,8 +75,10 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution, we
             changes = settled.change((w + by_w, free + by_free, motion), (w - by_w, free - by_free, motion))
             for row, change in zip((w_at, c_at), changes, strict=True):
                 flow.append((change[near], row[near.ravel()], by[near_numbers]))
+    shares = (np.ones_like(grid.height), grid.height - 0.5)[: 1 + tilts]
     places = [
-        settled.change((w, free, _moved(motion, axis, STEP)), (w, free, _moved(motion, axis, -STEP))) for axis in (0, 1)
+        settled.change((w, free, _moved(motion, axis, STEP)), (w, free, _moved(motion, axis, -STEP)))
+        for axis in range(2 * len(shares))
     ]
     pace = max(abs(motion.omega), 1.0)
     faster, slower = (replace(motion, omega=motion.omega + side * STEP * pace) for side in (1.0, -1.0))
@@ -84,13 +90,16 @@ def linear_states(film: VolumeFilm, motion: Motion, solution: VolumeSolution, we
     stored = ((state.fraction_slope, w_at, w_at), (fraction, w_at, c_at))
     storage = [((area * gap * slope).ravel(), row, by) for slope, row, by in stored]
     storage.append(((area * gap * state.fraction * settled.rated * settled.time).ravel(), c_at, c_at))
-    rate = [(area * state.fraction * side[:, None]).ravel() for side in (np.sin(grid.centre), -np.cos(grid.centre))]
-    by_place, by_rate, by_total, push = np.zeros((size, 2)), np.zeros((size, 2)), np.zeros(size), np.zeros((2, size))
+    opens = [np.outer(side, share) for share in shares for side in (np.sin(grid.centre), -np.cos(grid.centre))]
+    rate = [(area * state.fraction * each).ravel() for each in opens]
+    by_place, by_rate = np.zeros((size, len(rate))), np.zeros((size, len(rate)))
+    by_total, push = np.zeros(size), np.zeros((len(rate), size))
     by_place[at] = np.stack([np.concatenate([each.ravel() for each in place]) for place in places], axis=1)
     by_rate[w_at] = np.stack(rate, axis=1)
     by_total[at] = np.concatenate([each.ravel() for each in turned]) / pace
     slopes = np.concatenate([state.pressure_slope.ravel(), pressure.ravel()])
-    push[:, at] = np.tile(pushing(film).reshape(2, -1), 2) * slopes
+    unit = np.concatenate([share * pushing(film) for share in shares])
+    push[:, at] = np.tile(unit.reshape(len(rate), -1), 2) * slopes
     sheared = np.zeros(size)
     sheared[at] = np.concatenate([(weights * slope).ravel() for slope in (state.fraction_slope, fraction)])
 
@@ -121,8 +130,8 @@ def _numbers(shape: tuple[int, int]) -> tuple[NDArray[np.int64], NDArray[np.int6
 class _Settled:
     """The balances of a film near a settled solution with the free gas `gas`; rated: 1 / (1 + tau r)."""
 
-    def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array) -> None:
-        data = volume_films([film])
+    def __init__(self, film: VolumeFilm, gas: FreeGas, pressure: Array, tilts: bool) -> None:
+        data, self._tilts = volume_films([film]), tilts
         self.film, self._own = film, (data.films[0], data.ring[0], data.width[0], data.cells[0])
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         _, self.time = film.law.exchanged(pressure, gas.carried.gas, film.scales)
@@ -145,13 +154,11 @@ class _Settled:
     def balances(self, w: Array, free: Array, motion: Motion) -> tuple[Array, Array]:
         """(m, k) each: what leaves the cells net, of their oil, and of their gas as above."""
         film, law, (m, k) = self.film, self.film.law, free.shape
-        own, ring, width, cells = self._own
-        states, layers = np.full((STATES, m, k), UPWIND), np.empty((PATHS, m, k))
+        own, _, _, cells = self._own
+        states = np.full((STATES, m, k), UPWIND)
         states[CARRIED_GAS], states[TURNOVER] = with_own_gas(free)
         cell_states(own, cells, self._law, 0.0, np.ascontiguousarray(w), states)
-        x, y = motion.d
-        follow_oil(own, ring, width, cells, states, GridMotion(x, y, motion.omega), layers)
-        paths = paths_of(layers)
+        paths = self._paths(states, motion)
         comes = brought(paths, np.ones_like(free)) + paths.given
         taken = comes * free - brought(paths, free) - paths.given * law.supplied_gas
         target, _ = law.exchanged(states[PRESSURE], free, film.scales)
@@ -159,6 +166,15 @@ class _Settled:
         open_ = np.where(film.grid.fixed, 0.0, 1.0)
         gas = open_ * self.rated * (self.time * taken - held * (target - free))
         return open_ * (paths.out - comes), gas
+
+    def _paths(self, states: Array, motion: Motion) -> OilPaths:
+        """Of the oil of the states (STATES, m, k)."""
+        film, (own, ring, width, cells) = self.film, self._own
+        if self._tilts:
+            return oil_paths(CellBalances(film.section, film.grid, motion), states[PRESSURE], states[FRACTION])
+        (x, y), layers = motion.d, np.empty((PATHS, *film.grid.shape))
+        follow_oil(own, ring, width, cells, states, GridMotion(x, y, motion.omega), layers)
+        return paths_of(layers)
 
 
 def _apart(shape: tuple[int, int]) -> Iterator[NDArray[np.bool_]]:
@@ -182,5 +198,7 @@ def _nearest(cells: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.in
 
 
 def _moved(motion: Motion, axis: int, step: float) -> Motion:
-    x, y = motion.d
-    return replace(motion, d=(x + step, y) if axis == 0 else (x, y + step))
+    """A motion with a step of coordinate `axis`: of the displacement, and of its growth over the width."""
+    u = [*motion.d, *motion.slope]
+    u[axis] += step
+    return replace(motion, d=(u[0], u[1]), slope=(u[2], u[3]))

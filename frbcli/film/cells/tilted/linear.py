@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.linearised import LinearFilm, by_neighbours, by_total, lying
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm, TiltedLand, land_slopes, unit_loads
@@ -31,6 +32,7 @@ def linear_tilted(
         push=np.hstack([land.push for land in lands]),
         sheared=np.concatenate([land.sheared for land in lands]),
         field=np.array([land.field for land in lands]),
+        ordered=all(land.ordered for land in lands),
     )
 
 
@@ -38,10 +40,14 @@ def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | No
     from scipy.sparse import diags
 
     film, motion = land.film, land.motion(place, np.zeros(COORDINATES), total)
-    solution = FilmSolver(film).steady(motion, start, upwind=True)
+    solution, to_u = FilmSolver(film).steady(motion, start, upwind=True), land.map / film.section.clearance
+    if film.law.carries_gas:
+        found = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
+        moved = found.by_place @ to_u, found.by_rate @ to_u, found.by_total
+        push = land.map.T @ found.push
+        return LinearFilm(found.flow, found.storage, *moved, push, found.sheared, solution.field, ordered=True)
     stencil, by_u, by_v = land_slopes(film, motion, solution)
     stored = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * solution.state.fraction_slope)
-    to_u = land.map / film.section.clearance
     return LinearFilm(
         flow=by_neighbours(stencil),
         storage=diags(stored.ravel(), format="csc"),
