@@ -43,6 +43,7 @@ TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond whic
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
 CENTRE = 1e-9  # m: off the centre by less, a journal takes no notice of both surfaces turning
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
+NEARLY_REAL = 1e-3  # imaginary part over |s|: round-off of a start that is real
 
 
 @dataclass(frozen=True)
@@ -170,11 +171,11 @@ def modes(
     """Eigenvalues in 1/s with their shapes (n,), of pairs the one with positive imaginary part: all that grow, and
     those that decay by less than DAMPED.
 
-    own: the films' dynamic stiffness, `own` or `fine` of the films. Eigenvalues at which the projections are not to be
-    trusted are none of the machine."""
+    own: the films' dynamic stiffness. Eigenvalues at which the projections are not to be trusted are none of the
+    machine."""
     found: list[tuple[complex, Complex]] = []
     for start, shape in machine.starts([film.one for film in films]):
-        if start.imag < -EQUAL * abs(start) or start.real < -DAMPED * abs(omega):
+        if start.imag < -NEARLY_REAL * abs(start) or start.real < -DAMPED * abs(omega):
             continue
         value, vector = _iterated(machine, own, start, shape)
         if not math.isfinite(value.real) or value.real < -DAMPED * abs(omega) or value.imag < -EQUAL * abs(value):
@@ -184,6 +185,14 @@ def modes(
         if all(_trusted(film, value) for film in films):
             found.append((value, vector))
     return found
+
+
+def followed(
+    machine: Oscillator, films: Sequence[DynamicStiffness], known: Sequence[tuple[complex, Complex]]
+) -> list[tuple[complex, Complex]]:
+    """The eigenvalues of `modes` on other films, those that are known leading to them."""
+    found = [_iterated(machine, films, value, shape) for value, shape in known]
+    return [each for each in found if math.isfinite(each[0].real)]
 
 
 def _iterated(

@@ -41,7 +41,8 @@ class ForceBalance(Generic[Films]):
 
 @dataclass(frozen=True)
 class Search:
-    """When a search ends. step: over the clearance, a full step below it has arrived; force: N, and so has less left
+    """When a search ends. step: over the clearance, a full step below it has arrived; untaken: over the clearance, a
+    step below it is not taken any more, where films are dear; force: N, and so has less left
     over; share: smallest one of a step that is tried until less is left over; patience: places that may be no better
     one after the other, where forces have jumps; gap: over the clearance, a journal that is nearer to its shell and
     still not held there does not rest."""
@@ -51,6 +52,7 @@ class Search:
     share: float
     patience: int = 0
     gap: float = 0.0
+    untaken: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -94,7 +96,9 @@ def search_rest(
         if _leaves(there, moved, search.gap):
             break
         share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
-        arrives = bool(np.abs(moved).max() < search.step)
+        if (size := float(np.abs(moved).max())) < search.untaken:
+            return replace(here, settled=True)
+        arrives = size < search.step
         while True:
             following = here.position + share * step
             new = balance(following, found)

@@ -178,18 +178,18 @@ def _balance(
     """What rotor and films put on the journals; near: films near those of the first position, see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
-    near = before.films if before else near
-    speeds = ring_speeds(system, held, omega, position, near)  # with the oil that was missing the time before
-    following = _following_omegas(system, held, omega, position, near)
+    near = _foreseen(before.films if before else near, position)
+    speeds = ring_speeds(system, held, omega, position, near)
     films = _forces(system, omega, speeds, position, near)
-    changed = ring_speeds(system, held, omega, position, films) - speeds  # by the oil that is missing now
-    faster = system.omegas(0.0, changed).tolist()
+    changed, following = _following(system, held, omega, position, films, speeds)
     for i, (many, force) in enumerate(zip(system.rotor.multiplicity, films, strict=True)):
         own = slice(2 * i, 2 * i + 2)
-        surplus[own] += many * (force.force + faster[i] * by_total(force, position[i]))
+        surplus[own] += many * force.force
         slope[own, own] += many * force.by_displacement
         if system.ring_count:
-            slope[own] += many * np.outer(by_total(force, position[i]), following[i])
+            spun = many * _by_total(force, position[i])
+            surplus[own] += changed[i] * spun
+            slope[own] += np.outer(spun, following[i])
     if system.rough_rings:
         slope += _by_rubbed_rings(system, held, omega, position, near, following)
     return ForceBalance(surplus, slope, films)
@@ -199,7 +199,7 @@ def _by_rubbed_rings(
     system: System, held: HeldRotor, omega: float, position: Array, near: tuple[FilmForce, ...], following: Array
 ) -> Array:
     """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
-    summits, less that as of a film. following: see _following_omegas."""
+    summits, less that as of a film. following: see _following."""
     found, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
 
     def summits(speeds: Array) -> list[FilmForce]:
@@ -236,7 +236,7 @@ def _whole_balance(
         own = many * system.rotor.journals[i].T
         surplus += own @ force.force
         slope += own @ force.by_displacement @ system.rotor.journals[i]
-        slope[:, spins] += unit * np.outer(own @ by_total(force, places[i]), system.turning[i, SUM, 1:])
+        slope[:, spins] += unit * np.outer(own @ _by_total(force, places[i]), system.turning[i, SUM, 1:])
     if spins:
         torques, by_speeds, by_places = ring_torques(system, np.append(omega, speeds), places, films)
         arm = ARM * system.clearances[0]
@@ -285,17 +285,47 @@ def _on_shells(
     return found
 
 
-def _following_omegas(
-    system: System, held: HeldRotor, omega: float, position: Array, near: tuple[FilmForce, ...]
-) -> Array:
-    """(films, c films) derivatives of the films' speeds by the places of the journals, in rad/s over m."""
-    found = np.zeros((len(position), position.size))
-    for column in range(position.size if system.ring_count else 0):
+def _foreseen(films: tuple[FilmForce, ...], position: Array) -> tuple[FilmForce, ...]:
+    """The films as they are to first order with their journals at other places (films, c)."""
+    return tuple(film.foreseen(place) for film, place in zip(films, position, strict=False))
+
+
+def _by_total(force: FilmForce, place: Array) -> Array:
+    """(c,) derivative of a film's force by omega_J + omega_S, its oil following where it is known how."""
+    return by_total(force, place) if force.slopes is None else force.slopes.force
+
+
+def _following(
+    system: System, held: HeldRotor, omega: float, position: Array, films: tuple[FilmForce, ...], speeds: Array
+) -> tuple[Array, Array]:
+    """How far the speeds of the films are from those at which the torques on the rings balance, (films,) in rad/s, the
+    rings turning with speeds (rings,) while the films were solved, and the derivatives of these by the places of the
+    journals (films, c films) in rad/s over m.
+
+    Less oil in a film lets its ring turn otherwise, whose speed changes the oil: both to first order, as the films
+    foresee their oil."""
+    count, rings = len(position), system.ring_count
+    if not rings:
+        return np.zeros(count), np.zeros((count, position.size))
+    totals = system.omegas(omega, speeds)
+
+    def balanced(place: Array, turning: Array) -> Array:
+        """(rings,) speeds at which the torques balance with the oil at places (films, c) and speeds (films,)."""
+        oil = tuple(film.foreseen(*each) for film, *each in zip(films, place, turning.tolist(), strict=True))
+        return ring_speeds(system, held, omega, place, oil)
+
+    off, by_place = balanced(position, totals) - speeds, np.zeros((rings, position.size))
+    for column in range(position.size):
         step = np.zeros(position.size)
         step[column] = NUDGE * system.clearances[column // 2]
-        ahead, behind = (
-            system.omegas(omega, ring_speeds(system, held, omega, position + side * step.reshape(-1, 2), near))
-            for side in (1.0, -1.0)
-        )
-        found[:, column] = (ahead - behind) / (2.0 * step[column])
-    return found
+        ahead, behind = (balanced(position + side * step.reshape(-1, 2), totals) for side in (1.0, -1.0))
+        by_place[:, column] = (ahead - behind) / (2.0 * step[column])
+    by_speeds = np.zeros((rings, rings))
+    if any(film.slopes is not None for film in films):
+        turned = NUDGE * max(abs(omega), 1.0)
+        for ring, faster in enumerate(turned * np.eye(rings)):
+            ahead, behind = (balanced(position, system.omegas(omega, speeds + side * faster)) for side in (1.0, -1.0))
+            by_speeds[:, ring] = (ahead - behind) / (2.0 * turned)
+    by_rings = system.turning[:, SUM, 1:]
+    found = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
+    return by_rings @ found[:, 0], by_rings @ found[:, 1:]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import cached_property, partial
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import (
     LEAST,
@@ -20,7 +20,8 @@ from frbcli.equilibrium.coefficients import (
     place_error,
     resting_film,
 )
-from frbcli.equilibrium.dynamic_films import DynamicFilm, constant_film, dynamic_film
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, constant_film, dynamic_film, followed, modes
+from frbcli.equilibrium.linearised import oscillator
 from frbcli.equilibrium.newton import Search
 from frbcli.equilibrium.resting import SEARCH, held_in_plane, resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
@@ -31,8 +32,7 @@ from frbcli.scene.gate.analysis import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
-Array = NDArray[np.float64]
-
+ON_CELLS = replace(SEARCH, untaken=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
 # Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
 # law follows, those of others are exact, and a step leaves its square over the gap.
@@ -75,6 +75,21 @@ class MachineAtRest:
             return 0.0
         return self.others[0][0].position.displacements - self.at_rest.position.displacements
 
+    @cached_property
+    def oscillator(self) -> Oscillator:
+        """The machine without its films, which keep their oil."""
+        return oscillator(self.system, self.omega, self.at_rest, self.dynamic)
+
+    @cached_property
+    def modes(self) -> list[tuple[complex, Complex]]:
+        """Eigenvalues in 1/s with their shapes (n,), of a machine with the memory of its oil, see dynamic_films."""
+        return modes(self.oscillator, self.dynamic, [film.own for film in self.dynamic], self.omega)
+
+    @property
+    def modes_on_finer_films(self) -> list[tuple[complex, Complex]]:
+        """Those of the finer of two meshes, in place of the extrapolation from both."""
+        return followed(self.oscillator, [film.fine for film in self.dynamic], self.modes)
+
     def foreseen(self, omega: float) -> Array:
         """(n,) displacements at another speed in rad/s, on a straight line."""
         return self.at_rest.position.displacements + self.by_omega * (omega - self.omega)
@@ -97,7 +112,8 @@ class StaticMachines:
     ) -> None:
         self._case = case
         films, self._heat = static_films(case, load, top_Hz), None
-        self._static, self._search = (films.coarse, SCOUT) if coarse else (films, SEARCH)
+        own = ON_CELLS if films.on_cells else SEARCH
+        self._static, self._search = (films.coarse, SCOUT) if coarse else (films, own)
         self._memory = memory and self._static.system.remembers
         if case.heat is not None:
             plan = make_plan(case, STILL)

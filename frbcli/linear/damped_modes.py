@@ -11,7 +11,6 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
-from frbcli.equilibrium.dynamic_films import modes
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
@@ -20,7 +19,7 @@ from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.response import larger_semi_axis
 from frbcli.linear.stability import check_machine
-from frbcli.linear.stability_point import linear_machine, machine_rotor, point_at_rest, with_errors
+from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.order import EQUAL, first_largest, ranks
 from frbcli.scene.remedies import advised
@@ -145,9 +144,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
 def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[complex, Complex]]:
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
     if machine.dynamic:
-        own = [film.own for film in machine.dynamic]
-        found = modes(linear_machine(machine), machine.dynamic, own, machine.omega)
-        return [(value, vector) for value, vector in found if oscillating(np.array([value]))[0]]
+        return [(value, vector) for value, vector in machine.modes if oscillating(np.array([value]))[0]]
     n, (stiffness, damping) = rotor.size, coefficients_of(machine.films)
     values, vectors = np.linalg.eig(state_matrix(rotor, machine.omega, stiffness, damping))
     return [(complex(values[i]), vectors[:n, i]) for i in np.flatnonzero(oscillating(values))]

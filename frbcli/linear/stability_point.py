@@ -12,8 +12,8 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
-from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes
-from frbcli.equilibrium.linearised import oscillator, rotor_at_rest, state_matrix
+from frbcli.equilibrium.dynamic_films import DynamicFilm
+from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
@@ -171,7 +171,7 @@ def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Complex, float]]:
     """The eigenvalues of a machine at rest on the other meshes of its films, each with the share of the difference that
     is the error."""
     if machine.dynamic:
-        return [(_with_memory(machine, fine=True), 1.0)]
+        return [(_both(machine.modes_on_finer_films), 1.0)]
     return [(machine_eigenvalues(machine, films), share) for films, share in machine.others]
 
 
@@ -181,7 +181,7 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
     rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
     others: tuple[tuple[Array, Array, float], ...]
     if machine.dynamic:
-        values = _with_memory(machine)
+        values = _both(machine.modes)
         whirl = critical_eigenvalue(values).imag
         if frequency is None:
             frequency = whirl if whirl > 0.0 else UNKNOWN_WHIRL * machine.omega
@@ -229,18 +229,10 @@ def _check_known(films: Sequence[RestingFilm]) -> None:
         )
 
 
-def _with_memory(machine: MachineAtRest, fine: bool = False) -> Complex:
-    """The eigenvalues of a machine with the memory of its oil, both of each pair, in the order of `eigenvalues`. fine:
-    on the finer of two meshes in place of the extrapolation."""
-    own = [film.fine if fine else film.own for film in machine.dynamic]
-    found = np.array([value for value, _ in modes(linear_machine(machine), machine.dynamic, own, machine.omega)])
-    values = found.astype(complex)
+def _both(found: Sequence[tuple[complex, Complex]]) -> Complex:
+    """The eigenvalues of modes, both of each pair, in the order of `eigenvalues`."""
+    values = np.array([value for value, _ in found]).astype(complex)
     return _ordered(np.concatenate([values, values[hopf.oscillating(values)].conj()]))
-
-
-def linear_machine(machine: MachineAtRest) -> Oscillator:
-    """A machine at rest without its films, which keep their oil."""
-    return oscillator(machine.system, machine.omega, machine.at_rest, machine.dynamic)
 
 
 def _by_journal(film: DynamicStiffness, frequency: float) -> Complex:

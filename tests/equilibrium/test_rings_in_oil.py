@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -12,12 +13,13 @@ from marches import march, rigid_shaft, start
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.equilibrium import dynamic_films, static_films
+from frbcli.equilibrium.dynamic_films import Oscillator
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
-from frbcli.linear.stability_point import eigenvalues, linear_machine, machine_rotor, point_at_rest
+from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -80,13 +82,28 @@ def test_a_ring_in_the_centre_is_held_by_drag_alone() -> None:
     assert found.imag.max() > 0.4 * OMEGA
 
 
+def test_round_off_of_a_real_start_loses_no_motion(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The drift of a ring is found from a start beside the real axis, on either side of it, and so on finer films."""
+    machine, starts = at_rest("2 bar"), Oscillator.starts
+    drifts = [value.real for value, _ in machine.modes if value.imag == 0.0]
+    assert len(drifts) == 1
+    for turned in (1.0 + 1e-5j, 1.0 - 1e-5j):
+        monkeypatch.setattr(
+            Oscillator, "starts", lambda own, films, by=turned: [(by * s, shape) for s, shape in starts(own, films)]
+        )
+        for modes in (replace(machine).modes, replace(machine).modes_on_finer_films):
+            near = [value for value, _ in modes if abs(value - drifts[0]) < 0.2 * abs(drifts[0])]
+            assert len(near) == 1
+            assert abs(near[0].imag) < 1e-9 * abs(near[0])
+
+
 @pytest.mark.parametrize(("speed", "surfaces"), [(60.0, ()), (8.0, ROUGH)], ids=["smooth", "rough"])
 def test_a_forced_motion_is_that_of_machine_and_oil(speed: float, surfaces: tuple[str, ...]) -> None:
     """With coefficients at the frequency of the force, and the ring that they turn; of summits with their own."""
     omega = 2.0 * math.pi * speed
     machine, nu = at_rest("2 bar", *surfaces, omega=omega), 0.8 * omega
     assert any(film.summits.place.any() for film in machine.dynamic) == bool(surfaces)
-    rotor, linear = machine_rotor(machine, frequency=nu), linear_machine(machine)
+    rotor, linear = machine_rotor(machine, frequency=nu), machine.oscillator
     z = [film.own.at(1j * nu)[0][:2, :2] for film in machine.dynamic]
     load = np.arange(1.0, 1.0 + rotor.size) + 0.0j
     load[-1] = 0.01  # N m on the ring

@@ -16,7 +16,7 @@ from frbcli.film.cells.steady_force import steady_solution
 from frbcli.linear.damped_modes import FORWARD, damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
-from frbcli.linear.stability_point import linear_machine, point_at_rest
+from frbcli.linear.stability_point import point_at_rest
 from frbcli.scene import speeds
 
 HOPF_Hz = (75.70, 75.95)  # of rigid-two-phase at 2 bar by shooting on the time loop, 24 to 64 cells around, 6 along
@@ -107,7 +107,7 @@ def test_all_motions_that_grow_are_found(speed_Hz: float) -> None:
     """By the argument principle: along the imaginary axis the argument of the determinant of n degrees of freedom turns
     by n pi less 2 pi for each motion that grows, the films of held journals being stable."""
     machine = StaticMachines(fed(), memory=True).at(2.0 * math.pi * speed_Hz)
-    linear, films = linear_machine(machine), [film.one for film in machine.dynamic]
+    linear, films = machine.oscillator, [film.one for film in machine.dynamic]
     frequencies = machine.omega * np.concatenate([np.linspace(0.0, 3.0, 3000), np.geomspace(3.0, 1e4, 3000)[1:]])
     values = np.array([np.linalg.det(linear.at(1j * frequency, films)[0]) for frequency in frequencies])
     turned = 2.0 * np.angle(values[1:] / values[:-1]).sum() / math.pi
@@ -121,7 +121,7 @@ def test_coefficients_are_those_at_the_frequency_of_the_whirl() -> None:
     """With them alone the whirl is nearly the same, as it hardly grows."""
     (point,) = stability_points(fed(), [76.0])[1]
     machine = StaticMachines(fed(), memory=True).at(2.0 * math.pi * 76.0)
-    linear, (film,) = linear_machine(machine), point.films
+    linear, (film,) = machine.oscillator, point.films
     nu = point.critical.imag
     journal = linear.journals[0]
     matrix = linear.at(1j * nu, [machine.dynamic[0].own])[0]

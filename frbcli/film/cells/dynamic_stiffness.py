@@ -75,7 +75,7 @@ def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> Dynamic
     """Z of a film, exact at rest and at the frequencies in rad/s, above 0."""
     rights: list[Array] = []
     lefts: list[Array] = []
-    for s in (0.0, *(1j * frequency for frequency in frequencies)):
+    for s in (0.0j, *(1j * frequency for frequency in frequencies)):
         for found, kept in zip(_changes(film, s), (rights, lefts), strict=True):
             kept += [found.real] if s == 0.0 else [found.real, found.imag]
     right, left = (_span(np.concatenate(kept, axis=1)) for kept in (rights, lefts))
@@ -94,14 +94,17 @@ def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
     balances."""
     from scipy.sparse.linalg import splu  # takes long to load
 
+    # Oil that leaves one cell enters others: the diagonal serves as pivot, as in elimination/block_cyclic.py, and the
+    # order is that of a symmetric matrix.
+    matrix, at = film.at(s), s if s.imag else s.real
     solver = splu(
-        (film.flow + s * film.storage).astype(complex).tocsc(),
-        permc_spec="NATURAL" if film.ordered else "COLAMD",
-        diag_pivot_thresh=0.0 if film.ordered else None,
-        options={"SymmetricMode": film.ordered},
+        matrix,
+        permc_spec="NATURAL" if film.ordered else "MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
     )
-    right = solver.solve((film.by_place + s * film.by_rate).astype(complex))
-    return right, solver.solve(film.push.T.astype(complex), "T")
+    right = solver.solve((film.by_place + at * film.by_rate).astype(matrix.dtype))
+    return right, solver.solve(film.push.T.astype(matrix.dtype), "T")
 
 
 def _span(vectors: Array) -> Array:

@@ -9,19 +9,27 @@ import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
+from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
 from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.balance.newton_step import film_loads, film_newton
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, PRESSURE, STATES, TURNOVER, cell_states
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    CARRIED_GAS,
+    PRESSURE,
+    PRESSURE_SLOPE,
+    STATES,
+    TURNOVER,
+    cell_states,
+)
 from frbcli.film.cells.cavity_edge import edge_slopes, set_edges
-from frbcli.film.cells.data import AREA
+from frbcli.film.cells.data import AREA, LOAD, PUSH_X, PUSH_Y
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 HELD, CARRIED = 1e-9, 1e9  # s: moved so little or so much by a velocity that one of the two derivatives is all there is
@@ -63,6 +71,8 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         return _force_at_flow(solver, motion, solution)
     if film.edged:
         return _force_with_edges(solver, motion, solution)
+    if film.law.keeps_oil and not film.law.carries_gas:
+        return _force_with_oil(solver, motion, solution)
     c, (m, k) = film.section.clearance, film.grid.shape
     nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
     states[BEFORE_UPSTREAM] = solution.before
@@ -78,6 +88,48 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
         slopes.append(np.array(values[2:]).reshape(2, 2) / c)
     at = np.array(force(film, film.mean_pressure(solution.state)))
     return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field, solution.state.fraction)
+
+
+def _force_with_oil(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
+    """See settled_force, of a film that keeps its oil, with the slopes of its field."""
+    film, data, (m, k) = solver.film, solver.data, solution.w.shape
+    own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    states, law = np.zeros((STATES, m, k)), np.append(given_parameters(film.law), np.nan)
+    cell_states(own, cells, law, 0.0, solution.w, states)
+    states[BEFORE_UPSTREAM] = solution.before
+    stencil, *slopes = oil_slopes(own, ring, width, cells, states, motion)
+    fields = np.concatenate([np.zeros((m, k, k)), *(-each for each in slopes)], axis=2)
+    solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
+    by_place, by_rate, by_total = np.split(fields[:, :, k:], [2, 4], axis=2)
+    by_place, by_rate = by_place / film.section.clearance, by_rate / film.section.clearance
+    weight = own.force_scale * cells[LOAD] * states[PRESSURE_SLOPE]
+    loads = np.stack([ring[push][:, None] * weight for push in (PUSH_X, PUSH_Y)])
+    stiffness, damping, spun = (np.tensordot(loads, each) for each in (by_place, by_rate, by_total))
+    place, fraction_slope = film.section.clearance * np.array(motion.d), solution.state.fraction_slope
+    followed = FieldSlopes(place, motion.omega, by_place, by_total[:, :, 0], fraction_slope, spun[:, 0])
+    at_rest = np.array(force(film, film.mean_pressure(solution.state)))
+    return FilmForce(at_rest, stiffness, damping, solution.field, solution.state.fraction, followed)
+
+
+def oil_slopes(
+    own: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: Motion
+) -> tuple[Array, Array, Array, Array]:
+    """Derivatives of what leaves the cells of a film that keeps its oil, see balances for the arguments: the stencil
+    (ENTRIES, m, k) by their unknowns, and (m, k, 2) by the displacement and the velocity over the clearance, (m, k, 1)
+    by omega_J + omega_S, in which it is linear."""
+    (m, k), (x, y) = states.shape[1:], motion.d
+    stencil, nothing, step = np.zeros((ENTRIES, m, k)), np.zeros((m, k)), math.copysign(1.0, motion.omega)
+    step = step * max(abs(motion.omega), 1.0)
+
+    def left(omega: float, g: float) -> Array:
+        """(m, k, SIDES) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
+        fields, at = np.zeros((m, k, k + SIDES)), GridMotion(x, y, omega, g=g)
+        balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
+        return -fields[:, :, k:]
+
+    by_total = (left(motion.omega + step, 0.0) - left(motion.omega, 0.0))[:, :, [BY_ITSELF]] / step
+    by_both, by_rate = (left(motion.omega, g)[:, :, [BY_X, BY_Y]] for g in (1.0, 0.0))
+    return stencil, by_both - by_rate, by_rate, by_total
 
 
 def _force_with_edges(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:

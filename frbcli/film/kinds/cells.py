@@ -75,7 +75,7 @@ class CellFilms(Films):
     @property
     def sought_near(self) -> tuple[bool, ...]:
         """See Films.sought_near. Gas has its way to go, and few fronts."""
-        return tuple(not film.remembers or bool(film.carries_gas) for film in self.data.films)
+        return (True,) * self.count
 
     @property
     def gas_contents(self) -> Array:
@@ -121,7 +121,8 @@ class CellFilms(Films):
         return shares
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        return steady_force(self.own[i], place, rate, total, None if near is None else near.field)
+        start = None if near is None else near.foreseen(place, total).field
+        return steady_force(self.own[i], place, rate, total, start)
 
     def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
         film = self.own[i]

@@ -71,16 +71,43 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 
 
 @dataclass(frozen=True)
+class FieldSlopes:
+    """How a settled film on cells that keeps its oil follows a journal at rest at `place` (c,) in m and rad, and
+    `total`, omega_J + omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the
+    oil fractions by the field; force: (c,) of the force by the total, in N s and N m s."""
+
+    place: Array
+    total: float
+    by_place: Array
+    by_total: Array
+    fraction: Array
+    force: Array
+
+
+@dataclass(frozen=True)
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
     field: of a film on cells, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
-    fractions, None of others."""
+    fractions, None of others; slopes: of the field, None of films that follow at once and where they are not known."""
 
     force: Array
     by_displacement: Array
     by_velocity: Array
     field: Array | None = None
     fraction: Array | None = None
+    slopes: FieldSlopes | None = None
+
+    def foreseen(self, place: Array, total: float | None = None) -> FilmForce:
+        """This film with field and oil fractions to first order as they are with its journal at rest at another place
+        (c,) and another omega_J + omega_S, by default the same one; as it is where its slopes are not known."""
+        slopes = self.slopes
+        if slopes is None or self.field is None:
+            return self
+        faster = 0.0 if total is None else total - slopes.total
+        change = slopes.by_place @ (place - slopes.place) + faster * slopes.by_total
+        fraction = None if self.fraction is None else self.fraction + slopes.fraction * change
+        there = replace(slopes, place=place, total=slopes.total + faster)
+        return replace(self, field=self.field + change, fraction=fraction, slopes=there)
 
     def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
         """This film with another force beside it, or without it."""
@@ -94,7 +121,7 @@ class FilmForce:
 
 def none_of(coordinates: int) -> FilmForce:
     """No force on a journal of so many coordinates."""
-    return FilmForce(*(np.zeros((coordinates,) * size) for size in (1, 2, 2)))
+    return FilmForce(np.zeros(coordinates), *np.zeros((2, coordinates, coordinates)))
 
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
