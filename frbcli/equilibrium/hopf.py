@@ -107,10 +107,12 @@ def _crossed(low: AtRest, high: AtRest) -> int:
     return max(int(np.count_nonzero(turned & whirling)), abs(growing(high.eigenvalues) - growing(low.eigenvalues)))
 
 
-def located(at: Callable[[float], Rest], low: Rest, high: Rest, number: int, close: float) -> Rest:
+def located(
+    at: Callable[[float], Rest], low: Rest, high: Rest, number: int, close: float, guess: float | None = None
+) -> Rest:
     """The machine at the value between two at which the growth of the whirl `number` passes through zero.
 
-    at: the machine at a value; close: relative error of the value.
+    at: the machine at a value; close: relative error of the value; guess: a value between the two that may be near.
     """
     from scipy.optimize import brentq  # runs, which need eigenvalues alone, need not wait for its import
 
@@ -121,7 +123,10 @@ def located(at: Callable[[float], Rest], low: Rest, high: Rest, number: int, clo
             known[value] = at(value)
         return known[value].growth_of(number)
 
-    value = float(brentq(growth, low.value, high.value, xtol=close * high.value, rtol=close))
+    ends, tolerance = [low.value, high.value], close * high.value
+    if guess is not None and low.value < guess < high.value:
+        ends[(growth(guess) > 0.0) == (growth(high.value) > 0.0)] = guess
+    value = float(brentq(growth, *ends, xtol=tolerance, rtol=close))
     growth(value)
     return known[value]
 

@@ -21,7 +21,7 @@ THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
 # The same with films that keep oil, whose eigenvalues scatter as fronts of the oil cross cells.
-SCATTERED_TOLERANCE, SCATTERED_AHEAD = 1e-3, 0.03
+SCATTERED_TOLERANCE, SCATTERED_AHEAD = 3e-4, 0.03
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,9 @@ def find_threshold(
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
         beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
         return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
-    threshold, problem = _crossing(case, machines, resting[above - 1], resting[above])
+    near = resting[max(above - 2, 0) : above + 2]
+    guess = interpolated_root([point.speed_Hz for point in near], [point.growth for point in near])
+    threshold, problem = _crossing(case, machines, resting[above - 1], resting[above], guess)
     return threshold, problem + _stable_again(resting[above:])
 
 
@@ -69,6 +71,16 @@ def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
     if growing is None:
         return (int(np.argmax([point.growth for point in points])),)
     return (growing - 1, growing) if growing > 0 else (growing,)
+
+
+def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float:
+    """Where the growth passes zero for the first time, from below, by the polynomial through a few points, of which one
+    below zero stands before one above."""
+    from scipy.interpolate import BarycentricInterpolator
+    from scipy.optimize import brentq  # takes long to load, as above
+
+    above = next(i for i in range(1, len(growth)) if growth[i - 1] <= 0.0 < growth[i])
+    return float(brentq(BarycentricInterpolator(speeds, growth), speeds[above - 1], speeds[above]))
 
 
 def _one_speed(point: StabilityPoint, tried: int) -> str:
@@ -91,9 +103,9 @@ def _stable_again(points: Sequence[StabilityPoint]) -> str:
 
 
 def _crossing(
-    case: Case, machines: StaticMachines, low: StabilityPoint, high: StabilityPoint
+    case: Case, machines: StaticMachines, low: StabilityPoint, high: StabilityPoint, guess: float
 ) -> tuple[Threshold | None, str]:
-    """The threshold between two points."""
+    """The threshold between two points; guess: a speed in Hz that may be near."""
     known: list[MachineAtRest] = []  # the last one is near to the next
 
     def point(speed: float) -> StabilityPoint:
@@ -103,8 +115,9 @@ def _crossing(
     try:
         with advised(case):
             close = SCATTERED_TOLERANCE if machines.system.remembers else THRESHOLD_TOLERANCE
-            found = hopf.located(point, low, high, 0, close)
-            return threshold_at(machines, found.speed_Hz, near=known[-1] if known else None), ""
+            found = hopf.located(point, low, high, 0, close, guess)
+            near = next((each for each in known if each.omega == 2 * math.pi * found.speed_Hz), None)
+            return threshold_at(machines, found.speed_Hz, near=near), ""
     except NotConverged as error:
         between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
         return None, f"A threshold lies between {between}, but was not found: {error}"
@@ -125,7 +138,8 @@ def threshold_at(
             return critical_eigenvalue(values)
         return complex(values[np.argmin(np.abs(values - 2j * math.pi * frequency_Hz))])
 
-    machine = machines.at(2 * math.pi * speed, near)
+    same = near is not None and near.omega == 2 * math.pi * speed and bool(near.dynamic)  # whose errors are known
+    machine = near if near is not None and same else machines.at(2 * math.pi * speed, near)
     own = critical(point_at_rest(machine, speed).eigenvalues)
     frequency = own.imag / (2 * math.pi)
     ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from frbcli.equilibrium.hopf import growth_of, hopf_points
+from frbcli.equilibrium.hopf import growth_of, hopf_points, located
 
 
 @dataclass(frozen=True)
@@ -26,8 +26,38 @@ class Given:
         return growth_of(self.eigenvalues, number)
 
 
+class Growing(Given):
+    """The same with one pair alone, whose growth is curved."""
+
+    @property
+    def eigenvalues(self) -> NDArray[np.complex128]:
+        growth = np.expm1(4.0 * (self.value - 0.7))
+        return np.array([growth + 50j, growth - 50j])
+
+
 def test_a_whirl_that_begins_to_grow_where_another_one_becomes_a_drift() -> None:
     """As many whirls grow at 0 as at 1."""
     (found,) = hopf_points(lambda _low, _high, value: Given(value), [Given(0.0), Given(1.0)], 1e-12)
     assert found.rising
     assert found.here.value == pytest.approx(0.7, rel=1e-9)
+
+
+@pytest.mark.parametrize("guess", [0.7001, 0.6999, 0.3, 0.97, -1.0])
+def test_a_guess_saves_machines_and_changes_no_hopf_point(guess: float) -> None:
+    """One that is off, or outside, costs one machine at most; a good one is followed by two."""
+    tried: list[float] = []
+
+    def at(value: float) -> Growing:
+        tried.append(value)
+        return Growing(value)
+
+    low, high = Growing(0.5), Growing(1.0)
+    plain = located(at, low, high, 0, 1e-4)
+    count = len(tried)
+    tried.clear()
+    guessed = located(at, low, high, 0, 1e-4, guess)
+    for found in (plain, guessed):
+        assert found.value == pytest.approx(0.7, abs=1e-4)
+    assert len(tried) <= count + 1
+    if abs(guess - 0.7) < 1e-3:
+        assert len(tried) <= 3 < count
