@@ -28,10 +28,11 @@ def system() -> System:
     """A floating ring in two-phase films between circumferential grooves, the outer one with missing oil."""
     groove = '{kind="circumferential-groove", pressure="2 bar"}'
     supplies = [f"bearing.{film}.supply={groove}" for film in ("inner", "outer")]
+    case = frbcli.load_case("floating-ring", [*supplies, "film.cavitation=two-phase"])
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(static_films, "CELLS", (48, 6))
         patch.setattr(static_films, "COARSER", ((24, 4),))
-        return static_films.static_films(frbcli.load_case("floating-ring", [*supplies, "film.cavitation=two-phase"])).system
+        return static_films.static_films(case).system
 
 
 def test_a_film_foresees_its_oil(system: System) -> None:
