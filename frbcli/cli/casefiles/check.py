@@ -16,13 +16,16 @@ if TYPE_CHECKING:
 
     from frbcli.case.reading.listing import Value as ListedValue
     from frbcli.case.schema import Case
+    from frbcli.rotor.speed_profile import SpeedProfile
+    from frbcli.runs.errors.trial import TriedError
     from frbcli.scene.costs.cost import ExpectedCost
     from frbcli.scene.machine.findings import Findings
     from frbcli.scene.machine.operating import FilmOperation
     from frbcli.scene.planning.expected_error import ExpectedError
-    from frbcli.scene.planning.planned import Decision
+    from frbcli.scene.planning.planned import Decision, Plan
 
 TURNING_TOLD = 0.02  # of the gap
+BY_CELLS_WITH_RINGS = "machines with rings have 0.05 to 8 times the error of their cells"
 
 
 @click.command()
@@ -62,11 +65,14 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     if kinematic:
         decisions = kinematic_plan(case, test=test).decisions
     else:
-        plan = make_plan(case)
-        cost, error = cost_of_run(case, plan, run_up_profile(case)), expected_error(plan)
-        decisions, lines = plan.decisions, _expectations(cost, error, compile_B(case), bool(case.films))
+        plan, profile = make_plan(case), run_up_profile(case)
+        cost, error = cost_of_run(case, plan, profile), expected_error(plan)
+        tried = _tried(case, plan, profile, terminal)
+        told = (_about_error(case, plan, error, tried), *_about_cost(cost, compile_B(case), bool(case.films)))
+        decisions, lines = plan.decisions, told
         expected = {
-            "eccentricity_error": error.eccentricity,
+            "eccentricity_error": error.eccentricity if tried is None else tried.error,
+            "tried_until_s": None if tried is None else tried.until_s,
             "film_force_error_relative": error.film_force,
             "cpu_s": cost.cpu_s,
             "cpu_before_s": cost.before_s,
@@ -179,10 +185,44 @@ def _told_findings(found: Findings) -> dict[str, object]:
     }
 
 
-def _expectations(
-    cost: ExpectedCost, error: ExpectedError, compile_B: float, with_films: bool
-) -> tuple[Decision, ...]:
-    """Expected error and cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
+def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) -> TriedError | None:
+    """The error of the run as two short ones find it; None without them, and where they would need a compiler."""
+    from frbcli.scene.costs.trial import planned_trial
+
+    trial = planned_trial(case, plan, profile)
+    if trial is None:
+        return None
+    from frbcli.cli.progress import display
+    from frbcli.compilation import CompilationNeededError, without_compiling
+    from frbcli.runs.errors.trial import tried_error
+
+    try:
+        with display(terminal), without_compiling():
+            return tried_error(case, trial)
+    except CompilationNeededError:
+        return None
+
+
+def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError | None) -> Decision:
+    """The line of the expected error."""
+    from frbcli.scene.films import rings
+    from frbcli.scene.planning.planned import Decision
+
+    if tried is not None:
+        around, along = tried.cells
+        until = f"until {tried.until_s:.2g} s, {tried.speed_Hz:.3g} Hz"
+        parts = f"of the eccentricities {until}, from short runs on these and on {around} x {along} cells"
+        return Decision("expected error", f"{tried.error:.2g}", parts)
+    parts = "of the eccentricities before a whirl grows" if case.films else "of the displacements, over the length"
+    if plan.form.chosen_by_target and rings(case):
+        parts += f"; {BY_CELLS_WITH_RINGS}"
+    if error.film_force is not None:
+        parts += f"; film forces {error.film_force:.1g}, relative"
+    return Decision("expected error", f"{error.eccentricity:.1g}", parts)
+
+
+def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple[Decision, ...]:
+    """Expected cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
     from frbcli.scene.costs.cost import clock
     from frbcli.scene.costs.limits import memory
     from frbcli.scene.planning.planned import Decision
@@ -193,11 +233,7 @@ def _expectations(
     if cost.second_s:
         beside += f", {clock(cost.second_s)} for the uncertainty of its events"
     first = memory(max(cost.memory_B, compile_B))
-    parts = "of the eccentricities before a whirl grows" if with_films else "of the displacements, over the length"
-    if error.film_force is not None:
-        parts += f"; film forces {error.film_force:.1g}, relative"
     return (
-        Decision("expected error", f"{error.eccentricity:.1g}", parts),
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
         Decision("before, after", clock(cost.total_s - cost.cpu_s), beside),
         Decision("memory", memory(cost.memory_B), f"of the whole process; {first} where it compiles the kernels"),

@@ -50,6 +50,7 @@ class FilmForm:
 
     by_cells: ClassVar[bool] = False  # whether it has cells or elements whose number a plan may choose
     chosen_by_target: ClassVar[bool] = False  # whether a plan takes as many of them as the target needs
+    lengths: ClassVar[tuple[int, ...]] = ()  # numbers of cells along that it may choose from
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()

@@ -102,7 +102,8 @@ def _about_target(case: Case, plan: Plan) -> Decision:
     by_itself = altered(accuracy, {"mesh": None, "tolerance": None})
     asked = _plan(altered(case, {"accuracy": by_itself}), accuracy.target)
     error, needed = expected_error(plan).eccentricity, expected_error(asked).eccentricity
-    own = f"expected error {error:.1g}, {clock(_total_s(case, plan))}"
+    which = "error of such cells" if plan.form.chosen_by_target else "expected error"
+    own = f"{which} {error:.1g}, {clock(_total_s(case, plan))}"
     by_hand = accuracy.mesh is not None or accuracy.tolerance is not None
     told, needs, knee = f"{accuracy.target:g}", "needs", ""
     if needed > REACHED * accuracy.target:

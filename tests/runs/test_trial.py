@@ -1,0 +1,147 @@
+"""The error that is expected of a run, from two short runs before it."""
+
+from __future__ import annotations
+
+import json
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from frbcli.arrays import Array
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.casefiles import check
+from frbcli.cli.main import run as frb
+from frbcli.compilation import CompilationNeededError
+from frbcli.runs.errors import trial as tried
+from frbcli.runs.march import March
+from frbcli.scene.costs.trial import Trial, planned_trial
+from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.planning.expected_error import expected_error
+from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.planned import Plan
+from frbcli.scene.planning.profiles import run_up_profile
+from frbcli.solve.state import RUNNING
+
+RINGS = "floating-ring"
+LOOSE = ("accuracy.target=1e-2",)
+
+
+def trial_of(name: str, *settings: str) -> tuple[Case, Trial | None]:
+    case = load_case(name, settings)
+    return case, planned_trial(case, make_plan(case), run_up_profile(case))
+
+
+def test_a_trial_ends_after_ten_revolutions() -> None:
+    case, trial = trial_of(RINGS)
+    assert trial is not None
+    speed = case.speed
+    # angle = pi (900 Hz / 3 s) t^2
+    assert trial.profile.end == pytest.approx(math.sqrt(2.0 * 10.0 * speed.duration / speed.end), rel=1e-3)
+    turned = trial.profile.angle(trial.profile.end) / (2.0 * math.pi)
+    assert turned == pytest.approx(10.0, rel=1e-3)
+
+
+@pytest.mark.parametrize("target", [1e-2, 4.5e-3, 1e-3])
+def test_the_finer_run_of_a_trial_has_other_places_of_the_openings(target: float) -> None:
+    _, trial = trial_of(RINGS, f"accuracy.target={target!r}")
+    assert trial is not None
+    assert trial.plan.cells is not None
+    assert trial.finer.cells is not None
+    assert trial.finer.cells[0] >= 1.5 * trial.plan.cells[0]
+    assert trial.finer.cells[0] % 3 != 0
+    assert trial.finer.cells[1] >= trial.plan.cells[1]
+    assert trial.finer.tolerance < trial.plan.tolerance
+
+
+@pytest.mark.parametrize(
+    ("name", "settings"),
+    [
+        ("jeffcott", ()),  # tables
+        (RINGS, ("speed.to=60 Hz", "speed.duration=0.2 s")),  # as short as its trial
+        ("turbocharger-car", ("accuracy.mesh=[10, 192]", "accuracy.tolerance=1e-6")),  # more than a second
+    ],
+)
+def test_no_trial_without_cells_or_where_it_would_take_long(
+    name: str, settings: tuple[str, ...]
+) -> None:
+    assert trial_of(name, *settings)[1] is None
+
+
+def eccentricities(case: Case, trial: Trial, plan: Plan) -> Array:
+    """(n, films) at the output times of a short run."""
+    march = March(case, plan, make_segments(case, plan), trial.profile)
+    status, parts = RUNNING, list[Array]()
+    while status == RUNNING:
+        status, signals = march.chunk()
+        parts.append(np.column_stack([signals[f"eccentricity_{film}"] for film in ("inner", "outer")]))
+    return np.concatenate(parts)
+
+
+def test_a_trial_tells_one_to_five_times_the_true_error() -> None:
+    """The true error is that to a run on more than twice the cells each way, in smaller steps."""
+    case, trial = trial_of(RINGS, *LOOSE)
+    assert trial is not None
+    found = tried.tried_error(case, trial)
+    assert found is not None
+    fine = replace(trial.plan, cells=(88, 10), tolerance=3e-5)
+    own, finer, exact = (eccentricities(case, trial, plan) for plan in (trial.plan, trial.finer, fine))
+    # which is found at all output times here, at 192 of them there
+    assert found.error == pytest.approx(tried.SAFETY * float(np.abs(own - finer).max()), rel=0.02)
+    true = float(np.abs(own - exact).max())
+    assert true < found.error < 5.0 * true
+    assert expected_error(trial.plan).eccentricity > 4.0 * true  # what the number of cells alone tells
+
+
+def test_a_trial_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, trial = trial_of(RINGS, *LOOSE)
+    assert trial is not None
+    first = tried.tried_error(case, trial)
+
+    def fails(*_: object) -> float:
+        raise AssertionError
+
+    monkeypatch.setattr(tried, "_difference", fails)
+    assert tried.tried_error(case, trial) == first
+    other, its_trial = trial_of(RINGS, *LOOSE, "rotor.unbalance=3.5 g*mm")
+    assert its_trial is not None
+    with pytest.raises(AssertionError):
+        tried.tried_error(other, its_trial)
+
+
+@pytest.mark.parametrize("value", [0.0, math.nan])
+def test_runs_that_do_not_differ_or_end_early_tell_no_error(value: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    case, trial = trial_of(RINGS, "rotor.unbalance=2.9 g*mm")
+    assert trial is not None
+    monkeypatch.setattr(tried, "_difference", lambda *_: value)
+    monkeypatch.setattr(tried, "kept_beside", lambda _: lambda make: make)
+    assert tried.tried_error(case, trial) is None
+
+
+def test_check_tells_what_was_tried_and_compiles_nothing_for_it(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    case, trial = trial_of(RINGS, *LOOSE)
+    assert trial is not None
+    found = tried.tried_error(case, trial)
+    assert found is not None
+    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
+    expected = json.loads(capsys.readouterr().out)["expected"]
+    assert expected["eccentricity_error"] == pytest.approx(found.error)
+    assert expected["tried_until_s"] == pytest.approx(found.until_s)
+    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
+    assert "short runs on these and on 64 x 8 cells" in " ".join(capsys.readouterr().out.split())
+
+    def needs_a_compiler(*_: object) -> None:
+        raise CompilationNeededError
+
+    monkeypatch.setattr(tried, "tried_error", needs_a_compiler)
+    assert frb(["check", RINGS, "--json", "--set", *LOOSE]) == 0
+    expected = json.loads(capsys.readouterr().out)["expected"]
+    assert expected["eccentricity_error"] == expected_error(trial.plan).eccentricity
+    assert expected["tried_until_s"] is None
+    assert frb(["check", RINGS, "--set", *LOOSE]) == 0
+    assert check.BY_CELLS_WITH_RINGS in " ".join(capsys.readouterr().out.split())
+    assert np.isfinite(found.speed_Hz)
