@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Decision, Plan
 
 TURNING_TOLD = 0.02  # of the gap
-BY_CELLS_WITH_RINGS = "machines with rings have 0.05 to 8 times the error of their cells"
+BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of their cells"
 
 
 @click.command()
@@ -190,7 +190,7 @@ def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) ->
     from frbcli.scene.costs.trial import planned_trial
 
     trial = planned_trial(case, plan, profile)
-    if trial is None:
+    if trial is None or (terminal.quiet and not terminal.json):  # nobody reads it
         return None
     from frbcli.cli.progress import display
     from frbcli.compilation import CompilationNeededError, without_compiling

@@ -18,8 +18,8 @@ from frbcli.scene.costs.trial import Trial
 if TYPE_CHECKING:
     from frbcli.runs.march import March
 
-# Expected error over the difference of both runs. The true error is 0.5 to 2.1 times the difference on the machines that
-# this number was chosen on, 0.5 to 1.7 times on 12 others (docs/accuracy-measured.md).
+# Expected error over the difference of both runs. The true error is 0.5 to 2.1 times the difference on the machines
+# that this number was chosen on, 0.5 to 1.7 times on 12 others (docs/accuracy-measured.md).
 SAFETY = 2.2
 
 
