@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Decision, Plan
 
 TURNING_TOLD = 0.02  # of the gap
+UNTRIED = "; frb check measures it on the machine itself when its kernels are compiled (frb warm-up, or a run)"
 BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of their cells"
 
 
@@ -67,8 +68,8 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     else:
         plan, profile = make_plan(case), run_up_profile(case)
         cost, error = cost_of_run(case, plan, profile), expected_error(plan)
-        tried = _tried(case, plan, profile, terminal)
-        told = (_about_error(case, plan, error, tried), *_about_cost(cost, compile_B(case), bool(case.films)))
+        tried, remark = _tried(case, plan, profile, terminal)
+        told = (_about_error(case, plan, error, tried, remark), *_about_cost(cost, compile_B(case), bool(case.films)))
         decisions, lines = plan.decisions, told
         expected = {
             "eccentricity_error": error.eccentricity if tried is None else tried.error,
@@ -185,26 +186,27 @@ def _told_findings(found: Findings) -> dict[str, object]:
     }
 
 
-def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) -> TriedError | None:
-    """The error of the run as two short ones find it; None without them, and where they would need a compiler."""
+def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) -> tuple[TriedError | None, str]:
+    """The error of the run as two short ones find it; None without them, and where they would need a compiler, with a
+    remark for that."""
     from frbcli.scene.costs.trial import planned_trial
 
     trial = planned_trial(case, plan, profile)
     if trial is None or (terminal.quiet and not terminal.json):  # nobody reads it
-        return None
+        return None, ""
     from frbcli.cli.progress import display
     from frbcli.compilation import CompilationNeededError, without_compiling
     from frbcli.runs.errors.trial import tried_error
 
     try:
         with display(terminal), without_compiling():
-            return tried_error(case, trial)
+            return tried_error(case, trial), ""
     except CompilationNeededError:
-        return None
+        return None, UNTRIED
 
 
-def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError | None) -> Decision:
-    """The line of the expected error."""
+def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError | None, remark: str) -> Decision:
+    """The line of the expected error. remark: why a machine is not tried, "" where it need not be told."""
     from frbcli.scene.films import rings
     from frbcli.scene.planning.planned import Decision
 
@@ -216,6 +218,7 @@ def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError
     parts = "of the eccentricities before a whirl grows" if case.films else "of the displacements, over the length"
     if plan.form.chosen_by_target and rings(case):
         parts += f"; {BY_CELLS_WITH_RINGS}"
+    parts += remark
     if error.film_force is not None:
         parts += f"; film forces {error.film_force:.1g}, relative"
     return Decision("expected error", f"{error.eccentricity:.1g}", parts)
