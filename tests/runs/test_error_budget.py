@@ -124,7 +124,7 @@ def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tm
     ("name", "mesh", "fewer"),
     [
         ("jeffcott", [6, 48], None),  # no cells
-        ("jeffcott-two-phase", [6, 48], (40, 4)),
+        ("jeffcott-two-phase", [6, 48], (40, 5)),
         ("floating-ring", [6, 48], (40, 4)),  # with bores
         ("floating-ring", [5, 40], (32, 4)),
         ("jeffcott-two-phase", [3, 12], None),

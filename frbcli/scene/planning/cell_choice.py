@@ -23,10 +23,11 @@ AROUND = (32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 144, 160, 192)
 # Lengths of columns that have a fast elimination (film/cells/elimination/ring_solver.py), but that of too few cells.
 ALONG = (4, 5, 6, 8, 10)
 FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
-# Error of the cells to compare with, over that of the cells: as much if there are such cells, else at least; share of
-# the cells in each direction. Of cells that differ less, openings that stand badly between the coarser ones tell most:
-# floating-ring-table-7-1 on 80 x 10 cells stated 7.6 times its error beside 64 x 8, 5.4 times beside 56 x 8.
-MUCH_COARSER, COARSER, FEWER = 2.2, 1.5, (0.5, 0.85)
+COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction
+# The same with feed holes, if there are such cells: of cells that differ less, holes that stand badly between the
+# coarser ones tell most. floating-ring-table-7-1 on 80 x 10 cells states 7.6 times its error beside 64 x 8, 5.4 times
+# beside 56 x 8.
+OF_HOLES = 2.2
 FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
 FAST_TILTED = (*ALONG, 12, 14, 16)  # of films that follow a tilt
 ALONG_TILTED = (8, 10, 12, 14, 16)  # over the whole width
@@ -41,13 +42,14 @@ MEASURED_AT = 0.85  # largest eccentricity of the films whose errors stand here;
 class CellError:
     """The error of films of one kind by their cells. around: of USUAL cells around, of an order; along: by the cells
     along; least: cells around, below which the error is a matter of chance; growth: power of the smallest gap with
-    which the error of the cells around grows."""
+    which the error of the cells around grows; coarser: error of cells to compare with over that of the cells."""
 
     around: float
     order: float
     along: Mapping[int, float]
     least: int = AROUND[0]
     growth: float = 0.0
+    coarser: float = COARSER
 
     def at(self, eccentricity: float) -> CellError:
         """This error for a journal that goes up to an eccentricity."""
@@ -86,13 +88,13 @@ NARROW = 0.65  # width over diameter
 GROOVE_OIL = CellError(8e-3, 1.5, GROOVE.along, least=40)
 # In a film that empties, cells fill and rupture one by one; below 48 around the error is several times as large.
 EMPTYING = CellError(4e-3, 1.0, {4: 6e-3, 5: 3e-3, 6: 2e-3, 8: 8e-4, 10: 5e-4}, least=48)
-BORES = CellError(1.8e-3, 3.0, {4: 1.2e-2, 5: 2.6e-3, 6: 2.5e-3, 8: 9e-4, 10: 4e-4}, least=40)
-BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 9e-4}, least=40)
+BORES = CellError(1.8e-3, 3.0, {4: 1.2e-2, 5: 2.6e-3, 6: 2.5e-3, 8: 9e-4, 10: 4e-4}, least=40, coarser=OF_HOLES)
+BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 9e-4}, least=40, coarser=OF_HOLES)
 # Pockets and slots: their edges lie between cells. 23 films of laws that keep no oil: 0.7e-3 to 1.2e-2 on 40 x 5 cells,
 # where 10 with feed holes had 0.6e-3 to 3.4e-3; on 56 x 8 cells a half of it, not a third. 20 films of laws that keep
 # oil on 48 x 6 cells: 0.5e-3 to 1.1e-2, two of them, nearly unstable, 3e-2 and 7e-2.
-RECESSES = CellError(4.5e-3, 1.5, BORES.along, least=40)
-RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40)
+RECESSES = CellError(4.5e-3, 1.5, BORES.along, least=40, coarser=OF_HOLES)
+RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40, coarser=OF_HOLES)
 
 
 @dataclass(frozen=True)
@@ -109,6 +111,11 @@ class WorstFilm:
     def least(self) -> int:
         """Cells around, below which the error is a matter of chance."""
         return max(film.least for film in self.films)
+
+    @property
+    def coarser(self) -> float:
+        """Error of cells to compare with over that of the cells."""
+        return max(film.coarser for film in self.films)
 
 
 def worst_film(case: Case, eccentricity: float | None) -> WorstFilm:
@@ -155,13 +162,14 @@ def cells_time(around: int, along: int, fast: tuple[int, ...] = FAST) -> float:
 
 
 def coarser_cells(worst: WorstFilm, cells: tuple[int, int]) -> tuple[int, int] | None:
-    """The most exact cells that are FEWER in both directions, with at least MUCH_COARSER times the error and no fewer
-    around than make an error that is known; or, if there are none, COARSER times the error. None without these, too."""
+    """The most exact cells that are FEWER in both directions, with at least COARSER times the error, with feed holes
+    OF_HOLES times if such cells are not too few for their error to be known; None if there are none."""
     low, high = FEWER
     around = [m for m in (*FEWER_AROUND, *AROUND) if low * cells[0] <= m <= high * cells[0]]
     choices = [(m, k) for m in around for k in FAST if low * cells[1] <= k <= high * cells[1]]
     errors = {choice: worst.of(choice) for choice in choices}
-    for times, fewest in ((MUCH_COARSER, worst.least), (COARSER, 0)):
+    tried = [(COARSER, 0)] if worst.coarser == COARSER else [(worst.coarser, worst.least), (COARSER, 0)]
+    for times, fewest in tried:
         coarser = [one for one in choices if errors[one] >= times * worst.of(cells) and one[0] >= fewest]
         if coarser:
             return min(coarser, key=lambda choice: errors[choice])
