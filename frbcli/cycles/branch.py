@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from frbcli.cycles.method.balance import left_out
+from frbcli.cycles.method.balance import left_out, packed
 from frbcli.cycles.method.continuation import (
     Place,
     Strides,
@@ -21,6 +21,7 @@ from frbcli.cycles.method.continuation import (
 )
 from frbcli.cycles.method.cycle import (
     ASKED,
+    FIRST_HARMONICS,
     FLIP,
     FOLD,
     TORUS,
@@ -28,13 +29,11 @@ from frbcli.cycles.method.cycle import (
     amplitude,
     largest,
     passed_rest,
-    place_at_rest,
     resized_like,
 )
 from frbcli.cycles.method.equilibria import HopfPoint
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.method.follower import MOST_HARMONICS, Follower, at_speed
-from frbcli.cycles.parts.machine import Machine
 
 STRIDES = Strides(first=0.01, shortest=1e-6, longest=0.06, points=600)
 LARGEST = 0.9998  # eccentricity beyond which no cycle is followed
@@ -104,11 +103,14 @@ def follow_branch(
     return Branch(tuple(cycles), note)
 
 
-def first_place(machine: Machine, hopf: HopfPoint, last: float | None = None) -> Place:
-    """The Hopf point as a cycle of no size, with the tangent along its mode. last: the last unknown, its speed over
-    the pace if not given."""
-    over = hopf.equilibrium.omega / machine.pace if last is None else last
-    return place_at_rest(hopf.equilibrium.u, hopf.mode, hopf.nu / machine.pace, over)
+def first_place(hopf: HopfPoint) -> Place:
+    """The Hopf point as a cycle of no size, with the tangent along its mode."""
+    here = hopf.equilibrium
+    motion, along = (np.zeros((FIRST_HARMONICS + 1, len(here.u)), dtype=complex) for _ in range(2))
+    motion[0], along[1] = here.u, hopf.mode
+    tangent = np.concatenate([packed(along), [0.0, 0.0]])
+    y = np.concatenate([packed(motion), [hopf.nu / here.machine.pace, here.value]])
+    return Place(y, tangent / np.linalg.norm(tangent))
 
 
 def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
@@ -195,8 +197,8 @@ def _why_not(follower: Follower, place: Place) -> str:
     """Why no step leads on."""
     machine = follower.machine
     harmonics = (len(place.y) - 2) // machine.size // 2
-    tail = left_out(follower.machine_at(place.y), follower.as_cycle(place.y))
-    there = f"{place.y[-1] * follower.scale:.4g} {follower.unit}".rstrip()
+    tail = left_out(follower.course.machine(place.y), follower.course.with_speed(place.y))
+    there = f"{place.y[-1] * follower.course.scale:.4g} {follower.course.unit}".rstrip()
     told = f"It could not be followed beyond {there}, an eccentricity of {largest(machine, place.y):.4f}"
     if harmonics >= MOST_HARMONICS - 2:
         return f"{told}: {harmonics} harmonics leave {tail:.1g} of the clearance."

@@ -13,15 +13,14 @@ from frbcli.case.schema import Case
 from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import oriented
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
 from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle
-from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint, Resting, SpeedCourse
+from frbcli.cycles.method.equilibria import Equilibrium, HopfPoint, Resting
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error, hopf_error
 from frbcli.cycles.method.seed import seed_cycle
-from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import (
-    SPEED,
     SUBCRITICAL,
     SUPERCRITICAL,
     Cost,
@@ -55,47 +54,28 @@ class CycleCount:
 
 @dataclass(frozen=True)
 class Walk:
-    """The number over which a diagram is computed. over: its name; course, resting: the resting positions, whose values
-    times `scale` are in the unit of the number; follower: of its branches; meshes: others, for the errors of cycles;
-    unknown: why there are none."""
+    """What a diagram is computed of: the resting positions along the course of a follower, which follows the branches;
+    meshes: others, for the errors of cycles; unknown: why there are none."""
 
-    over: str
-    course: EquilibriumCourse
     resting: Resting
-    scale: float
     follower: Follower
     meshes: tuple[OtherMesh, ...] = ()
     unknown: str = ""
 
     @property
-    def unit(self) -> str:
-        """Unit of the number."""
-        return self.follower.unit
+    def course(self) -> Course:
+        """What the diagram goes over."""
+        return self.follower.course
 
-    def value(self, cycle: Cycle) -> float:
-        """The number of a cycle in the unit."""
-        return float(cycle.place.y[-1]) * self.follower.scale
-
-    def last_unknown(self, here: Equilibrium) -> float:
-        """The number at a resting position as branches have it for their last unknown."""
-        return here.value * self.scale / self.follower.scale
-
-    def branch_from(self, hopf: HopfPoint, tell: Callable[[Cycle], None]) -> Branch:
-        """The branch from a Hopf point on."""
-        machine = self.course.machine(hopf.equilibrium.value)
-        return follow_branch(self.follower, first_place(machine, hopf, self.last_unknown(hopf.equilibrium)), tell)
-
-
-def over_speed(
-    course: SpeedCourse, resting: Resting, follower: Follower, meshes: tuple[OtherMesh, ...] = (), unknown: str = ""
-) -> Walk:
-    """A walk over the speed of the rotor in Hz."""
-    return Walk(SPEED, course, resting, 0.5 / math.pi, follower, meshes, unknown)
+    def value(self, motion: Cycle | Equilibrium) -> float:
+        """The number of a cycle or a resting position, in its unit."""
+        share = motion.value if isinstance(motion, Equilibrium) else float(motion.place.y[-1])
+        return share * self.course.scale
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
     """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: gives the CPU time so far in s."""
-    resting, told = walk.resting, CycleCount(observe)
+    resting, course, told = walk.resting, walk.course, CycleCount(observe)
 
     def tell(cycle: Cycle) -> None:
         told(walk.value(cycle), cycle.eccentricity_max)
@@ -103,7 +83,7 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
     branches: list[Branch | None] = []
     for number, hopf in enumerate(resting.hopf):
         known = any(branch is not None and _ends_in(walk, branch, hopf) for branch in branches[:number])
-        branches.append(None if known else walk.branch_from(hopf, tell))
+        branches.append(None if known else follow_branch(walk.follower, first_place(hopf), tell))
     followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
     numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
     notes = [resting.note, *_notes(case, walk)]
@@ -118,8 +98,8 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
     notes += [_uncertain(walk, point) for point in special_cycles(found) if point.certain is False]
     return LimitCycles(
         case=case,
-        over=walk.over,
-        unit=walk.unit,
+        over=course.over,
+        unit=course.unit,
         films=walk.follower.machine.names,
         equilibria=tuple(_resting(walk, point) for point in resting.points),
         branches=found,
@@ -156,7 +136,7 @@ def _certain(point: CyclePoint) -> bool | None:
 
 def _uncertain(walk: Walk, point: SpecialPoint) -> str:
     """Notes on folds that were not found on films of another mesh."""
-    at = f"{point.value:.4g} {walk.unit}".rstrip()
+    at = f"{point.value:.4g} {walk.course.unit}".rstrip()
     return f"The fold at {at} is uncertain: it was not found with the same films on another mesh."
 
 
@@ -172,17 +152,17 @@ def _with_hopf_error(walk: Walk, point: SpecialPoint, hopf: HopfPoint) -> Specia
     value, frequency = hopf_error(walk.course, walk.meshes, hopf) if walk.meshes else (math.nan, math.nan)
     return replace(
         point,
-        value_uncertainty=value * walk.scale,
+        value_uncertainty=value * walk.course.scale,
         frequency_uncertainty_Hz=hertz(frequency),
     )
 
 
-def with_response(found: LimitCycles, walk: Walk, response: Branch | None, cpu_s: float) -> LimitCycles:
-    """The diagram with the synchronous response, and the CPU time of both."""
+def with_response(found: LimitCycles, walk: Walk, response: Branch | None) -> LimitCycles:
+    """The diagram with the synchronous response."""
     if response is None:
         return replace(found, notes=(*found.notes, "No synchronous response was found at the highest speed."))
     points = tuple(_cycle(walk, cycle) for cycle in response.cycles)
-    cost = Cost(cpu_s, found.cost.cycles + len(points))
+    cost = replace(found.cost, cycles=found.cost.cycles + len(points))
     if not response.note.startswith(LEFT):
         found = replace(found, notes=(*found.notes, f"Synchronous response: {response.note}"))
     return replace(found, synchronous=points, cost=cost)
@@ -193,7 +173,7 @@ def _notes(case: Case, walk: Walk) -> list[str]:
     points, notes = walk.resting.points, [walk.unknown]
     if any(place.geometry.supply.turns for place in film_places(case)):
         notes.append("Feed holes that turn with a ring enter by their mean over the angle.")
-    between = f"{points[0].value * walk.scale:.4g} and {points[-1].value * walk.scale:.4g} {walk.unit}".rstrip()
+    between = f"{walk.value(points[0]):.4g} and {walk.value(points[-1]):.4g} {walk.course.unit}".rstrip()
     if walk.resting.hopf:
         return notes
     if all(point.stable for point in points):
@@ -209,8 +189,8 @@ def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
     """The branch through a cycle that no Hopf point in the range leads to, from its low to its high end."""
     points = walk.resting.points
     for resting in (points[len(points) // 2], points[0], points[-1]):
-        y = seed_cycle(walk.course.machine(resting.value), resting)
-        place = None if y is None else walk.follower.entered(y, walk.last_unknown(resting))
+        y = seed_cycle(resting)
+        place = None if y is None else walk.follower.entered(y, resting.value)
         if place is not None:
             break
     else:
@@ -225,15 +205,15 @@ def _ends_in(walk: Walk, branch: Branch, hopf: HopfPoint) -> bool:
     """Whether a branch comes back to rest in a Hopf point."""
     if not branch.ends_at_rest or not branch.cycles:
         return False
-    at = hopf.equilibrium.value * walk.scale
+    at = walk.value(hopf.equilibrium)
     return abs(walk.value(branch.cycles[-1]) - at) < SAME * abs(at)
 
 
 def _resting(walk: Walk, point: Equilibrium) -> RestingPoint:
-    machine = walk.course.machine(point.value)
+    machine = point.machine
     films = 2 * machine.film_count
     return RestingPoint(
-        value=point.value * walk.scale,
+        value=walk.value(point),
         speed_Hz=hertz(point.omega),
         displacement=point.u[:films].reshape(-1, 2),
         ring_speeds_Hz=hertz(machine.pace) * point.u[films:],
@@ -251,7 +231,7 @@ def point_of(walk: Walk, cycle: Cycle) -> CyclePoint:
     error, pace = cycle_error(walk.follower, walk.meshes, cycle), cycle.machine.pace
     return replace(
         point,
-        value_uncertainty=error.last * walk.follower.scale,
+        value_uncertainty=error.last * walk.course.scale,
         frequency_uncertainty_Hz=hertz(error.frequency * pace),
         eccentricity_max_uncertainty=error.eccentricity,
     )
@@ -279,14 +259,14 @@ def _cycle(walk: Walk, cycle: Cycle) -> CyclePoint:
 
 def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoint:
     """A Hopf point with its criticality; branch: number of the one that begins there."""
-    machine: Machine = walk.course.machine(hopf.equilibrium.value)
-    d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
-    found = lyapunov_coefficient(machine, hopf)
+    here = hopf.equilibrium
+    d = here.u[: 2 * here.machine.film_count].reshape(-1, 2)
+    found = lyapunov_coefficient(hopf)
     return SpecialPoint(
         kind=HOPF,
         branch=branch,
-        value=hopf.equilibrium.value * walk.scale,
-        speed_Hz=hertz(hopf.equilibrium.omega),
+        value=walk.value(here),
+        speed_Hz=hertz(here.omega),
         frequency_Hz=hertz(hopf.nu),
         eccentricity_max=np.hypot(d[:, 0], d[:, 1]),
         criticality=criticality_of(found),

@@ -7,9 +7,8 @@ import re
 
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
-from frbcli.cycles.method.changing import kept
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.equilibria import Equilibrium, between, settled
+from frbcli.cycles.method.courses import MOST_UNKNOWNS, Changing
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.cycles.parts.other_meshes import other_films
 from frbcli.errors import InputError, input_error
@@ -24,29 +23,36 @@ REMEDY = 'Write e.g. "40 um".'
 NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*)", re.DOTALL)
 
 
-class Family:
+class Family(Changing):
     """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`;
     settings: of other keys, KEY=VALUE; mesh: number of another mesh of their films, see other_films."""
+
+    most_at_fold = MOST_UNKNOWNS  # each of its equations takes three machines
 
     def __init__(
         self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = (),
         mesh: int | None = None,
     ) -> None:  # fmt: skip
-        self.case, self.key, self.high, self.unit, self.omega = case, key, high, unit, omega
-        self.settings, self.mesh = settings, mesh
-        self.machine = kept(self._machine)
+        super().__init__(self._made, omega)
+        self.case, self.high, self.speed, self.settings, self.mesh = case, high, omega, settings, mesh
+        self.over, self.unit = key, unit
+
+    @property
+    def scale(self) -> float:
+        """See Course."""
+        return self.high
 
     def setting(self, share: float) -> str:
         """KEY=VALUE of a share of the largest value."""
-        return f"{self.key}={share * self.high!r} {self.unit}".strip()
+        return f"{self.over}={share * self.high!r} {self.unit}".strip()
 
     def beside(self, setting: str) -> Family:
         """The machines with another setting of another key."""
-        return Family(self.case, self.key, self.high, self.unit, self.omega, (setting,))
+        return Family(self.case, self.over, self.high, self.unit, self.speed, (setting,))
 
     def on_mesh(self, mesh: int) -> Family:
         """The same machines with films on another mesh."""
-        return Family(self.case, self.key, self.high, self.unit, self.omega, self.settings, mesh)
+        return Family(self.case, self.over, self.high, self.unit, self.speed, self.settings, mesh)
 
     def case_at(self, share: float) -> Case:
         """The case at a share of the largest value. Raises InputError if it cannot have it."""
@@ -60,15 +66,11 @@ class Family:
         plan = make_plan(case)
         return make_system(case, plan) if self.mesh is None else other_films(plan)[self.mesh].system(case)
 
-    def _machine(self, value: float) -> Machine:
+    def _made(self, share: float) -> Machine:
         """The machine at a share. Raises Unreachable where the number is not above zero."""
-        if not value > 0.0:
+        if not share > 0.0:
             raise Unreachable
-        return make_machine(self.system(value), self.omega)
-
-    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As EquilibriumCourse says."""
-        return settled(self.machine(value), between(low, high, value), self.omega, value)
+        return make_machine(self.system(share), self.speed)
 
 
 def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:

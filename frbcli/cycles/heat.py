@@ -8,7 +8,7 @@ twice: of the motion while the temperatures stay, and of the temperatures while 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,25 +16,13 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.cycles.diagram import Walk, over_speed
-from frbcli.cycles.method.balance import Balance, harmonics_of, packed, through, unpacked
-from frbcli.cycles.method.continuation import Equations, Place, Unreachable
-from frbcli.cycles.method.equilibria import (
-    Equilibrium,
-    at_rest,
-    equations,
-    equilibrium,
-    place_between,
-    resting_along,
-)
-from frbcli.cycles.method.floquet import TRIVIAL, Multipliers, multipliers
-from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.method.mesh_error import OtherMesh
+from frbcli.cycles.method.balance import harmonics_of, packed, through
+from frbcli.cycles.method.continuation import Equations, Unreachable
+from frbcli.cycles.method.courses import Course, EquationsOf
+from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats, heats_at
-from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
-from frbcli.cycles.parts.other_meshes import other_films, why_no_error
-from frbcli.cycles.unbalance.synchronous import driven_multipliers, synchronous_equations
+from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
@@ -162,166 +150,77 @@ class HeatOfMotions:
         return np.asarray((ahead - behind)[free] / (2.0 * DIFFERENCE))
 
 
-class WarmSpeed:
-    """The course of a machine with heat over the speed of the rotor in rad/s, see SpeedCourse."""
+class WarmSpeed(Course):
+    """The speed of the rotor of a machine with heat: its temperatures follow the motion."""
 
     def __init__(self, heat: HeatOfMotions) -> None:
+        super().__init__(heat.base)
         self._heat = heat
-        self._made: dict[float, Machine] = {}
-        self._space = state_space(heat.base)
-        passing = transfer(heat.base, np.zeros(1), heat.base.pace)
-        self._through = passing.values[0].real
+        self._latest: tuple[Array, WarmMotion] | None = None
+        self.at_its_heat = heat.machine_along
 
-    @property
-    def pace(self) -> float:
-        """As SpeedCourse says."""
-        return self._heat.base.pace
-
-    def equations(self, y: Array) -> tuple[Array, Array]:
-        """As SpeedCourse says."""
-        warm = self._warm(y)
-        residual, slope = equations(warm.machine)(y)
-        pushed = -self._through @ warm.pushed[:, 0].T
-        slope += pushed @ np.delete(warm.by_motion, -2, axis=1)  # at rest nothing has a frequency
-        return residual, slope
-
-    def _warm(self, y: Array) -> WarmMotion:
-        return self._heat.warm(y[None, :-1].astype(complex), 0.0, float(y[-1] * self.pace))
-
-    def equilibrium(self, place: Place) -> Equilibrium:
-        """As SpeedCourse says."""
-        machine = self._warm(place.y).machine
-        found = equilibrium(machine, self._space, place)
-        self._made[found.value] = machine
-        return found
-
-    def machine(self, value: float) -> Machine:
-        """At the temperatures of a resting position that was found."""
-        return self._made[value]
-
-    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As EquilibriumCourse says."""
-        place = place_between(self, low, high, value)
-        settled = replace(self.equilibrium(place), omega=value, value=value)
-        self._made[value] = self._warm(place.y).machine
-        return settled
-
-
-class WarmFollower(Follower):
-    """Follows branches of cycles with their temperatures."""
-
-    def __init__(self, heat: HeatOfMotions, slowest: float, fastest: float, asked: Sequence[float] = ()) -> None:
-        super().__init__(heat.base, slowest, fastest, asked)
-        self._heat = heat
-
-    def _warm(self, y: Array, near: Array | None = None) -> WarmMotion:
-        pace = self.machine.pace
-        return self._heat.warm(unpacked(y[:-2], self.machine.size), float(y[-2] * pace), float(y[-1] * pace), near)
-
-    def machine_at(self, y: Array) -> Machine:
-        """The machine at the temperatures of the cycle y."""
+    def machine(self, y: Array) -> Machine:
+        """The machine at the temperatures of a motion."""
         return self._warm(y).machine
 
-    def cold_equations(self, machine: Machine, reference: Complex) -> Equations:
-        """Equations of the motions of a machine whose temperatures stay. reference: see Balance."""
-        return Balance(machine, reference)
-
-    def equations(self, place: Place) -> Equations:
-        """Equations of the motions about a place, with temperatures that follow."""
-        reference, near = self.reference(place), self._warm(place.y).temperatures
+    def equations(self, of: EquationsOf, near: Array | None = None) -> Equations:
+        """See Course."""
+        start = None if near is None else self._warm(near).temperatures
 
         def at(y: Array) -> tuple[Array, Array]:
-            warm = self._warm(y, near)
-            residual, slope = self.cold_equations(warm.machine, reference)(y)
-            slope[:-1] += self._pushed(warm, y) @ warm.by_motion
+            warm = self._warm(y, start)
+            residual, slope = of(warm.machine)(y)
+            pushed = self._pushed(warm, y)
+            rests = len(y) == self.top.size + 1
+            slope[: len(pushed)] += pushed @ (np.delete(warm.by_motion, -2, axis=1) if rests else warm.by_motion)
             return residual, slope
 
         return at
 
-    def _pushed(self, warm: WarmMotion, y: Array) -> Array:
-        """(N - 2, F): the derivative of the balance of a motion by the logarithms of the viscosities."""
-        machine, h = warm.machine, (len(y) - 2) // self.machine.size // 2
-        nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
-        passing = transfer(machine, nu * np.arange(h + 1.0), omega).values
-        return np.column_stack([-packed(through(passing, harmonics_of(loads, h))) for loads in warm.pushed])
-
-    def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
+    def multipliers(self, found: Multipliers, y: Array, slope: Callable[[Machine], Array]) -> Multipliers:
         """Multipliers of the motion while the temperatures stay, and of the temperatures while the motion follows."""
-        y = place.y
         warm = self._warm(y)
-        found = multipliers(warm.machine, self.space_at(y), y, near, max(TRIVIAL, enough))
-        if not self.moves(y):
-            return found
-        slope = self.cold_equations(warm.machine, self.reference(place))(y)[1]
-        return self._with_temperatures(found, warm, y, slope[:, :-1])
-
-    def _with_temperatures(self, found: Multipliers, warm: WarmMotion, y: Array, slope: Array) -> Multipliers:
-        """The multipliers of a motion y with those of its temperatures. slope: of the equations of the motion by its
-        unknowns, the first of y, while the temperatures stay."""
-        pushed = np.zeros((len(slope), len(warm.pushed)))
+        by_own = slope(warm.machine)
+        pushed = np.zeros((len(by_own), len(warm.pushed)))
         pushed[: len(y) - 2] = self._pushed(warm, y)
-        follows = np.linalg.solve(slope, -pushed @ warm.slopes)  # of the motion, by the temperatures
+        follows = np.linalg.solve(by_own, -pushed @ warm.slopes)  # of the motion, by the temperatures
         capacity = self._heat.model.capacity[self._heat.free]
-        by_motion = warm.gain_by_motion[:, : len(slope)]
+        by_motion = warm.gain_by_motion[:, : len(by_own)]
         growth = np.linalg.eigvals((warm.gain_by + by_motion @ follows) / capacity[:, None])
-        period = 2.0 * np.pi / (y[-2] * self.machine.pace)
+        period = 2.0 * np.pi / (y[-2] * self.top.pace)
         slow = np.exp(np.clip((growth * period).real, None, MOST_GROWTH) + 1j * (growth * period).imag)
         others = np.concatenate([found.others, slow])
         return replace(found, values=np.concatenate([found.values[:1], others[largest_first(others)]]))
 
-    def at_its_heat(self, u: Array, v: Array, omega: float) -> Machine:
-        """See HeatOfMotions.machine_along."""
-        return self._heat.machine_along(u, v, omega)
+    def _warm(self, y: Array, near: Array | None = None) -> WarmMotion:
+        """The motion or the resting position y at its temperatures, see HeatOfMotions.warm; the latest one is kept."""
+        if near is not None:
+            return self._heat.warm(*self.harmonics(y), near)
+        if self._latest is None or not np.array_equal(self._latest[0], y):
+            self._latest = y.copy(), self._heat.warm(*self.harmonics(y))
+        return self._latest[1]
 
-    def driven(self, slowest: float, fastest: float) -> WarmSynchronous:
-        """Follows the synchronous response of the same machine with its temperatures, between two speeds in rad/s."""
-        return WarmSynchronous(self._heat, slowest, fastest)
-
-
-class WarmSynchronous(WarmFollower):
-    """Follows the synchronous response, see Synchronous, with its temperatures."""
-
-    free = False
-
-    def reference(self, place: Place) -> Complex:
-        """The motion itself: the unbalance holds its phase."""
-        return unpacked(place.y[:-2], self.machine.size)
-
-    def cold_equations(self, machine: Machine, reference: Complex) -> Equations:
-        """Equations of the synchronous motions of a machine whose temperatures stay."""
-        return synchronous_equations(machine, reference)
-
-    def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
-        """As Synchronous says, and those of the temperatures while the motion follows."""
-        y = place.y
-        warm = self._warm(y)
-        found = driven_multipliers(warm.machine, self.space_at(y), y)
-        slope = self.cold_equations(warm.machine, self.reference(place))(y)[1]
-        return self._with_temperatures(found, warm, y, slope[:-1, :-2])
+    def _pushed(self, warm: WarmMotion, y: Array) -> Array:
+        """(c (2 H + 1), F): the derivative of the balance of a motion by the logarithms of the viscosities."""
+        motion, nu, omega = self.harmonics(y)
+        h = len(motion) - 1
+        passing = transfer(warm.machine, nu * np.arange(h + 1.0), omega).values
+        return np.column_stack([-packed(through(passing, harmonics_of(loads, h))) for loads in warm.pushed])
 
 
-def warm_walk(
-    case: Case, plan: Plan, system: System, slowest: float, fastest: float, asked: Sequence[float] = ()
-) -> Walk:
-    """What the diagram of a case with heat goes over, between two speeds in rad/s. Raises NotConverged without a
-    resting position at the fastest one, and Unreachable."""
+def warm_courses(
+    case: Case, plan: Plan, system: System, fastest: float
+) -> tuple[Callable[[System], WarmSpeed], RestingPosition]:
+    """What makes the course of a system of a case with heat, the machine itself or that on films of another mesh, and
+    the resting position at the fastest speed in rad/s. Raises NotConverged without one."""
     assert case.heat is not None
-    heat, machine = heat_of(case), make_machine(system, fastest)
+    heat = heat_of(case)
+    made = np.array([case.viscosity(place.geometry) for place in film_places(case)])
+    concentric = heat.concentric if case.heat.side_flow == "concentric" else None
     top = WarmMachines(case, plan, system).at(fastest)
-    motions = HeatOfMotions(
-        base=machine,
-        model=heat.model,
-        made=np.array([case.viscosity(place.geometry) for place in film_places(case)]),
-        ends=system.films.end_flows,
-        concentric=heat.concentric if case.heat.side_flow == "concentric" else None,
-        start=top.steady.temperatures,
-    )
-    course = WarmSpeed(motions)
-    resting = resting_along(course, at_rest(machine, top.resting), slowest, fastest)
-    follower = WarmFollower(motions, slowest, fastest, asked)
-    meshes = []
-    for other in other_films(plan):
-        films = other.system(case)
-        its = replace(motions, base=make_machine(films, fastest), ends=films.films.end_flows)
-        meshes.append(OtherMesh(WarmSpeed(its), WarmFollower(its, slowest, fastest), other.share))
-    return over_speed(course, resting, follower, tuple(meshes), why_no_error(plan))
+
+    def course(its: System) -> WarmSpeed:
+        base, ends = make_machine(its, fastest), its.films.end_flows
+        return WarmSpeed(HeatOfMotions(base, heat.model, made, ends, concentric, top.steady.temperatures))
+
+    return course, top.resting

@@ -3,38 +3,27 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
-from frbcli.cycles.diagram import Observer, Walk, diagram, over_speed, with_hopf_errors, with_response
+from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors, with_response
 from frbcli.cycles.family import check
-from frbcli.cycles.heat import WarmFollower, warm_walk
-from frbcli.cycles.method.changing import ChangingFollower, by_difference, kept
-from frbcli.cycles.method.continuation import Place, Unreachable
+from frbcli.cycles.heat import warm_courses
+from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.courses import Changing, Course
 from frbcli.cycles.method.cycle import HOPF
-from frbcli.cycles.method.equilibria import (
-    Equilibrium,
-    OverSpeed,
-    at_rest,
-    equations,
-    equilibrium,
-    place_between,
-    resting_along,
-    resting_curve,
-)
+from frbcli.cycles.method.equilibria import at_rest, resting_along
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
-from frbcli.cycles.parts.linearised import state_space
-from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.cycles.parts.machine import make_machine
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.branches import whirls_with_unbalance
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
-from frbcli.equilibrium.resting import resting_position
+from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.linear.threshold import threshold_at
@@ -90,12 +79,10 @@ def limit_cycles(
     if by_shooting(case):
         found = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
         return _with_missing(found, speeds_Hz)
-    plan = make_plan(case)
-    system = make_system(case, plan)
-    machine = make_machine(system, fastest)
+    system = make_system(case, make_plan(case))
     try:
         with advised(case):
-            walk = _walk(case, plan, system, machine, slowest, fastest, asked)
+            walk = _walk(case, system, slowest / fastest, fastest, [speed / fastest for speed in asked])
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
     found = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
@@ -103,16 +90,13 @@ def limit_cycles(
         found = with_hopf_errors(found, walk)
     elif found.of(HOPF):
         found = replace(found, special=_with_errors(case, fastest, found.special))
-    warm = walk.follower if isinstance(walk.follower, WarmFollower) else None
     if with_unbalance:
-        course = walk.course if warm is None else OverSpeed(machine)
-        found = whirls_with_unbalance(found, course, observe, None if warm is None else warm.at_its_heat)
-    unbalance = machine.rotor.unbalance_cos.any() or machine.rotor.unbalance_sin.any()
-    if system.rotor.over_speed is not None or not (unbalance or machine.rotor.loads):
-        return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
-    driven = Synchronous(machine, slowest, fastest) if warm is None else warm.driven(slowest, fastest)
-    response = synchronous_response(driven, walk.resting.points[-1])
-    return with_response(found, walk, response, working_time().cpu_s - begun)
+        found = whirls_with_unbalance(found, walk.course, observe)
+    rotor = system.rotor
+    if rotor.over_speed is None and (rotor.loads or rotor.unbalance_cos.any() or rotor.unbalance_sin.any()):
+        response = synchronous_response(Synchronous(walk.course, slowest / fastest), walk.resting.points[-1])
+        found = with_response(found, walk, response)
+    return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
 
 
 def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: float) -> None:
@@ -124,20 +108,34 @@ def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: fl
         raise InputError(case.name or "case", faults)
 
 
-def _walk(
-    case: Case, plan: Plan, system: System, machine: Machine, slowest: float, fastest: float,
-    asked: Sequence[float],
-) -> Walk:  # fmt: skip
-    """Resting positions and cycles between two speeds in rad/s. Raises Unreachable."""
+def _walk(case: Case, system: System, lowest: float, fastest: float, asked: Sequence[float]) -> Walk:
+    """Resting positions and cycles up to a speed in rad/s; lowest, asked: speeds over it. Raises NotConverged without a
+    resting position there, and Unreachable."""
+    plan = make_plan(case)
+    course, position = _courses(case, plan, system, fastest)
+    own = course(system)
+    resting = resting_along(own, at_rest(own.top, position), lowest)
+    meshes = tuple(OtherMesh(Follower(course(other.system(case)), lowest), other.share) for other in other_films(plan))
+    return Walk(resting, Follower(own, lowest, asked=asked), meshes, why_no_error(plan))
+
+
+def _courses(
+    case: Case, plan: Plan, system: System, fastest: float
+) -> tuple[Callable[[System], Course], RestingPosition]:
+    """What makes the course over the speed of a system, the machine itself or that on films of another mesh, and the
+    resting position at the fastest speed in rad/s. Raises NotConverged without one."""
     if case.heat is not None:
-        return warm_walk(case, plan, system, slowest, fastest, asked)
-    if system.rotor.over_speed is not None:
-        return changing_walk(case, plan, system, slowest, fastest, asked)
-    resting = resting_curve(system, machine, slowest, fastest)
-    others = [(make_machine(other.system(case), fastest), other.share) for other in other_films(plan)]
-    meshes = tuple(OtherMesh(OverSpeed(its), Follower(its, slowest, fastest), share) for its, share in others)
-    follower = Follower(machine, slowest, fastest, asked)
-    return over_speed(OverSpeed(machine), resting, follower, meshes, why_no_error(plan))
+        return warm_courses(case, plan, system, fastest)
+    if system.rotor.over_speed is None:
+        return lambda its: Course(make_machine(its, fastest)), resting_position(system, fastest)
+
+    def at(its: System, share: float) -> System:
+        return replace(its, rotor=its.rotor.at(share * fastest))
+
+    def changing(its: System) -> Course:
+        return Changing(lambda share: make_machine(at(its, share), fastest))
+
+    return changing, resting_position(at(system, 1.0), fastest)
 
 
 def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) -> tuple[SpecialPoint, ...]:
@@ -163,50 +161,3 @@ def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles
     met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
     missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
     return replace(found, notes=(*found.notes, *missing))
-
-
-class ChangingSpeed:
-    """The course of such a machine over the speed of its rotor in rad/s, see SpeedCourse. pace: its fastest speed."""
-
-    def __init__(self, system: System, fastest: float) -> None:
-        self.pace, self.system = fastest, system
-        self.machine_at = kept(self._machine_at)
-
-    def _machine_at(self, share: float) -> Machine:
-        """The machine with the coefficients of a speed over the pace."""
-        return make_machine(self.system_at(share * self.pace), self.pace)
-
-    def system_at(self, value: float) -> System:
-        """The system with the coefficients of a speed."""
-        return replace(self.system, rotor=self.system.rotor.at(value))
-
-    def machine(self, value: float) -> Machine:
-        """As EquilibriumCourse says."""
-        return self.machine_at(value / self.pace)
-
-    def equations(self, y: Array) -> tuple[Array, Array]:
-        """As SpeedCourse says."""
-        return by_difference(self.machine_at, equations, y)
-
-    def equilibrium(self, place: Place) -> Equilibrium:
-        """As SpeedCourse says."""
-        machine = self.machine_at(float(place.y[-1]))
-        return equilibrium(machine, state_space(machine), place)
-
-    def solved(self, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-        """As EquilibriumCourse says."""
-        return replace(self.equilibrium(place_between(self, low, high, value)), omega=value, value=value)
-
-
-def changing_walk(
-    case: Case, plan: Plan, system: System, slowest: float, fastest: float, asked: Sequence[float] = ()
-) -> Walk:
-    """What the diagram of a rotor with such coefficients goes over, between two speeds in rad/s. Raises NotConverged
-    without a resting position at the fastest one, and Unreachable."""
-    course = ChangingSpeed(system, fastest)
-    near = at_rest(course.machine_at(1.0), resting_position(course.system_at(fastest), fastest))
-    resting = resting_along(course, near, slowest, fastest)
-    others = [(ChangingSpeed(other.system(case), fastest), other.share) for other in other_films(plan)]
-    meshes = tuple(OtherMesh(its, ChangingFollower(its.machine_at, slowest, fastest), share) for its, share in others)
-    follower = ChangingFollower(course.machine_at, slowest, fastest, asked)
-    return over_speed(course, resting, follower, meshes, why_no_error(plan))

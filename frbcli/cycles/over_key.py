@@ -1,7 +1,7 @@
 """Limit cycles over a number of the case other than the speed, which is kept: a clearance, a viscosity.
 
 The last unknown of branches is the number over its largest value. A machine is made for each value, see
-method/changing.py.
+method/courses.py.
 """
 
 from __future__ import annotations
@@ -15,10 +15,9 @@ from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors
 from frbcli.cycles.family import Family, check, positive_range
-from frbcli.cycles.method.changing import ChangingFollower
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
-from frbcli.cycles.method.follower import MOST_UNKNOWNS
+from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.method.mesh_error import OtherMesh
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles
@@ -28,16 +27,6 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
 POINTS = 41  # resting positions of the diagram
-
-
-class KeyFollower(ChangingFollower):
-    """Follows branches over the key."""
-
-    most_at_fold = MOST_UNKNOWNS  # each of its equations takes three machines
-
-    def __init__(self, family: Family, lowest: float) -> None:
-        super().__init__(family.machine, lowest * family.omega, family.omega, omega=family.omega)
-        self.scale, self.unit = family.high, family.unit
 
 
 def limit_cycles_over(
@@ -85,9 +74,11 @@ def limit_cycles_over(
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed over {key}.") from None
     plan, lowest = make_plan(family.case_at(1.0)), first / last
-    others = [(family.on_mesh(number), other.share) for number, other in enumerate(other_films(plan))]
-    meshes = tuple(OtherMesh(other, KeyFollower(other, lowest), share) for other, share in others)
-    walk = Walk(key, family, resting, last, KeyFollower(family, lowest), meshes, why_no_error(plan))
+    meshes = tuple(
+        OtherMesh(Follower(family.on_mesh(number), lowest), other.share)
+        for number, other in enumerate(other_films(plan))
+    )
+    walk = Walk(resting, Follower(family, lowest), meshes, why_no_error(plan))
     found = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
     return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
 
@@ -96,10 +87,10 @@ def resting_over(family: Family, lowest: float) -> Resting:
     """Resting positions over the key, ascending, sought from the largest value on. Raises Unreachable,
     NotConverged."""
     with advised(family.case):
-        near = at_rest(family.machine(1.0), resting_position(family.system(1.0), family.omega))
+        near = at_rest(family.top, resting_position(family.system(1.0), family.speed))
     points = []
     for share in np.linspace(1.0, lowest, POINTS):
-        points.append(settled(family.machine(float(share)), near, family.omega, float(share)))
+        points.append(settled(family, near, float(share)))
         near = points[-1].u
     points.reverse()
     return Resting(tuple(points), hopf_points(family, points), "")

@@ -20,12 +20,13 @@ from frbcli.case.schema import Case
 from frbcli.columns import table_of
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import special_columns
-from frbcli.cycles.diagram import Walk, diagram, over_speed, point_of
+from frbcli.cycles.diagram import Walk, diagram, point_of
 from frbcli.cycles.family import Family
-from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.method.mesh_error import OtherMesh, hopf_error
-from frbcli.cycles.over_key import KeyFollower, resting_over
+from frbcli.cycles.over_key import resting_over
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles
 from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 from frbcli.scene.machine.system import make_system
@@ -52,10 +53,10 @@ def followed(case: Case, *others: Case) -> LimitCycles:
     low, high, asked = (2.0 * math.pi * speed for speed in (LOW * UNIT_Hz, HIGH * UNIT_Hz, ASKED))
     machine = machine_of(case)
     resting = resting_curve(make_system(case, make_plan(case)), machine, low, high)
-    machines = map(machine_of, others)
-    meshes = tuple(OtherMesh(OverSpeed(other), Follower(other, low, high), SHARE) for other in machines)
-    follower = Plain(machine, low, high, (asked,))
-    return diagram(case, over_speed(OverSpeed(machine), resting, follower, meshes), None, lambda: 0.0)
+    own, *twins = (Course(each) for each in (machine, *map(machine_of, others)))
+    meshes = tuple(OtherMesh(Follower(twin, low / high), SHARE) for twin in twins)
+    walk = Walk(resting, Plain(own, low / high, asked=(asked / high,)), meshes)
+    return diagram(case, walk, None, lambda: 0.0)
 
 
 @cache
@@ -103,10 +104,6 @@ def test_cycles_at_speeds_at_which_the_other_films_have_none_are_uncertain() -> 
     assert not any("uncertain" in note for note in own.notes)
 
 
-class PlainOverKey(Plain, KeyFollower):
-    """The same over a key."""
-
-
 def test_errors_over_the_viscosity_are_those_of_films_that_make_it_larger() -> None:
     """Short films that are as much wider as gives them WIDER times the force whirl as the narrow ones do in WIDER times
     the viscosity: their Hopf point and fold lie at 1 / WIDER of the value, with the same frequency and amplitude."""
@@ -114,22 +111,21 @@ def test_errors_over_the_viscosity_are_those_of_films_that_make_it_larger() -> N
     key, high, lowest = "oil.viscosity", 1.1 * float(case.oil.viscosity), 0.6
     wide = case.with_settings(f"bearing.width={WIDTH * WIDER ** (1.0 / 3.0)!r} m")
     own, other = (Family(each, key, high, "Pa*s", omega) for each in (case, wide))
-    resting, meshes = resting_over(own, lowest), (OtherMesh(other, KeyFollower(other, lowest), SHARE),)
-    walk = Walk(key, own, resting, high, PlainOverKey(own, lowest), meshes)
-    start = first_place(own.machine(1.0), resting.hopf[0], resting.hopf[0].equilibrium.value)
-    branch = follow_branch(walk.follower, start, until=lambda cycle: cycle.kind == "fold")
+    resting, meshes = resting_over(own, lowest), (OtherMesh(Follower(other, lowest), SHARE),)
+    walk = Walk(resting, Plain(own, lowest), meshes)
+    branch = follow_branch(walk.follower, first_place(resting.hopf[0]), until=lambda cycle: cycle.kind == "fold")
     (fold,) = (cycle for cycle in branch.cycles if cycle.kind == "fold")
     off = SHARE * (1.0 - 1.0 / WIDER)
-    before = other.machine.cache_info().misses
+    before = other.machine_at.cache_info().misses
     found = point_of(walk, fold)
-    assert other.machine.cache_info().misses == before + 3
+    assert other.machine_at.cache_info().misses == before + 3
     assert found.value_uncertainty == pytest.approx(off * found.value, rel=1e-3)
     assert found.frequency_uncertainty_Hz < 2e-4 * found.frequency_Hz
     assert found.eccentricity_max_uncertainty is not None
     assert found.eccentricity_max_uncertainty[0] < 1e-3
     cycle = next(each for each in branch.cycles if each is not fold)
     point_of(walk, cycle)
-    assert other.machine.cache_info().misses == before + 4, (cycle.y[-1], len(branch.cycles))
+    assert other.machine_at.cache_info().misses == before + 4, (cycle.y[-1], len(branch.cycles))
     value, frequency = hopf_error(own, meshes, resting.hopf[0])
     assert value == pytest.approx(off * resting.hopf[0].equilibrium.value, rel=0.02)  # to first order
     assert frequency < 2e-4 * resting.hopf[0].nu

@@ -11,11 +11,13 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cycles.family import check
-from frbcli.cycles.heat import WarmFollower, warm_walk
+from frbcli.cycles.heat import WarmSpeed, warm_courses
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place
-from frbcli.cycles.unbalance.synchronous import synchronous_equations
+from frbcli.cycles.method.equilibria import at_rest
+from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equations
 from frbcli.errors import InputError
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
@@ -31,6 +33,15 @@ def jeffcott(*settings: str) -> Case:
     return load_case("jeffcott", [*OIL, *settings])
 
 
+def course_at_rest(case: Case) -> tuple[WarmSpeed, np.ndarray]:
+    """The course of a case over its speed, and u at rest at the highest one."""
+    plan = make_plan(case)
+    system = make_system(case, plan)
+    make, position = warm_courses(case, plan, system, check(case, shooting=True)[1])
+    course = make(system)
+    return course, at_rest(course.top, position)
+
+
 @pytest.mark.parametrize(
     ("name", "settings"),
     [
@@ -41,20 +52,18 @@ def jeffcott(*settings: str) -> Case:
 def test_equations_change_with_the_motion_as_their_derivatives_say(name: str, settings: list[str]) -> None:
     """The temperatures of films and rings follow from the motion, and so do their parts of the derivatives."""
     case = load_case(name, [*settings, "speed.from=90 Hz", "speed.to=100 Hz"])
-    plan = make_plan(case)
-    walk = warm_walk(case, plan, make_system(case, plan), *check(case, shooting=True))
-    follower, c = walk.follower, walk.follower.machine.size
-    assert isinstance(follower, WarmFollower)
+    course, rest = course_at_rest(case)
+    follower, c, films = Follower(course, 0.9), course.top.size, course.top.film_count
     motion = np.zeros((3, c), dtype=complex)
-    motion[0] = walk.resting.points[-1].u
-    motion[1, : 2 * follower.machine.film_count] = np.tile([0.1 + 0.05j, 0.05 - 0.1j], follower.machine.film_count)
+    motion[0] = rest
+    motion[1, : 2 * films] = np.tile([0.1 + 0.05j, 0.05 - 0.1j], films)
     motion[2] = 0.01
     y = np.concatenate([packed(motion), [0.5, 0.9]])
-    equations, found = follower.equations(Place(y, np.ones(len(y)))), follower._warm(y)
+    equations, found = follower.equations(Place(y, np.ones(len(y)))), course._warm(y)
     _, slope = equations(y)
     for i in (0, c - 1, c, 3 * c - 1, len(y) - 2, len(y) - 1):
         step = 1e-6 * np.eye(len(y))[i]
-        ahead, behind = (follower._warm(y + sign * step).machine.scales for sign in (1.0, -1.0))
+        ahead, behind = (course._warm(y + sign * step).machine.scales for sign in (1.0, -1.0))
         warmer = np.log(ahead / behind) / 2e-6
         assert found.by_motion[:, i] == pytest.approx(warmer, rel=1e-4, abs=1e-5)
         if i >= len(y) - 2:  # the forces of tables have derivatives by displacement that are not exact
@@ -104,15 +113,13 @@ def test_cycle_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
 
 def test_derivatives_of_the_response_to_unbalance_have_the_temperatures() -> None:
     case = jeffcott(*HEAT, "rotor.unbalance=20 g*mm", "speed.from=90 Hz", "speed.to=100 Hz")
-    plan = make_plan(case)
-    walk = warm_walk(case, plan, make_system(case, plan), *check(case, shooting=True))
-    assert isinstance(walk.follower, WarmFollower)
-    follower, c = walk.follower.driven(500.0, 600.0), walk.follower.machine.size
-    motion = np.array([walk.resting.points[-1].u, [0.1 + 0.05j, 0.05 - 0.1j], np.full(c, 0.01)], dtype=complex)
+    course, rest = course_at_rest(case)
+    follower, c = Synchronous(course, 0.8), course.top.size
+    motion = np.array([rest, [0.1 + 0.05j, 0.05 - 0.1j], np.full(c, 0.01)], dtype=complex)
     y = np.concatenate([packed(motion), [0.9, 0.9]])
     equations = follower.equations(Place(y, np.ones(len(y))))
     _, slope = equations(y)
-    _, staying = synchronous_equations(follower.machine_at(y), motion)(y)
+    _, staying = synchronous_equations(course.machine(y), motion)(y)
     for i in (0, c - 1, c, 3 * c - 1, len(y) - 2, len(y) - 1):
         step = 1e-6 * np.eye(len(y))[i]
         changed = (equations(y + step)[0] - equations(y - step)[0]) / 2e-6

@@ -13,11 +13,12 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.cycles.branch import Branch
-from frbcli.cycles.diagram import Walk, over_speed
+from frbcli.cycles.diagram import Walk
 from frbcli.cycles.family import Family
-from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
-from frbcli.cycles.over_key import KeyFollower, resting_over
+from frbcli.cycles.over_key import resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
@@ -62,14 +63,14 @@ class SpeedPlane(MapPlane):
     by_difference, shaded = (-1,), 41
 
     def __init__(self, second: Family, speeds: tuple[float, float], lowest: float) -> None:
-        slowest, fastest = (speed / second.omega for speed in speeds)
+        slowest, fastest = (speed / second.speed for speed in speeds)
         corners = np.array([slowest, lowest]), np.array([fastest, 1.0])
-        super().__init__(SPEED, "Hz", hertz(second.omega), second, corners)
+        super().__init__(SPEED, "Hz", hertz(second.speed), second, corners)
         self.speeds = speeds
 
     def machine(self, y: Array) -> Machine:
         """See MapPlane."""
-        return self.second.machine(float(y[-1]))
+        return self.second.machine_at(float(y[-1]))
 
     def cycle(self, y: Array) -> Array:
         """See MapPlane."""
@@ -77,16 +78,14 @@ class SpeedPlane(MapPlane):
 
     def walk(self, share: float, crossings: bool = False) -> Walk:
         """See MapPlane."""
-        machine = self.second.machine(share)
+        machine, lowest = self.second.machine_at(share), float(self.corners[0][0])
         resting = resting_curve(self.second.system(share), machine, *self.speeds)
-        follower = (Follower if crossings else FoldFollower)(machine, *self.speeds)
-        return over_speed(OverSpeed(machine), resting, follower)
+        return Walk(resting, (Follower if crossings else FoldFollower)(Course(machine), lowest))
 
     def response(self, walk: Walk) -> Branch | None:
         """See MapPlane."""
         fastest = walk.resting.points[-1]
-        driven = Synchronous(walk.course.machine(fastest.value), self.speeds[0], fastest.omega)
-        return synchronous_response(driven, fastest)
+        return synchronous_response(Synchronous(walk.course, walk.follower.range[0], fastest.value), fastest)
 
 
 class KeyPlane(MapPlane):
@@ -96,13 +95,13 @@ class KeyPlane(MapPlane):
     by_difference, shaded = (-2, -1), 15
 
     def __init__(self, first: Family, second: Family, lowest: tuple[float, float]) -> None:
-        super().__init__(first.key, first.unit, first.high, second, (np.array(lowest), np.ones(2)))
-        self._omega, self._lowest = first.omega, lowest[0]
+        super().__init__(first.over, first.unit, first.high, second, (np.array(lowest), np.ones(2)))
+        self._omega, self._lowest = first.speed, lowest[0]
         self._family = lru_cache(FAMILIES)(lambda share: first.beside(second.setting(share)))
 
     def machine(self, y: Array) -> Machine:
         """See MapPlane."""
-        return self._family(float(y[-1])).machine(float(y[-2]))
+        return self._family(float(y[-1])).machine_at(float(y[-2]))
 
     def cycle(self, y: Array) -> Array:
         """See MapPlane."""
@@ -111,9 +110,4 @@ class KeyPlane(MapPlane):
     def walk(self, share: float, crossings: bool = False) -> Walk:
         """See MapPlane."""
         family, lowest = self._family(share), self._lowest
-        follower = (KeyFollower if crossings else _KeyFoldFollower)(family, lowest)
-        return Walk(family.key, family, resting_over(family, lowest), family.high, follower)
-
-
-class _KeyFoldFollower(FoldFollower, KeyFollower):
-    """Follows branches over a key whose folds alone are asked for."""
+        return Walk(resting_over(family, lowest), (Follower if crossings else FoldFollower)(family, lowest))

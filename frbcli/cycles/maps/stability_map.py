@@ -14,6 +14,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
+from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.family import Family, check, positive_range
@@ -29,8 +30,9 @@ from frbcli.cycles.maps.curves import (
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle, amplitude, eccentricities
+from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, amplitude, eccentricities
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.cycles.unbalance.synchronous import synchronous_equations
@@ -235,10 +237,9 @@ def _row(plane: MapPlane, share: float, begun: _Begun, with_unbalance: bool) -> 
     special: list[SpecialPoint] = []
     for number, hopf in enumerate(walk.resting.hopf):
         here = hopf.equilibrium
-        machine, over = walk.course.machine(here.value), walk.last_unknown(here)
-        begun.hopf.append(np.concatenate([here.u, [hopf.nu / machine.pace, over, share]]))
+        begun.hopf.append(np.concatenate([here.u, [hopf.nu / here.machine.pace, here.value, share]]))
         special.append(hopf_special(walk, hopf, number))
-        branch = walk.branch_from(hopf, _unwatched)
+        branch = follow_branch(walk.follower, first_place(hopf))
         for cycle in branch.cycles:
             if cycle.kind == FOLD:
                 begun.folds.append(np.append(cycle.place.y, share))
@@ -263,10 +264,6 @@ def _curves(plane: MapPlane, begun: _Begun) -> tuple[MapCurve, ...]:
     for start in begun.crossings:
         curves += _new_crossing(plane, curves, start)
     return tuple(curves)
-
-
-def _unwatched(_: Cycle) -> None:
-    """Branches of a map are not told."""
 
 
 def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Array) -> list[MapCurve]:
@@ -326,8 +323,8 @@ def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:
     told = (float(y[-2] * plane.scale), float(y[-1] * plane.second.high), hertz(omega), hertz(nu))
     if kind == FOLD:
         return MapPoint(*told, eccentricities(machine, here))
-    rest = settled(machine, here[:-2], omega, omega)
-    found = lyapunov_coefficient(machine, hopf_at(machine, rest, True, nu))
+    rest = settled(Course(machine), here[:-2], here[-1])
+    found = lyapunov_coefficient(hopf_at(rest, True, nu))
     d = rest.u[: 2 * machine.film_count].reshape(-1, 2)
     return MapPoint(*told, np.hypot(d[:, 0], d[:, 1]), criticality_of(found), found.value.real)
 
@@ -407,7 +404,7 @@ def _growth(plane: MapPlane) -> Growth:
             walk = plane.walk(float(share))
         except (NotConverged, Unreachable):
             continue
-        known = [point.value * walk.scale for point in walk.resting.points]
+        known = [walk.value(point) for point in walk.resting.points]
         rates = [max(point.growth_of(0), -1e9) for point in walk.resting.points]
         row[:] = np.interp(over, known, rates, left=np.nan)
     return Growth(shares * plane.second.high, over, rate)

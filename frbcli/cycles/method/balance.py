@@ -23,13 +23,10 @@ SAMPLES_PER_HARMONIC, FEWEST_SAMPLES = 6, 64
 
 @dataclass(frozen=True)
 class Balance:
-    """The equations of a motion with H harmonics; reference: (H + 1, c) the motion that the phase is compared with;
-    omega: None, or a speed of the rotor in rad/s that is kept, the last unknown then being the share in which the
-    springs and dashpots kappa remain beside the films (seed.py)."""
+    """The equations of a motion with H harmonics; reference: (H + 1, c) the motion that the phase is compared with."""
 
     machine: Machine
     reference: Complex
-    omega: float | None = None
 
     @property
     def harmonics(self) -> int:
@@ -41,12 +38,9 @@ class Balance:
         machine, h = self.machine, self.harmonics
         c = machine.size
         motion, nu, omega = unpacked(y[:-2], c), float(y[-2] * machine.pace), float(y[-1] * machine.pace)
-        added = np.ones(c)
-        if self.omega is not None:
-            omega, added[: 2 * machine.film_count] = self.omega, 1.0 - y[-1]
         orders = np.arange(h + 1.0)[:, None]
         passing = transfer(machine, nu * orders[:, 0], omega)
-        kappa = added * passing.kappa
+        kappa = passing.kappa
         loads, rate = loads_along(machine, motion, nu, omega)
         values, slope = harmonics_of(loads.values, h), _derivative(loads, h, nu)
         inner = values + kappa * motion
@@ -55,20 +49,14 @@ class Balance:
         slope[np.arange(h + 1), :, h + np.arange(h + 1), :] += kappa[:, :, None] * np.eye(c)
         by_motion = -np.einsum("kij,kjlm->kilm", passing.values, slope)
         by_motion[np.arange(h + 1), :, h + np.arange(h + 1), :] += np.eye(c)
-        with_nu = (
-            harmonics_of(np.einsum("nij,nj->ni", loads.by_v, rate), h)
-            + added * orders * passing.kappa_by_frequency * motion
-        )
+        with_nu = harmonics_of(np.einsum("nij,nj->ni", loads.by_v, rate), h)
+        with_nu += orders * passing.kappa_by_frequency * motion
         by_nu = -orders * through(passing.by_frequency, inner) - through(passing.values, with_nu)
-        if self.omega is None:
-            last = -through(passing.by_speed, inner) - through(passing.values, harmonics_of(loads.by_speed, h))
-            last *= machine.pace
-        else:
-            last = through(passing.values, (np.arange(c) < 2 * machine.film_count) * passing.kappa * motion)
+        by_omega = -through(passing.by_speed, inner) - through(passing.values, harmonics_of(loads.by_speed, h))
         n = c * (2 * h + 1)
         residual, jacobian = np.empty(n + 1), np.zeros((n + 1, n + 2))
         residual[:n], jacobian[:n, :n] = packed(out), as_real(by_motion)
-        jacobian[:n, n], jacobian[:n, n + 1] = machine.pace * packed(by_nu), packed(last)
+        jacobian[:n, n], jacobian[:n, n + 1] = machine.pace * packed(by_nu), machine.pace * packed(by_omega)
         row = phase_row(self.reference)
         residual[n], jacobian[n, :n] = row @ y[:n], row
         return residual, jacobian

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.equilibria import HopfPoint
 from frbcli.cycles.parts.linearised import state_space
-from frbcli.cycles.parts.machine import Machine, film_loads
+from frbcli.cycles.parts.machine import film_loads
 from frbcli.film.kinds.samples import have_closed_forms
 
 States = Mapping[int, NDArray[Any]]
@@ -51,17 +51,18 @@ class Lyapunov:
         return 0 if abs(real) <= self.uncertainty else 1 if real > 0.0 else -1
 
 
-def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> Lyapunov:
+def lyapunov_coefficient(hopf: HopfPoint) -> Lyapunov:
     """The first Lyapunov coefficient of a Hopf point, with its uncertainty: extrapolated to no radius in closed forms
     of the films, else the middle one of several radii, and their spread."""
+    machine = hopf.equilibrium.machine
     smooth = have_closed_forms(machine.films)
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
     gap = 1.0 - float(np.max(np.hypot(d[:, 0], d[:, 1])))
     if not smooth:
-        found = [_at_radius(machine, hopf, radius * gap) for radius in TABULATED]
+        found = [_at_radius(hopf, radius * gap) for radius in TABULATED]
         real = [value.real for value in found]
         return Lyapunov(found[len(found) // 2], max(real) - min(real))
-    rows = [_at_radius(machine, hopf, SMOOTH * gap * 0.5**level) for level in range(LEVELS)]
+    rows = [_at_radius(hopf, SMOOTH * gap * 0.5**level) for level in range(LEVELS)]
     changed = 0.0
     while len(rows) > 1:  # errors go with r^2, r^4, ...
         power = 4.0 ** (LEVELS - len(rows) + 1)
@@ -70,8 +71,9 @@ def lyapunov_coefficient(machine: Machine, hopf: HopfPoint) -> Lyapunov:
     return Lyapunov(rows[0], changed)
 
 
-def _at_radius(machine: Machine, hopf: HopfPoint, radius: float) -> complex:
-    space, here = state_space(machine), hopf.equilibrium
+def _at_radius(hopf: HopfPoint, radius: float) -> complex:
+    here, machine = hopf.equilibrium, hopf.equilibrium.machine
+    space = state_space(machine)
     loads = film_loads(machine, here.u[None], np.zeros((1, machine.size)), here.omega)
     matrix = space.matrix(here.omega, loads.by_u[0], loads.by_v[0])
     left = _left_vector(matrix, hopf)

@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.arrays import Array, Complex
-from frbcli.cycles.method.balance import moments, motion_along, packed, unpacked
+from frbcli.arrays import Array
+from frbcli.cycles.method.balance import moments, motion_along, unpacked
 from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.machine import Machine
@@ -29,15 +29,6 @@ class Cycle:
     eccentricity_max: Array
     multipliers: Multipliers
     kind: str = ""
-
-
-def place_at_rest(u: Array, mode: Complex, nu: float, last: float) -> Place:
-    """A cycle of no size at the resting position u (c,), with the tangent along a mode (c,). nu, last: its frequency
-    over the pace and its last unknown."""
-    motion, along = (np.zeros((FIRST_HARMONICS + 1, len(u)), dtype=complex) for _ in range(2))
-    motion[0], along[1] = u, mode
-    tangent = np.concatenate([packed(along), [0.0, 0.0]])
-    return Place(np.concatenate([packed(motion), [nu, last]]), tangent / np.linalg.norm(tangent))
 
 
 def resized(place: Place, c: int, harmonics: int) -> Place:

@@ -1,5 +1,5 @@
-"""Follows the limit cycles of one machine: the equations about a place of a branch, as many harmonics as its cycles
-need, their multipliers, and steps and folds along it.
+"""Follows limit cycles along a course: the equations about a place of a branch, as many harmonics as its cycles need,
+their multipliers, and steps and folds along it.
 
 Harmonics are added where the next ones would be larger than a tolerance, and left out where the last ones are much
 smaller.
@@ -7,9 +7,8 @@ smaller.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from functools import cached_property
+from functools import partial
 
 import numpy as np
 
@@ -24,6 +23,7 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
+from frbcli.cycles.method.courses import MOST_UNKNOWNS, Course, EquationsOf
 from frbcli.cycles.method.cycle import (
     FIRST_HARMONICS,
     FOLD,
@@ -35,16 +35,11 @@ from frbcli.cycles.method.cycle import (
     resized_like,
 )
 from frbcli.cycles.method.floquet import HELPS, TRIVIAL, Multipliers, multipliers
-from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine
-from frbcli.cycles.parts.reduced_states import reduced_space
 
 MOST_HARMONICS = 80
 REFITS = 4  # of a fold with more harmonics
-# Of one film, of several: what the harmonics left out may have of the clearance, and unknowns up to which harmonics are
-# added for the trivial multiplier alone.
-TAIL, MOST_UNKNOWNS = (1e-7, 1e-6), (1100, 450)
-MOST_AT_FOLD = (2400, 450)  # the same at a fold, beside which a film may be nearly at rest for a moment
+TAIL = (1e-7, 1e-6)  # of one film, of several: what the harmonics left out may have of the clearance
 SPARE = 0.1  # of it: what the last harmonics have where there are too many
 LOOSE = 10.0  # times it: what may be left out with the most harmonics, as by a film that nearly rests for a moment
 NARROWER = 0.6  # share of the smallest gap that one step may leave
@@ -52,67 +47,62 @@ NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 
 
 class Follower:
-    """One branch while it is followed. omega: as in Balance; scale, unit: the last unknown times `scale` is in the
-    unit; free: whether it is a whirl, which may shrink to rest; tail, most_at_fold: see TAIL, MOST_AT_FOLD;
-    tail_of_folds: share of the tail that folds may have."""
+    """Branches over a course between two shares. asked: shares at which cycles are computed exactly; free: whether
+    motions are whirls, which may shrink to rest; tail: see TAIL; tail_of_folds: share of the tail that folds may
+    have."""
 
     free = True
     tail = TAIL
     tail_of_folds = 1.0
-    most_at_fold = MOST_AT_FOLD
 
-    def __init__(
-        self, machine: Machine, slowest: float, fastest: float, asked: Sequence[float] = (), omega: float | None = None
-    ) -> None:
-        self.machine = machine
-        self.omega = omega
-        self.scale, self.unit = machine.pace / (2.0 * math.pi), "Hz"
-        self.range = (slowest / machine.pace, fastest / machine.pace)
-        self.asked = tuple(speed / machine.pace for speed in asked)
+    def __init__(self, course: Course, lowest: float, highest: float = 1.0, asked: Sequence[float] = ()) -> None:
+        self.course, self.machine = course, course.top
+        self.range, self.asked = (lowest, highest), tuple(asked)
 
     def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
         """A point of the branch with its results. near: one close by."""
         found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
         halved = True  # whether finer intervals have been tried
         while found.defect > TRIVIAL:
-            finer = self.with_more(place, self.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
+            finer = self.with_more(place, self.course.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
             if finer is None:
                 found = found if halved else self.multipliers(place, found)
                 break
             enough = HELPS * found.defect
             place, found = finer, self.multipliers(finer, found, enough)
             halved = found.defect > enough
-        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
+        machine, y = self.course.machine(place.y), self.course.with_speed(place.y)
         return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
 
     def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
         """Multipliers of the cycle at a place. near, enough: see floquet.py."""
-        machine, y = self.machine_at(place.y), self.as_cycle(place.y)
-        return multipliers(machine, self.space_at(place.y), y, near, max(TRIVIAL, enough))
+        machine, y = self.course.machine(place.y), self.course.with_speed(place.y)
+        found = self.fast_multipliers(machine, y, near, max(TRIVIAL, enough))
+        if not self.moves(y):
+            return found
+        motion = self.motion(place)
+        size = len(y) - (1 if self.free else 2)
+        return self.course.multipliers(found, y, lambda machine: motion(machine)(y)[1][:size, :size])
 
-    def space_at(self, _y: Array) -> StateSpace:
-        """The states whose multipliers those of the cycle y are."""
-        return self._space
+    def fast_multipliers(self, machine: Machine, y: Array, near: Multipliers | None, enough: float) -> Multipliers:
+        """Multipliers of a cycle y while its machine stays. near, enough: see floquet.py."""
+        return multipliers(machine, self.course.seen_states(machine), y, near, enough)
 
-    @cached_property
-    def _space(self) -> StateSpace:
-        return reduced_space(self.machine)
-
-    def machine_at(self, _y: Array) -> Machine:
-        """The machine whose cycle y is."""
-        return self.machine
+    def motion(self, place: Place) -> EquationsOf:
+        """The equations of the cycles of a machine about a place."""
+        return partial(Balance, reference=self.reference(place))
 
     def equations(self, place: Place) -> Equations:
-        """Equations of the cycles about a place."""
-        return Balance(self.machine, self.reference(place), self.omega)
+        """Equations of the cycles about a place, over the number."""
+        return self.course.equations(self.motion(place), place.y)
 
     def equations_at(self, place: Place) -> Equations:
-        """Equations of the cycles about a place with its last unknown; by it alone they may change in another way."""
-        return self.equations(place)
+        """Equations of the cycles about a place at its number, see Course."""
+        return self.course.equations_at(self.motion(place), place.y)
 
     def equations_near(self, place: Place) -> Equations:
-        """Equations of the cycles about a place, next to its last unknown."""
-        return self.equations(place)
+        """Equations of the cycles about a place next to its number, see Course."""
+        return self.course.equations_near(self.motion(place), place.y)
 
     def reference(self, place: Place) -> Complex:
         """The motion that the phase of cycles about a place is compared with."""
@@ -129,10 +119,6 @@ class Follower:
         there = np.append(y[:-1], last)
         return corrected(self.equations(Place(there, along)), there, along)
 
-    def as_cycle(self, y: Array) -> Array:
-        """The unknowns y with the speed of the rotor at their end."""
-        return y if self.omega is None else np.append(y[:-1], self.omega / self.machine.pace)
-
     def with_more(self, place: Place, most: tuple[int, int]) -> Place | None:
         """The place with half as many harmonics more, None if those are too many. most: see MOST_UNKNOWNS."""
         c, harmonics = self.machine.size, (len(place.y) - 2) // self.machine.size // 2
@@ -148,7 +134,7 @@ class Follower:
         c, allowed = self.machine.size, share * self.tail[self.machine.film_count > 1]
         for _ in range(12):
             harmonics = (len(place.y) - 2) // c // 2
-            tail = left_out(self.machine_at(place.y), self.as_cycle(place.y))
+            tail = left_out(self.course.machine(place.y), self.course.with_speed(place.y))
             motion = unpacked(place.y[:-2], c)
             if tail < allowed:
                 used = np.flatnonzero(np.abs(motion).max(axis=1) > SPARE * allowed)

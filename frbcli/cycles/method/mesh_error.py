@@ -24,8 +24,9 @@ from frbcli.cycles.method.continuation import (
     oriented,
     unit_vector,
 )
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.cycle import FOLD, Cycle, eccentricities, passed_rest
-from frbcli.cycles.method.equilibria import Equilibrium, EquilibriumCourse, HopfPoint
+from frbcli.cycles.method.equilibria import HopfPoint, settled
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.machine import Machine
 from frbcli.equilibrium.coefficients import LEAST
@@ -41,10 +42,9 @@ AHEAD = 1e-3  # of the value of a Hopf point, for the derivative of its eigenval
 
 @dataclass(frozen=True)
 class OtherMesh:
-    """The machine on films of another mesh. course, follower: of its resting positions and branches; share: of the
-    difference that is the error."""
+    """The machine on films of another mesh. follower: of its branches, along its course; share: of the difference that
+    is the error."""
 
-    course: EquilibriumCourse
     follower: Follower
     share: float
 
@@ -74,7 +74,7 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
     return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
 
-def hopf_error(own: EquilibriumCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
+def hopf_error(own: Course, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
     """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN
     if another mesh has no resting position there. To first order in the eigenvalues on the other meshes."""
     value = hopf.equilibrium.value
@@ -82,7 +82,7 @@ def hopf_error(own: EquilibriumCourse, meshes: Sequence[OtherMesh], hopf: HopfPo
     try:
         slope = (_whirl(own, hopf, (1.0 + AHEAD) * value) - 1j * hopf.nu) / (AHEAD * value)
         for mesh in meshes:
-            apart = _whirl(mesh.course, hopf, value) - 1j * hopf.nu
+            apart = _whirl(mesh.follower.course, hopf, value) - 1j * hopf.nu
             further = -apart.real / slope.real
             errors.append((mesh.share * abs(further), mesh.share * abs(apart.imag + slope.imag * further)))
     except Unreachable:
@@ -91,10 +91,9 @@ def hopf_error(own: EquilibriumCourse, meshes: Sequence[OtherMesh], hopf: HopfPo
     return max(values), max(frequencies)
 
 
-def _whirl(course: EquilibriumCourse, hopf: HopfPoint, value: float) -> complex:
+def _whirl(course: Course, hopf: HopfPoint, value: float) -> complex:
     """The eigenvalue in 1/s of the whirl of a Hopf point where a course rests at a value. Raises Unreachable."""
-    near: Equilibrium = hopf.equilibrium
-    values = course.solved(near, replace(near, value=2.0 * near.value), value).eigenvalues
+    values = settled(course, hopf.equilibrium.u, value).eigenvalues
     return complex(values[np.argmin(np.abs(values - 1j * hopf.nu))])
 
 

@@ -8,15 +8,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from frbcli.arrays import Array
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.cycle import ASKED, FOLD
-from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, follow_torus
 from frbcli.cycles.unbalance.two_frequencies import Torus
-from frbcli.cycles.unbalance.whirls import AtItsHeat, Chain, WhirlFound, free_whirl
+from frbcli.cycles.unbalance.whirls import Chain, WhirlFound, free_whirl
 
 Observer = Callable[[int, float, float], None]
 Tell = Callable[[UnbalancedWhirl], None]
@@ -27,13 +27,11 @@ MOST_INTERVALS = 60_000  # in which the stability of a motion behind others is t
 BORDER = 1e-9  # of the fastest speed
 
 
-def whirls_with_unbalance(
-    found: LimitCycles, course: EquilibriumCourse, observe: Observer | None = None, at_its_heat: AtItsHeat | None = None
-) -> LimitCycles:
+def whirls_with_unbalance(found: LimitCycles, course: Course, observe: Observer | None = None) -> LimitCycles:
     """A diagram over the speed with its whirls with the unbalance.
 
-    course: of the machine over the speed, with heat at any temperatures; observe: called with the number of motions so
-    far, the speed in Hz and the largest eccentricity of the latest one; at_its_heat: see Chain.
+    course: which the diagram goes over; observe: called with the number of motions so far, the speed in Hz and the
+    largest eccentricity of the latest one.
     """
     speeds = [point.speed_Hz for point in found.equilibria]
     follower = TorusFollower(course, (2.0 * math.pi * min(speeds), 2.0 * math.pi * max(speeds)))
@@ -46,20 +44,21 @@ def whirls_with_unbalance(
             observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
 
     for number, branch in enumerate(found.branches):
-        whirls, remarks = _with_unbalance(follower, branch, tell, at_its_heat)
+        whirls, remarks = _with_unbalance(follower, branch, tell)
         notes += [f"Branch {number + 1} with unbalance: {remark}" for remark in remarks]
         branches.append(replace(branch, with_unbalance=tuple(whirls)))
     return replace(found, branches=tuple(branches), notes=tuple(notes))
 
 
 def _with_unbalance(
-    follower: TorusFollower, branch: CycleBranch, tell: Tell, at_its_heat: AtItsHeat | None
+    follower: TorusFollower, branch: CycleBranch, tell: Tell
 ) -> tuple[list[UnbalancedWhirl], list[str]]:
     """The whirls of a branch in its order, and what is to be said of them."""
-    chain, motions = Chain(at_its_heat), {}
+    course = follower.course
+    chain, motions = Chain(course.at_its_heat), {}
     for place in taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
         point = branch.points[place]
-        motions[place] = chain.next(follower.course.machine(2.0 * math.pi * point.speed_Hz), point)
+        motions[place] = chain.next(course.machine_at(point.speed_Hz / course.scale), point)
         if (motion := motions[place]) is not None:
             tell(motion.whirl)
     remarks = not_found([branch.points[place].speed_Hz for place, motion in motions.items() if motion is None])
@@ -67,7 +66,7 @@ def _with_unbalance(
     behind: dict[tuple[int, int], list[UnbalancedWhirl]] = {}
     reached: list[_End] = []
     for end in ends:
-        if at_its_heat is not None:
+        if course.at_its_heat is not None:
             remarks.append(f"with heat the whirls behind {hertz(end.torus.omega):.4g} Hz are not followed.")
         elif end not in reached:
             others = [other for other in ends if other.place != end.place]
@@ -150,7 +149,7 @@ def _followed(
     whirls = []
     for each in found.places:
         torus = follower.torus(each.orders, each.place.y)
-        machine = follower.course.machine(torus.omega)
+        machine = follower.course.machine(each.place.y)
         stable = None if each.kind == FOLD else _stable(machine, torus, end.motion.cycle)
         whirls.append(free_whirl(machine, torus, stable, each.kind))
         tell(whirls[-1])

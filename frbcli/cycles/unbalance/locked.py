@@ -15,6 +15,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.cycle import Cycle, largest
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion, first_harmonics
@@ -22,16 +23,7 @@ from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_moti
 ANGLES = 12  # at which theta is tried
 SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last
 SHARP = 1e-5  # of theta
-
-
-class Locked(Synchronous):
-    """Follows motions of two periods of the rotor with a share of the unbalance."""
-
-    periods = 2
-
-    def __init__(self, machine: Machine, share: float = 1.0) -> None:
-        super().__init__(machine, 0.0, machine.pace)
-        self.share = share
+PERIODS = 2  # of the rotor in one of the motion
 
 
 def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
@@ -40,7 +32,7 @@ def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> 
 
     Where it cannot be reached with the whole unbalance it is looked for with a part of it, which is raised then.
     """
-    motion = padded(motion, first_harmonics(machine, Locked.periods))
+    motion = padded(motion, first_harmonics(machine, PERIODS))
     share = 1.0
     while share >= SMALLEST:
         try:
@@ -58,7 +50,7 @@ def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> 
 
 def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 1.0) -> Cycle | None:
     """The stable motion of two periods of the rotor next to one with harmonics (H + 1, c); None if there is none."""
-    follower, speed = Locked(machine, share), omega / machine.pace
+    follower, speed = Synchronous(Course(machine), 0.0, 1.0, PERIODS, share), omega / machine.pace
     guess = np.concatenate([packed(motion), [0.5 * speed, speed]])
     along = unit_vector(len(guess))
     place = corrected(follower.equations(Place(guess, along)), guess, along)
@@ -134,7 +126,7 @@ def _equations(machine: Machine, reference: Complex, share: float, theta: float)
 
     def at(y: Array) -> tuple[Array, Array]:
         residual, slope = balance(y)
-        residual[:-1] -= share * driven_motion(machine, balance.harmonics, Locked.periods, float(y[-1]), theta)
+        residual[:-1] -= share * driven_motion(machine, balance.harmonics, PERIODS, float(y[-1]), theta)
         return residual, slope
 
     return at

@@ -9,6 +9,7 @@ order k acts in k times that harmonic.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -16,11 +17,11 @@ from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import Branch, follow_branch
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
+from frbcli.cycles.method.courses import Course, EquationsOf
 from frbcli.cycles.method.cycle import FIRST_HARMONICS
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, driven_motions
 from frbcli.rotor.order import largest_first
 
@@ -29,30 +30,28 @@ WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not
 
 
 class Synchronous(Follower):
-    """Follows motions of `periods` periods of the rotor with a share of the unbalance; of one period they are the
-    synchronous response."""
+    """Follows motions of some periods of the rotor with a share of the unbalance; of one period and with all of it they
+    are the synchronous response."""
 
     free = False
-    periods = 1
-    share = 1.0
 
-    def equations(self, place: Place) -> Equations:
-        """Equations of the motions about a place."""
-        reference = unpacked(place.y[:-2], self.machine.size)
-        return synchronous_equations(self.machine, reference, self.periods, self.share)
+    def __init__(
+        self, course: Course, lowest: float, highest: float = 1.0, periods: int = 1, share: float = 1.0
+    ) -> None:
+        super().__init__(course, lowest, highest)
+        self._motion = partial(synchronous_equations, periods=periods, share=share)
 
-    def multipliers(self, place: Place, _near: Multipliers | None = None, _enough: float = 0.0) -> Multipliers:
-        """See driven_multipliers."""
-        return driven_multipliers(self.machine, self.space_at(place.y), place.y)
+    def motion(self, place: Place) -> EquationsOf:
+        """See Follower. The motion itself is the reference: the unbalance holds its phase."""
+        return partial(self._motion, reference=unpacked(place.y[:-2], self.machine.size))
 
-
-def driven_multipliers(machine: Machine, space: StateSpace, y: Array) -> Multipliers:
-    """The multipliers of a motion y; none is trivial, for the unbalance holds it in time, and a 1 stands in its
-    place."""
-    harmonics = (len(y) - 2) // machine.size // 2
-    count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-    values = np.linalg.eigvals(monodromy(machine, space, y, count)).astype(complex)
-    return Multipliers(np.concatenate([[1.0 + 0.0j], values[largest_first(values)]]), 0.0)
+    def fast_multipliers(self, machine: Machine, y: Array, _near: Multipliers | None, _enough: float) -> Multipliers:
+        """The multipliers of a motion y; none is trivial, for the unbalance holds it in time, and a 1 stands in its
+        place."""
+        harmonics = (len(y) - 2) // machine.size // 2
+        count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
+        values = np.linalg.eigvals(monodromy(machine, self.course.seen_states(machine), y, count)).astype(complex)
+        return Multipliers(np.concatenate([[1.0 + 0.0j], values[largest_first(values)]]), 0.0)
 
 
 def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0) -> Equations:
@@ -75,7 +74,7 @@ def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1
     return at
 
 
-def synchronous_response(follower: Follower, resting: Equilibrium) -> Branch | None:
+def synchronous_response(follower: Synchronous, resting: Equilibrium) -> Branch | None:
     """The response from the speed of a resting position down to the slowest one that a follower of such motions has;
     None if it does not begin."""
     machine = follower.machine

@@ -27,8 +27,8 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
+from frbcli.cycles.method.courses import Course
 from frbcli.cycles.method.cycle import FOLD
-from frbcli.cycles.method.equilibria import EquilibriumCourse
 from frbcli.cycles.parts.machine import driven_motions
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 from frbcli.cycles.unbalance.two_frequencies import Linearised, Orders, Torus, left_out
@@ -62,9 +62,8 @@ class TorusFollower:
     """Follows the motions of a machine over the speed. course: of the machine; speeds: the slowest and the fastest one
     in rad/s."""
 
-    def __init__(self, course: EquilibriumCourse, speeds: tuple[float, float]) -> None:
-        self.course = course
-        first = course.machine(speeds[1])
+    def __init__(self, course: Course, speeds: tuple[float, float]) -> None:
+        self.course, first = course, course.top
         self.pace, self.size, self.films = first.pace, first.size, first.film_count
         self.range = (speeds[0] / self.pace, speeds[1] / self.pace)
 
@@ -78,7 +77,7 @@ class TorusFollower:
 
         def linearised(y: Array) -> Linearised:
             torus = self.torus(here.orders, y)
-            return Linearised(self.course.machine(torus.omega), torus, reference)
+            return Linearised(self.course.machine(y), torus, reference)
 
         def residual(balance: Linearised) -> Array:
             return balance.residual(driven_motions(balance.machine, balance.torus.omega))
@@ -107,7 +106,7 @@ class TorusFollower:
         """The place with as many harmonics as it needs. Raises Unreachable if those are too many."""
         for _ in range(REFITS):
             torus = self.torus(here.orders, here.place.y)
-            wanted = left_out(self.course.machine(torus.omega), torus)
+            wanted = left_out(self.course.machine(here.place.y), torus)
             if not len(wanted):
                 return here
             orders = np.concatenate([here.orders, wanted])

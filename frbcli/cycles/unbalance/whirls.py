@@ -4,7 +4,7 @@ half the speed."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,6 +12,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import moments, motion_along, packed, unpacked
 from frbcli.cycles.method.continuation import Unreachable
+from frbcli.cycles.method.courses import AtItsHeat
 from frbcli.cycles.method.cycle import MOMENTS, Cycle, largest_of
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
@@ -20,8 +21,6 @@ from frbcli.cycles.unbalance.beats import beating
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 from frbcli.cycles.unbalance.two_frequencies import Orders, Torus, fitted, moments_of, of_cycle, samples, with_unbalance
-
-AtItsHeat = Callable[[Array, Array, float], Machine]
 
 ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
@@ -40,8 +39,7 @@ class WhirlFound:
 
 
 class Chain:
-    """Motions along a branch, each from the one before it where that leads to it. at_its_heat: gives the machine at the
-    temperatures that moments of a motion balance, u and its rate (n, c), at a speed in rad/s; None without heat."""
+    """Motions along a branch, each from the one before it where that leads to it. at_its_heat: see Course."""
 
     def __init__(self, at_its_heat: AtItsHeat | None = None) -> None:
         self.at_its_heat = at_its_heat

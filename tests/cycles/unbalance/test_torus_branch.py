@@ -14,7 +14,8 @@ from whirls_of_jeffcott import SHORT, harmonic, jeffcott
 import frbcli
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import unpacked
-from frbcli.cycles.method.equilibria import OverSpeed, resting_curve
+from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads
@@ -33,15 +34,16 @@ def turned() -> tuple[TorusFollower, TorusPlace, TorusBranch, np.ndarray]:
     case = jeffcott(0.1, SHORT, "speed.to=180.2 Hz")
     machine, speeds = machine_of(case), (2.0 * math.pi * 173.9, 2.0 * math.pi * 180.2)
     (hopf,) = resting_curve(make_system(case, make_plan(case)), machine, *speeds).hopf
-    cycles = follow_branch(FoldFollower(machine, *speeds), first_place(machine, hopf)).cycles
+    follower = FoldFollower(Course(machine), *(speed / machine.pace for speed in speeds))
+    cycles = follow_branch(follower, first_place(hopf)).cycles
     turn = [cycle.kind for cycle in cycles].index("fold")
     cycle = min(cycles[turn:], key=lambda cycle: abs(cycle.y[-1] * machine.pace - 2.0 * math.pi * 176.0)).y
     nu, omega = cycle[-2:] * machine.pace
     torus = with_unbalance(machine, of_cycle(unpacked(cycle[:-2], machine.size), nu, omega))
-    follower = TorusFollower(OverSpeed(machine), speeds)
-    start = follower.start(torus, upwards=False)
+    along = TorusFollower(Course(machine), speeds)
+    start = along.start(torus, upwards=False)
     assert start is not None
-    return follower, start, follow_torus(follower, start), cycle
+    return along, start, follow_torus(along, start), cycle
 
 
 def speed_of(follower: TorusFollower, place: TorusPlace) -> float:
@@ -78,7 +80,7 @@ def test_motions_behind_a_fold_are_unstable(
 ) -> None:
     follower, start, _, cycle = turned
     before, behind = follower.torus(start.orders, start.place.y), behind_the_fold(turned)
-    machine = follower.course.machine(behind.omega)
+    machine = follower.course.top
     assert is_stable(machine, state_space(machine), before, cycle)
     assert is_stable(machine, state_space(machine), behind, cycle) is False
 
@@ -90,7 +92,7 @@ def test_a_run_started_beside_an_unstable_motion_leaves_it_to_either_side(
     """With 3 % more whirl to the large motion of the other part, with 3 % less to the synchronous one."""
     follower, start, _, _ = turned
     behind, large = behind_the_fold(turned), follower.torus(start.orders, start.place.y)
-    machine = follower.course.machine(behind.omega)
+    machine = follower.course.top
     size, size_of_large = (np.abs(harmonic(torus, 1, 0)).max() for torus in (behind, large))
     on_it = samples(behind.orders, behind.motion, (128, 16))[0, 0]
     np.testing.assert_allclose(state_space(machine).read @ state_of(machine, behind, 1.0), on_it, atol=1e-6)
