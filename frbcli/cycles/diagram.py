@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import oriented
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.criticality import Lyapunov, lyapunov_coefficient
 from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, Cycle
 from frbcli.cycles.method.equilibria import Equilibrium, HopfPoint, Resting
@@ -63,7 +63,7 @@ class Walk:
     unknown: str = ""
 
     @property
-    def course(self) -> Course:
+    def course(self) -> MachineCourse:
         """What the diagram goes over."""
         return self.follower.course
 

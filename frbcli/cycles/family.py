@@ -39,7 +39,7 @@ class Family(Changing):
 
     @property
     def scale(self) -> float:
-        """See Course."""
+        """See MachineCourse."""
         return self.high
 
     def setting(self, share: float) -> str:

@@ -18,7 +18,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.cycles.method.balance import harmonics_of, packed, through
 from frbcli.cycles.method.continuation import Equations, Unreachable
-from frbcli.cycles.method.courses import Course, EquationsOf
+from frbcli.cycles.method.courses import EquationsOf, MachineCourse
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.parts.film_heat import FilmHeats, film_heats, heats_at
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
@@ -150,7 +150,7 @@ class HeatOfMotions:
         return np.asarray((ahead - behind)[free] / (2.0 * DIFFERENCE))
 
 
-class WarmSpeed(Course):
+class WarmSpeed(MachineCourse):
     """The speed of the rotor of a machine with heat: its temperatures follow the motion."""
 
     def __init__(self, heat: HeatOfMotions) -> None:
@@ -164,7 +164,7 @@ class WarmSpeed(Course):
         return self._warm(y).machine
 
     def equations(self, of: EquationsOf, near: Array | None = None) -> Equations:
-        """See Course."""
+        """See MachineCourse."""
         start = None if near is None else self._warm(near).temperatures
 
         def at(y: Array) -> tuple[Array, Array]:

@@ -12,7 +12,7 @@ from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors, wit
 from frbcli.cycles.family import check
 from frbcli.cycles.heat import warm_courses
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.courses import Changing, Course
+from frbcli.cycles.method.courses import Changing, MachineCourse
 from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import at_rest, resting_along
 from frbcli.cycles.method.follower import Follower
@@ -121,18 +121,18 @@ def _walk(case: Case, system: System, lowest: float, fastest: float, asked: Sequ
 
 def _courses(
     case: Case, plan: Plan, system: System, fastest: float
-) -> tuple[Callable[[System], Course], RestingPosition]:
+) -> tuple[Callable[[System], MachineCourse], RestingPosition]:
     """What makes the course over the speed of a system, the machine itself or that on films of another mesh, and the
     resting position at the fastest speed in rad/s. Raises NotConverged without one."""
     if case.heat is not None:
         return warm_courses(case, plan, system, fastest)
     if system.rotor.over_speed is None:
-        return lambda its: Course(make_machine(its, fastest)), resting_position(system, fastest)
+        return lambda its: MachineCourse(make_machine(its, fastest)), resting_position(system, fastest)
 
     def at(its: System, share: float) -> System:
         return replace(its, rotor=its.rotor.at(share * fastest))
 
-    def changing(its: System) -> Course:
+    def changing(its: System) -> MachineCourse:
         return Changing(lambda share: make_machine(at(its, share), fastest))
 
     return changing, resting_position(at(system, 1.0), fastest)

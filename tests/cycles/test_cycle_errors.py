@@ -22,7 +22,7 @@ from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import special_columns
 from frbcli.cycles.diagram import Walk, diagram, point_of
 from frbcli.cycles.family import Family
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.method.mesh_error import OtherMesh, hopf_error
@@ -53,7 +53,7 @@ def followed(case: Case, *others: Case) -> LimitCycles:
     low, high, asked = (2.0 * math.pi * speed for speed in (LOW * UNIT_Hz, HIGH * UNIT_Hz, ASKED))
     machine = machine_of(case)
     resting = resting_curve(make_system(case, make_plan(case)), machine, low, high)
-    own, *twins = (Course(each) for each in (machine, *map(machine_of, others)))
+    own, *twins = (MachineCourse(each) for each in (machine, *map(machine_of, others)))
     meshes = tuple(OtherMesh(Follower(twin, low / high), SHARE) for twin in twins)
     walk = Walk(resting, Plain(own, low / high, asked=(asked / high,)), meshes)
     return diagram(case, walk, None, lambda: 0.0)

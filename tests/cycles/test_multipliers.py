@@ -13,7 +13,7 @@ from rigid_cycles import diagram, rigid
 import frbcli
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import packed
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.floquet import multipliers
@@ -56,7 +56,7 @@ def test_multipliers_of_a_long_shaft_are_those_of_all_its_states() -> None:
     system = make_system(long, make_plan(long))
     hopf = resting_curve(system, machine, 0.13 * machine.pace, 0.15 * machine.pace).hopf[0]
     cycles: list[Cycle] = []
-    follower = Unjudged(Course(machine), 0.0)
+    follower = Unjudged(MachineCourse(machine), 0.0)
     follow_branch(follower, first_place(hopf), cycles.append, until=lambda _: len(cycles) == 16)
     full, less = state_space(machine), reduced_space(machine)
     assert len(less.still) < 0.5 * len(full.still)

@@ -21,7 +21,7 @@ from frbcli.cycles.maps.crossings import CrossingCurve, starts_of
 from frbcli.cycles.maps.planes import SpeedPlane
 from frbcli.cycles.maps.stability_map import Across, StabilityMap
 from frbcli.cycles.method.continuation import corrected, unit_vector
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equations, synchronous_response
@@ -132,7 +132,7 @@ def response_of(gamma: float, unbalance: str = HEAVY) -> dict[str, Cycle]:
     case = rigid(gamma, 2.5, 2.72).with_settings(unbalance)
     machine, speeds = machine_of(case), (2.0 * math.pi * 2.5 * UNIT_Hz, 2.0 * math.pi * 2.72 * UNIT_Hz)
     resting = resting_curve(make_system(case, make_plan(case)), machine, *speeds)
-    follower = Synchronous(Course(machine), *(speed / machine.pace for speed in speeds))
+    follower = Synchronous(MachineCourse(machine), *(speed / machine.pace for speed in speeds))
     found = synchronous_response(follower, resting.points[-1])
     assert found is not None
     return {cycle.kind: cycle for cycle in found.cycles if cycle.kind}

@@ -15,7 +15,7 @@ from frbcli.arrays import Array
 from frbcli.cycles.branch import Branch
 from frbcli.cycles.diagram import Walk
 from frbcli.cycles.family import Family
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.over_key import resting_over
@@ -80,7 +80,7 @@ class SpeedPlane(MapPlane):
         """See MapPlane."""
         machine, lowest = self.second.machine_at(share), float(self.corners[0][0])
         resting = resting_curve(self.second.system(share), machine, *self.speeds)
-        return Walk(resting, (Follower if crossings else FoldFollower)(Course(machine), lowest))
+        return Walk(resting, (Follower if crossings else FoldFollower)(MachineCourse(machine), lowest))
 
     def response(self, walk: Walk) -> Branch | None:
         """See MapPlane."""

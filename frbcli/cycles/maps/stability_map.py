@@ -30,7 +30,7 @@ from frbcli.cycles.maps.curves import (
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.criticality import lyapunov_coefficient
 from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, amplitude, eccentricities
 from frbcli.cycles.method.equilibria import hopf_at, settled
@@ -323,7 +323,7 @@ def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:
     told = (float(y[-2] * plane.scale), float(y[-1] * plane.second.high), hertz(omega), hertz(nu))
     if kind == FOLD:
         return MapPoint(*told, eccentricities(machine, here))
-    rest = settled(Course(machine), here[:-2], here[-1])
+    rest = settled(MachineCourse(machine), here[:-2], here[-1])
     found = lyapunov_coefficient(hopf_at(rest, True, nu))
     d = rest.u[: 2 * machine.film_count].reshape(-1, 2)
     return MapPoint(*told, np.hypot(d[:, 0], d[:, 1]), criticality_of(found), found.value.real)

@@ -33,7 +33,7 @@ NEAR = 1e-3  # of it: between the three machines that stand for all next to a va
 KEPT = 64  # machines
 
 
-class Course:
+class MachineCourse:
     """The speed of a rotor, over which the machine stays the same. over, unit: name and unit of the number;
     machine_at: the machine at a share, as far as it is that of the number alone; at_its_heat: gives the machine at the
     temperatures that moments of a motion balance, u and its rate (n, c), at a speed in rad/s, None without heat;
@@ -105,7 +105,7 @@ class Course:
         return reduced_space(self.top)
 
 
-class Changing(Course):
+class Changing(MachineCourse):
     """The speed of a rotor, or another number, along which the machine is another one at each value. How the equations
     change with it is a central difference. omega: a speed of the rotor in rad/s that is kept while the number is
     another one."""
@@ -115,11 +115,11 @@ class Changing(Course):
         self.omega = omega
 
     def with_speed(self, y: Array) -> Array:
-        """See Course."""
+        """See MachineCourse."""
         return y if self.omega is None else np.append(y[:-1], self.omega / self.top.pace)
 
     def equations(self, of: EquationsOf, _near: Array | None = None) -> Equations:
-        """See Course."""
+        """See MachineCourse."""
 
         def at(y: Array) -> tuple[Array, Array]:
             last = float(y[-1])
@@ -131,11 +131,11 @@ class Changing(Course):
         return at
 
     def equations_at(self, of: EquationsOf, near: Array) -> Equations:
-        """See Course: those of one machine."""
+        """See MachineCourse: those of one machine."""
         return self.staying(of, float(near[-1]))
 
     def equations_near(self, of: EquationsOf, near: Array) -> Equations:
-        """See Course: parabolas through those of three machines, at the value and on both sides."""
+        """See MachineCourse: parabolas through those of three machines, at the value and on both sides."""
         last = float(near[-1])
         staying = [self.staying(of, last + off) for off in (-NEAR, 0.0, NEAR)]
 
@@ -151,11 +151,11 @@ class Changing(Course):
         return at
 
     def states(self, machine: Machine) -> StateSpace:
-        """See Course."""
+        """See MachineCourse."""
         return state_space(machine)
 
     def seen_states(self, machine: Machine) -> StateSpace:
-        """See Course: all of them, for fewer ones would be sought anew for each machine."""
+        """See MachineCourse: all of them, for fewer ones would be sought anew for each machine."""
         return state_space(machine)
 
     def staying(self, of: EquationsOf, share: float) -> Equations:

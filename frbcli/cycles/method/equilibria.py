@@ -13,7 +13,7 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Equations, Place, Strides, follow, oriented, reached, unit_vector
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
 from frbcli.equilibrium import hopf
@@ -86,10 +86,10 @@ def equations(machine: Machine) -> Equations:
 def resting_curve(system: System, machine: Machine, slowest: float, fastest: float) -> Resting:
     """Resting positions between two speeds in rad/s, from the fastest on downwards. Raises NotConverged without one."""
     near = at_rest(machine, resting_position(system, fastest))
-    return resting_along(Course(machine), near, slowest / machine.pace, fastest / machine.pace)
+    return resting_along(MachineCourse(machine), near, slowest / machine.pace, fastest / machine.pace)
 
 
-def resting_along(course: Course, near: Array, lowest: float, highest: float = 1.0) -> Resting:
+def resting_along(course: MachineCourse, near: Array, lowest: float, highest: float = 1.0) -> Resting:
     """Resting positions along a course, between two shares; near: (c,) u near to the one at the highest. Raises
     Unreachable."""
     asked = course.equations(equations)
@@ -118,7 +118,7 @@ def at_rest(machine: Machine, position: RestingPosition) -> Array:
     return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
-def equilibrium(course: Course, place: Place) -> Equilibrium:
+def equilibrium(course: MachineCourse, place: Place) -> Equilibrium:
     """The resting position at a place of its curve."""
     machine, y = course.machine(place.y), course.with_speed(place.y)
     u, omega = y[:-1], float(y[-1] * machine.pace)
@@ -127,19 +127,19 @@ def equilibrium(course: Course, place: Place) -> Equilibrium:
     return Equilibrium(machine, u, omega, np.linalg.eigvals(matrix).astype(complex), float(place.y[-1]))
 
 
-def settled(course: Course, near: Array, value: float) -> Equilibrium:
+def settled(course: MachineCourse, near: Array, value: float) -> Equilibrium:
     """The resting position at a value near to u (c,). Raises Unreachable."""
     guess = np.append(near, value)
     return equilibrium(course, reached(course.equations_at(equations, guess), guess, unit_vector(len(guess))))
 
 
-def hopf_points(course: Course, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
+def hopf_points(course: MachineCourse, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
     """The Hopf points between resting positions in the order of their course. Raises Unreachable."""
     found = hopf.hopf_points(partial(_between, course), points, SHARP)
     return tuple(hopf_at(each.here, each.rising) for each in found)
 
 
-def _between(course: Course, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
+def _between(course: MachineCourse, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
     """The resting position at a value between two."""
     share = (value - low.value) / (high.value - low.value)
     return settled(course, low.u + share * (high.u - low.u), value)

@@ -23,7 +23,7 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.method.courses import MOST_UNKNOWNS, Course, EquationsOf
+from frbcli.cycles.method.courses import MOST_UNKNOWNS, EquationsOf, MachineCourse
 from frbcli.cycles.method.cycle import (
     FIRST_HARMONICS,
     FOLD,
@@ -55,7 +55,7 @@ class Follower:
     tail = TAIL
     tail_of_folds = 1.0
 
-    def __init__(self, course: Course, lowest: float, highest: float = 1.0, asked: Sequence[float] = ()) -> None:
+    def __init__(self, course: MachineCourse, lowest: float, highest: float = 1.0, asked: Sequence[float] = ()) -> None:
         self.course, self.machine = course, course.top
         self.range, self.asked = (lowest, highest), tuple(asked)
 
@@ -97,11 +97,11 @@ class Follower:
         return self.course.equations(self.motion(place), place.y)
 
     def equations_at(self, place: Place) -> Equations:
-        """Equations of the cycles about a place at its number, see Course."""
+        """Equations of the cycles about a place at its number, see MachineCourse."""
         return self.course.equations_at(self.motion(place), place.y)
 
     def equations_near(self, place: Place) -> Equations:
-        """Equations of the cycles about a place next to its number, see Course."""
+        """Equations of the cycles about a place next to its number, see MachineCourse."""
         return self.course.equations_near(self.motion(place), place.y)
 
     def reference(self, place: Place) -> Complex:

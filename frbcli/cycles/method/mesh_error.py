@@ -24,7 +24,7 @@ from frbcli.cycles.method.continuation import (
     oriented,
     unit_vector,
 )
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import FOLD, Cycle, eccentricities, passed_rest
 from frbcli.cycles.method.equilibria import HopfPoint, settled
 from frbcli.cycles.method.follower import Follower
@@ -74,7 +74,7 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
     return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
 
-def hopf_error(own: Course, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
+def hopf_error(own: MachineCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
     """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN
     if another mesh has no resting position there. To first order in the eigenvalues on the other meshes."""
     value = hopf.equilibrium.value
@@ -91,7 +91,7 @@ def hopf_error(own: Course, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tup
     return max(values), max(frequencies)
 
 
-def _whirl(course: Course, hopf: HopfPoint, value: float) -> complex:
+def _whirl(course: MachineCourse, hopf: HopfPoint, value: float) -> complex:
     """The eigenvalue in 1/s of the whirl of a Hopf point where a course rests at a value. Raises Unreachable."""
     values = settled(course, hopf.equilibrium.u, value).eigenvalues
     return complex(values[np.argmin(np.abs(values - 1j * hopf.nu))])

@@ -36,7 +36,7 @@ class _Stiffening(Changing):
         super().__init__(lambda share: replace(machine, stiffened=share), omega)
 
     def equations(self, of: EquationsOf, _near: Array | None = None) -> Equations:
-        """See Course: equations that are linear in the share."""
+        """See MachineCourse: equations that are linear in the share."""
 
         def at(y: Array) -> tuple[Array, Array]:
             residual, slope = self.staying(of, float(y[-1]))(y)

@@ -9,7 +9,7 @@ from frbcli.case.schema import Case
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.family import check
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.criticality import lyapunov_coefficient
 from frbcli.cycles.method.cycle import FOLD, Cycle
 from frbcli.cycles.method.equilibria import resting_curve
@@ -59,5 +59,5 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
             folds.append(hertz(cycle.y[-1] * machine.pace))
         return bool(folds)
 
-    follow_branch(FoldFollower(Course(machine), slowest / fastest), first_place(hopf), until=watch)
+    follow_branch(FoldFollower(MachineCourse(machine), slowest / fastest), first_place(hopf), until=watch)
     return ThresholdKind(SUBCRITICAL, folds[0] if folds and folds[0] < threshold_Hz else None)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from frbcli.arrays import Array
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import ASKED, FOLD
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
@@ -27,7 +27,7 @@ MOST_INTERVALS = 60_000  # in which the stability of a motion behind others is t
 BORDER = 1e-9  # of the fastest speed
 
 
-def whirls_with_unbalance(found: LimitCycles, course: Course, observe: Observer | None = None) -> LimitCycles:
+def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
     """A diagram over the speed with its whirls with the unbalance.
 
     course: which the diagram goes over; observe: called with the number of motions so far, the speed in Hz and the

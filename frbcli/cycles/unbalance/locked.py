@@ -15,7 +15,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, corrected, oriented, unit_vector
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import Cycle, largest
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.unbalance.synchronous import WHIRLS, Synchronous, driven_motion, first_harmonics
@@ -50,7 +50,7 @@ def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> 
 
 def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 1.0) -> Cycle | None:
     """The stable motion of two periods of the rotor next to one with harmonics (H + 1, c); None if there is none."""
-    follower, speed = Synchronous(Course(machine), 0.0, 1.0, PERIODS, share), omega / machine.pace
+    follower, speed = Synchronous(MachineCourse(machine), 0.0, 1.0, PERIODS, share), omega / machine.pace
     guess = np.concatenate([packed(motion), [0.5 * speed, speed]])
     along = unit_vector(len(guess))
     place = corrected(follower.equations(Place(guess, along)), guess, along)

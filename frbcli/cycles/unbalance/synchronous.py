@@ -17,7 +17,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.cycles.branch import Branch, follow_branch
 from frbcli.cycles.method.balance import Balance, packed, unpacked
 from frbcli.cycles.method.continuation import Equations, Place, corrected, oriented, unit_vector
-from frbcli.cycles.method.courses import Course, EquationsOf
+from frbcli.cycles.method.courses import EquationsOf, MachineCourse
 from frbcli.cycles.method.cycle import FIRST_HARMONICS
 from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
@@ -36,7 +36,7 @@ class Synchronous(Follower):
     free = False
 
     def __init__(
-        self, course: Course, lowest: float, highest: float = 1.0, periods: int = 1, share: float = 1.0
+        self, course: MachineCourse, lowest: float, highest: float = 1.0, periods: int = 1, share: float = 1.0
     ) -> None:
         super().__init__(course, lowest, highest)
         self._motion = partial(synchronous_equations, periods=periods, share=share)

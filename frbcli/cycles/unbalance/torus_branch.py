@@ -27,7 +27,7 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import FOLD
 from frbcli.cycles.parts.machine import driven_motions
 from frbcli.cycles.unbalance.synchronous import WHIRLS
@@ -62,7 +62,7 @@ class TorusFollower:
     """Follows the motions of a machine over the speed. course: of the machine; speeds: the slowest and the fastest one
     in rad/s."""
 
-    def __init__(self, course: Course, speeds: tuple[float, float]) -> None:
+    def __init__(self, course: MachineCourse, speeds: tuple[float, float]) -> None:
         self.course, first = course, course.top
         self.pace, self.size, self.films = first.pace, first.size, first.film_count
         self.range = (speeds[0] / self.pace, speeds[1] / self.pace)

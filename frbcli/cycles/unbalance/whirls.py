@@ -39,7 +39,7 @@ class WhirlFound:
 
 
 class Chain:
-    """Motions along a branch, each from the one before it where that leads to it. at_its_heat: see Course."""
+    """Motions along a branch, each from the one before it where that leads to it. at_its_heat: see MachineCourse."""
 
     def __init__(self, at_its_heat: AtItsHeat | None = None) -> None:
         self.at_its_heat = at_its_heat

@@ -14,7 +14,7 @@ from whirls_of_jeffcott import SHORT, harmonic, jeffcott
 import frbcli
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import unpacked
-from frbcli.cycles.method.courses import Course
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower
 from frbcli.cycles.parts.linearised import state_space
@@ -34,13 +34,13 @@ def turned() -> tuple[TorusFollower, TorusPlace, TorusBranch, np.ndarray]:
     case = jeffcott(0.1, SHORT, "speed.to=180.2 Hz")
     machine, speeds = machine_of(case), (2.0 * math.pi * 173.9, 2.0 * math.pi * 180.2)
     (hopf,) = resting_curve(make_system(case, make_plan(case)), machine, *speeds).hopf
-    follower = FoldFollower(Course(machine), *(speed / machine.pace for speed in speeds))
+    follower = FoldFollower(MachineCourse(machine), *(speed / machine.pace for speed in speeds))
     cycles = follow_branch(follower, first_place(hopf)).cycles
     turn = [cycle.kind for cycle in cycles].index("fold")
     cycle = min(cycles[turn:], key=lambda cycle: abs(cycle.y[-1] * machine.pace - 2.0 * math.pi * 176.0)).y
     nu, omega = cycle[-2:] * machine.pace
     torus = with_unbalance(machine, of_cycle(unpacked(cycle[:-2], machine.size), nu, omega))
-    along = TorusFollower(Course(machine), speeds)
+    along = TorusFollower(MachineCourse(machine), speeds)
     start = along.start(torus, upwards=False)
     assert start is not None
     return along, start, follow_torus(along, start), cycle
