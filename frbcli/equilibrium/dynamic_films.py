@@ -213,7 +213,7 @@ def _iterated(
             s = complex(s.real)
         vector = np.asarray(following / np.linalg.norm(following))
         if abs(step) < CLOSE * abs(s):
-            return s, vector
+            return (complex(s.real) if abs(s.imag) < CLOSE * abs(s) else s), vector
     return complex(math.nan, math.nan), vector
 
 

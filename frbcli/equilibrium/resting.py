@@ -16,7 +16,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
-from frbcli.equilibrium.ring_speed import NUDGE, SUM, by_total, drags, pin_angles, ring_speeds, ring_torques
+from frbcli.equilibrium.ring_speed import (
+    NUDGE,
+    SUM,
+    balanced_speeds,
+    by_total,
+    drags,
+    pin_angles,
+    ring_speeds,
+    ring_torques,
+)
 from frbcli.errors import NotConverged
 from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
@@ -307,25 +316,41 @@ def _following(
     count, rings = len(position), system.ring_count
     if not rings:
         return np.zeros(count), np.zeros((count, position.size))
-    totals = system.omegas(omega, speeds)
-
-    def balanced(place: Array, turning: Array) -> Array:
-        """(rings,) speeds at which the torques balance with the oil at places (films, c) and speeds (films,)."""
-        oil = tuple(film.foreseen(*each) for film, *each in zip(films, place, turning.tolist(), strict=True))
-        return ring_speeds(system, held, omega, place, oil)
-
-    off, by_place = balanced(position, totals) - speeds, np.zeros((rings, position.size))
-    for column in range(position.size):
-        step = np.zeros(position.size)
-        step[column] = NUDGE * system.clearances[column // 2]
-        ahead, behind = (balanced(position + side * step.reshape(-1, 2), totals) for side in (1.0, -1.0))
-        by_place[:, column] = (ahead - behind) / (2.0 * step[column])
-    by_speeds = np.zeros((rings, rings))
-    if any(film.slopes is not None for film in films):
-        turned = NUDGE * max(abs(omega), 1.0)
-        for ring, faster in enumerate(turned * np.eye(rings)):
-            ahead, behind = (balanced(position, system.omegas(omega, speeds + side * faster)) for side in (1.0, -1.0))
-            by_speeds[:, ring] = (ahead - behind) / (2.0 * turned)
+    at = partial(balanced_speeds, system, held, omega)
+    drag, by_place, by_drag = drags(system, position, films), np.zeros((rings, position.size)), np.zeros((rings, count))
+    for column, step in enumerate(NUDGE * np.repeat(system.clearances, 2)):
+        moved = step * np.eye(position.size)[column].reshape(-1, 2)
+        by_place[:, column] = (at(position + moved, drag) - at(position - moved, drag)) / (2.0 * step)
+    for i, step in enumerate(NUDGE * drag):
+        more = step * np.eye(count)[i]
+        by_drag[:, i] = (at(position, drag + more) - at(position, drag - more)) / (2.0 * step)
+    along, by_total = _drag_slopes(system, omega, position, films)
+    by_place += (by_drag[:, :, None] * along).reshape(rings, -1)
+    off = at(position, drag) - speeds
     by_rings = system.turning[:, SUM, 1:]
+    by_speeds = (by_drag * by_total) @ by_rings
     found = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
     return by_rings @ found[:, 0], by_rings @ found[:, 1:]
+
+
+def _drag_slopes(
+    system: System, omega: float, position: Array, films: tuple[FilmForce, ...]
+) -> tuple[Array, Array]:
+    """Derivatives of the drags (films,) by the coordinates of each film's journal (films, 2), and by its omega_J +
+    omega_S (films,), as the films foresee their oil."""
+
+    def moved(step: Array, faster: float) -> Array:
+        oil = tuple(
+            film if film.slopes is None else film.foreseen(place, film.slopes.total + faster)
+            for film, place in zip(films, position + step, strict=True)
+        )
+        return drags(system, position + step, oil)
+
+    by_place, clearances = np.zeros_like(position), np.array(system.clearances)
+    for column, unit in enumerate(np.eye(2)):
+        step = NUDGE * np.outer(clearances, unit)
+        by_place[:, column] = (moved(step, 0.0) - moved(-step, 0.0)) / (2.0 * NUDGE * clearances)
+    if all(film.slopes is None for film in films):
+        return by_place, np.zeros(len(films))
+    still, faster = np.zeros_like(position), NUDGE * max(abs(omega), 1.0)
+    return by_place, (moved(still, faster) - moved(still, -faster)) / (2.0 * faster)

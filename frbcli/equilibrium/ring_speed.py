@@ -62,7 +62,11 @@ def ring_speeds(
     films: see drags."""
     if not system.ring_count:
         return np.zeros(0)
-    drag = drags(system, position, films)
+    return balanced_speeds(system, held, omega, position, drags(system, position, films))
+
+
+def balanced_speeds(system: System, held: HeldRotor, omega: float, position: Array, drag: Array) -> Array:
+    """ring_speeds with the drags (films,) of the films."""
     carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
     moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
     if system.torque != "all":

@@ -153,7 +153,7 @@ class StaticMachines:
         settled, with_error = not self._memory, with_error and not self._memory
         held = held_in_plane(static.system, omega)
         remembers = static.system.remembers
-        follows = all(static.system.films.sought_near) and not (with_error or (remembers and self._heat))
+        follows = not (with_error or (remembers and self._heat))
         beside = None
         if near is not None and follows:
             beside = near.at_rest.position if remembers else None

@@ -32,7 +32,6 @@ from frbcli.film.cells.balance.balances import (
     without_ends,
 )
 from frbcli.film.cells.balance.feed import ALL
-from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION_SLOPE,
@@ -128,18 +127,6 @@ def linear_film(
         return LinearFilm(found.flow, found.storage, *moved, found.push, found.sheared, solution.field, ordered=True)
     settled = _SettledCells(solver, motion, solution, weights)
     return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
-
-
-def by_total(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> Array:
-    """(m, k) derivative by omega_J + omega_S of what flows out of each cell, which is linear in it."""
-    step, state = math.copysign(max(abs(motion.omega), 1.0), motion.omega), solution.state
-
-    def out(omega: float) -> Array:
-        balance = CellBalances(film.section, film.grid, replace(motion, omega=omega), solution.before)
-        fluxes, _, _ = balance.fluxes(state.pressure, state.fraction)
-        return fluxes.net_outflow(film.grid.share)
-
-    return np.where(film.grid.fixed, 0.0, (out(motion.omega + step) - out(motion.omega)) / step)
 
 
 def by_neighbours(stencil: Array) -> csc_matrix:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -33,7 +34,7 @@ from frbcli.film.cells.balance.states import (
     cell_states,
 )
 from frbcli.film.cells.cavity_edge import full_cells, set_edges
-from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.data import VolumeFilms, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
@@ -41,6 +42,7 @@ from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_g
 from frbcli.film.cells.gas.mixing import GasMixing
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.balances import tilted_balances
+from frbcli.film.cells.tilted.data import land_places
 from frbcli.film.gap import gap_rate
 from frbcli.film.grid import Array
 
@@ -54,6 +56,7 @@ GAS_ROUND_OFF, GAS_SETTLED = 1e-13, 1e-11  # what free gas is off by; the latter
 # How close cells come to their balances where gas is solved with the oil: where it begins to go with the oil, and last.
 # Solutions that are REPEATED may leave more, times PASSED_ON for each that follows and leaves a tenth of it.
 BEGUN, CLOSE, PASSED_ON = 1e-4, 1e-14, 10.0
+FEW = 16  # films whose arrays are kept
 TINY = np.finfo(float).tiny
 RUNS_DRY = "the film runs dry: more oil leaves at its ends than can enter it"
 # A film is at rest that exchanges less than these shares of what its surfaces can carry, and of its oil in a time step.
@@ -81,12 +84,20 @@ GAS_BEGINS: tuple[Attempt, ...] = (GAS_DAMPED, GAS_GENTLE)
 GAS_ATTEMPTS: tuple[Attempt, ...] = (replace(PLAIN, limit=60), *GAS_BEGINS)
 
 
+@lru_cache(maxsize=FEW)
+def _alone(film: VolumeFilm) -> VolumeFilms:
+    """A film as arrays, not to be written to. Those of a few films are kept: each is solved often."""
+    return volume_films([film])
+
+
 class FilmSolver:
     """Solves one film for any motion. Its arrays are filled anew in every iteration."""
 
     def __init__(self, film: VolumeFilm) -> None:
-        self.film, self.data, (m, k) = film, volume_films([film]), film.grid.shape
+        kept, (m, k) = _alone(film), film.grid.shape
+        self.film, self.data = film, kept._replace(films=kept.films.copy())  # how full its openings are is set here
         self._parts = self.data.films[0], self.data.ring[0], self.data.width[0], self.data.cells[0]
+        self._places = land_places(film.grid)
         self._carries, self._off = False, 0.0  # whether free gas goes with the oil; what it has changed by last
         self._law = np.append(given_parameters(film.law), np.nan)  # where a cell is empty: not asked for here
         self._area = np.where(film.grid.fixed, 0.0, film.grid.area)
@@ -300,14 +311,25 @@ class FilmSolver:
 
     def _flow(self, motion: Motion, past: Array) -> None:
         """Balances of the states without what is stored now."""
-        if motion.tilts:
-            tilted_balances(self.film, motion, self._states, past, self._stencil, self._fields, self._flows)
+        if motion.tilts:  # what the squeeze stores is stored by the solver
+            still, k = replace(motion, v=(0.0, 0.0), slope_rate=(0.0, 0.0)), past.shape[1]
+            self._fields[:, :, k:] = 0.0
+            self._fields[:, :, k] = -self.leaving(still, self._states, past)[:, :, 0]
             return
         film, ring, width, cells = self._parts
         at = GridMotion(float(motion.d[0]), float(motion.d[1]), float(motion.omega))
         balances(
             film, ring, width, cells, self._states, at, past, self._stencil, self._fields, self._flows
         )  # fmt: skip
+
+    @property
+    def stencil(self) -> Array:
+        """(ENTRIES, m, k) of the balances as they were last."""
+        return self._stencil
+
+    def leaving(self, motion: Motion, states: Array, past: Array, g: float = 0.0) -> Array:
+        """See tilted_balances, whose stencil and flows are those of the solver."""
+        return tilted_balances(self._parts, self._places, motion, states, past, self._stencil, self._flows, g)
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:
         """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""

@@ -11,18 +11,17 @@ from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
 from frbcli.film.cells.balance.feed import ALL
-from frbcli.film.cells.balance.newton_step import film_loads, film_newton
+from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,
     PRESSURE,
-    PRESSURE_SLOPE,
     STATES,
     TURNOVER,
     cell_states,
 )
 from frbcli.film.cells.cavity_edge import edge_slopes, set_edges
-from frbcli.film.cells.data import AREA, LOAD, PUSH_X, PUSH_Y
+from frbcli.film.cells.data import AREA
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
@@ -32,7 +31,6 @@ from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
-HELD, CARRIED = 1e-9, 1e9  # s: moved so little or so much by a velocity that one of the two derivatives is all there is
 
 
 def film_at(film: VolumeFilm, eccentricity: float, omega: float) -> VolumeFilm:
@@ -65,56 +63,51 @@ def steady_force(
 
 
 def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """Force and derivatives, in SI units, of a steady film that a solver has solved."""
-    film, data = solver.film, solver.data
+    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field where
+    it keeps its oil. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
-    if film.edged:
-        return _force_with_edges(solver, motion, solution)
-    if film.law.keeps_oil and not film.law.carries_gas:
-        return _force_with_oil(solver, motion, solution)
-    c, (m, k) = film.section.clearance, film.grid.shape
-    nothing, states = np.zeros((m, k)), np.zeros((STATES, m, k))
-    states[BEFORE_UPSTREAM] = solution.before
-    if solution.gas is not None:
-        states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
-    slopes = []
-    for g in (CARRIED, HELD):
-        scratch = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
-        values = film_newton(
-            data, 0, solution.w.copy(), GridMotion(*motion.d, motion.omega, *motion.v, g=g), nothing, states, *scratch,
-            np.zeros(FLOWS),
-        )  # fmt: skip
-        slopes.append(np.array(values[2:]).reshape(2, 2) / c)
-    at = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at, slopes[0] / CARRIED, slopes[1], solution.field, solution.state.fraction)
-
-
-def _force_with_oil(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """See settled_force, of a film that keeps its oil, with the slopes of its field."""
-    film, data, (m, k) = solver.film, solver.data, solution.w.shape
+    film, data, (m, k), clearance = solver.film, solver.data, solution.w.shape, solver.film.section.clearance
     own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
     states, law = np.zeros((STATES, m, k)), np.append(given_parameters(film.law), np.nan)
-    cell_states(own, cells, law, 0.0, solution.w, states)
+    if solution.gas is not None:
+        states[CARRIED_GAS], states[TURNOVER] = solution.gas.carried
     states[BEFORE_UPSTREAM] = solution.before
-    stencil, *slopes = oil_slopes(own, ring, width, cells, states, motion)
-    fields = np.concatenate([np.zeros((m, k, k)), *(-each for each in slopes)], axis=2)
+    cell_states(own, cells, law, 0.0, solution.w, states)
+    if film.edged:
+        set_edges(film, motion, solution.w, states)
+    stencil, by_place, by_rate, by_total = oil_slopes(own, ring, width, cells, states, motion)
+    if film.edged:
+        for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
+            slopes -= cells[AREA][:, :, None] * source
+    fields = np.concatenate([np.zeros((m, k, k)), -by_place, -by_rate, -by_total], axis=2)
     solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
-    by_place, by_rate, by_total = np.split(fields[:, :, k:], [2, 4], axis=2)
-    by_place, by_rate = by_place / film.section.clearance, by_rate / film.section.clearance
-    weight = own.force_scale * cells[LOAD] * states[PRESSURE_SLOPE]
-    loads = np.stack([ring[push][:, None] * weight for push in (PUSH_X, PUSH_Y)])
-    stiffness, damping, spun = (np.tensordot(loads, each) for each in (by_place, by_rate, by_total))
-    place, fraction_slope = film.section.clearance * np.array(motion.d), solution.state.fraction_slope
-    followed = FieldSlopes(place, motion.omega, by_place, by_total[:, :, 0], fraction_slope, spun[:, 0])
-    at_rest = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at_rest, stiffness, damping, solution.field, solution.state.fraction, followed)
+
+    def pushed(changes: Array) -> Array:
+        """(2, n) change of the force in N with up to two changes (m, k, n) of the field."""
+        delta, count = np.zeros((m, k, k + SIDES)), changes.shape[2]
+        delta[:, :, k + BY_X : k + BY_X + count] = changes
+        return np.array(film_loads(own, ring, cells, states, delta)[2:]).reshape(2, 2)[:, :count]
+
+    moved, moving, faster = np.split(fields[:, :, k:], [2, 4], axis=2)
+    followed = None
+    if film.law.keeps_oil and not film.law.carries_gas:
+        place, fraction = clearance * np.array(motion.d), solution.state.fraction_slope
+        followed = FieldSlopes(place, motion.omega, moved / clearance, faster[:, :, 0], fraction, pushed(faster)[:, 0])
+    return FilmForce(
+        np.array(force(film, film.mean_pressure(solution.state))),
+        pushed(moved) / clearance,
+        pushed(moving) / clearance,
+        solution.field,
+        None if film.edged else solution.state.fraction,
+        followed,
+    )
 
 
 def oil_slopes(
     own: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: Motion
 ) -> tuple[Array, Array, Array, Array]:
-    """Derivatives of what leaves the cells of a film that keeps its oil, see balances for the arguments: the stencil
+    """Derivatives of what leaves the cells of a settled film, see balances for the arguments: the stencil
     (ENTRIES, m, k) by their unknowns, and (m, k, 2) by the displacement and the velocity over the clearance, (m, k, 1)
     by omega_J + omega_S, in which it is linear."""
     (m, k), (x, y) = states.shape[1:], motion.d
@@ -123,34 +116,13 @@ def oil_slopes(
 
     def left(omega: float, g: float) -> Array:
         """(m, k, SIDES) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""
-        fields, at = np.zeros((m, k, k + SIDES)), GridMotion(x, y, omega, g=g)
+        fields, at = np.zeros((m, k, k + SIDES)), GridMotion(x, y, omega, *motion.v, g=g)
         balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
         return -fields[:, :, k:]
 
     by_total = (left(motion.omega + step, 0.0) - left(motion.omega, 0.0))[:, :, [BY_ITSELF]] / step
     by_both, by_rate = (left(motion.omega, g)[:, :, [BY_X, BY_Y]] for g in (1.0, 0.0))
     return stencil, by_both - by_rate, by_rate, by_total
-
-
-def _force_with_edges(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """See settled_force, of a film with the edge of its cavity within cells, whose sources follow the motion, too."""
-    film, data, (m, k) = solver.film, solver.data, solution.w.shape
-    own, ring, width, cells = data.films[0], data.ring[0], data.width[0], data.cells[0]
-    states, nothing, law = np.zeros((STATES, m, k)), np.zeros((m, k)), np.append(given_parameters(film.law), np.nan)
-    cell_states(own, cells, law, 0.0, solution.w, states)
-    set_edges(film, motion, solution.w, states)
-    by_place, by_rate = edge_slopes(film, motion, states[PRESSURE])
-    slopes = []
-    for g in (CARRIED, HELD):
-        stencil, blocks, fields = np.zeros((ENTRIES, m, k)), np.zeros((m, k, k)), np.zeros((m, k, k + SIDES))
-        at = GridMotion(*motion.d, motion.omega, *motion.v, g=g)
-        balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
-        fields[:, :, [k + BY_X, k + BY_Y]] += cells[AREA][:, :, None] * (g * by_place + by_rate)
-        solve_blocks(stencil, blocks, fields, stencil[0, 0], fields[0, 0])
-        values = film_loads(own, ring, cells, states, fields)
-        slopes.append(np.array(values[2:]).reshape(2, 2) / film.section.clearance)
-    at_rest = np.array(force(film, film.mean_pressure(solution.state)))
-    return FilmForce(at_rest, slopes[0] / CARRIED, slopes[1], solution.field)
 
 
 def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:

@@ -73,11 +73,6 @@ class CellFilms(Films):
         return np.asarray(ring[:, GAP] + d[:, :1] * ring[:, SIN] - d[:, 1:] * ring[:, COS])[:, :, None]
 
     @property
-    def sought_near(self) -> tuple[bool, ...]:
-        """See Films.sought_near. Gas has its way to go, and few fronts."""
-        return (True,) * self.count
-
-    @property
     def gas_contents(self) -> Array:
         return contents_of(self.own)
 

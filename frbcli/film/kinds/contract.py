@@ -222,12 +222,6 @@ class Films(ABC):
         raise NotImplementedError
 
     @property
-    def sought_near(self) -> tuple[bool, ...]:
-        """(films,) whether a film at rest is sought from that of another speed: of one that keeps oil alone, fronts lie
-        between other cells there."""
-        return tuple(not keeps for keeps in self.remembering)
-
-    @property
     def gas_contents(self) -> Array:
         """(fields,) free and dissolved gas over the oil of each field, 0 of oil that carries none; empty where none
         does."""

@@ -40,10 +40,6 @@ class InclinedFilms(Films):
         return self.tilted.remembering
 
     @property
-    def sought_near(self) -> tuple[bool, ...]:
-        return self.tilted.sought_near
-
-    @property
     def starving(self) -> bool:
         return self.tilted.starving
 

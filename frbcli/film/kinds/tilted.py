@@ -82,7 +82,8 @@ class TiltedFilms(Films):
         return self.data
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        return tilted_force(self.own[i], place, rate, total, None if near is None else near.field)
+        start = None if near is None else near.foreseen(place, total).field
+        return tilted_force(self.own[i], place, rate, total, start)
 
     @property
     def standing(self) -> Array:
@@ -143,12 +144,6 @@ class TiltedFilms(Films):
     @property
     def gas_contents(self) -> Array:
         return contents_of([land.film for _, land in self._lands])
-
-    @property
-    def sought_near(self) -> tuple[bool, ...]:
-        """See CellFilms.sought_near."""
-        laws = [film.lands[0].film.law for film in self.own]
-        return tuple(not law.keeps_oil or law.carries_gas for law in laws)
 
     def oil_defect(self, displacements: Sequence[tuple[float, float]], wet: Array, flows: Array) -> float | None:
         if not any(self.remembering):

@@ -25,6 +25,7 @@ from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.balances import tilted_balances
+from frbcli.film.cells.tilted.data import land_places
 from frbcli.film.cells.tilted.lands import lands, summed
 from frbcli.film.gap import Hole, Section
 
@@ -65,13 +66,15 @@ def test_balances_without_tilt_are_the_compiled_ones(law: Law, ends: tuple[str, 
     follow_law(parts[0], *motion.d, 0.0, 0.0, motion.omega, numbers)
     cell_states(parts[0], parts[3], numbers, 0.0, w, states)
     states[BEFORE_UPSTREAM] = random.uniform(0.0, 1.0, (M, K))
-    first, second = ((np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)) for _ in range(2))
-    balances(*parts, states, GridMotion(*motion.d, motion.omega), past, *first)
-    tilted_balances(film, motion, states, past, *second)
-    for name, plain, compiled in zip(("stencil", "right", "flows"), second, first, strict=True):
-        own = np.s_[:, :, : K + 1] if name == "right" else np.s_[:]  # no derivatives by the journal
-        size = np.abs(compiled[own]).max()
-        assert np.allclose(plain[own], compiled[own], rtol=1e-10, atol=1e-11 * size), name
+    stencil, right, flows = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)
+    own_stencil, own_flows = np.zeros((ENTRIES, M, K)), np.zeros(FLOWS)
+    for g in (0.0, 2.0):
+        balances(*parts, states, GridMotion(*motion.d, motion.omega, g=g), past, stencil, right, flows)
+        left = tilted_balances(parts, land_places(grid), motion, states, past, own_stencil, own_flows, g)
+        pairs = {"stencil": (own_stencil, stencil), "flows": (own_flows, flows)}
+        pairs |= {f"side {i}": (left[:, :, i], -right[:, :, K + i]) for i in range(SIDES)}
+        for name, (own, compiled) in pairs.items():
+            assert np.allclose(own, compiled, rtol=1e-10, atol=1e-11 * np.abs(compiled).max()), name
 
 
 def test_short_centred_film_in_tilt() -> None:

@@ -1,53 +1,40 @@
-"""The oil balances of a film whose gap changes along the axis, for its solver.
+"""The oil balances of a land whose gap changes along the axis, for the solver of one film: those of the time loop.
 
-They are those in array notation, which take such a gap: no time loop asks for them, and in a test of one motion they
-cost little beside the elimination.
+A land is a bearing of its own here: its journal has displacements at both ends of its width.
 """
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
-from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.balances import (
-    BY_ITSELF,
-    CHANNELS_NET,
-    ENDS_NET,
-    FILLING,
-    INFLOW,
-    OUTFLOW,
-    SUPPLY_NET,
-)
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, land_balances
 from frbcli.film.grid import Array
 
 
 def tilted_balances(
-    film: VolumeFilm, motion: Motion, states: Array, past: Array, stencil: Array, right: Array, flows: Array
-) -> None:
-    """Fill stencil, right and flows as `balances` does, without what is stored now; states: see there."""
-    grid, k = film.grid, past.shape[1]
-    balance = CellBalances(film.section, grid, motion, states[BEFORE_UPSTREAM])
-    state = CellState(*states[:CARRIED_GAS])
-    residual, entries = balance.residual(state, Storage(np.zeros((1, 1)), past))
-    right[:] = 0.0
-    right[:, :, k + BY_ITSELF] = -residual
-    stencil[CENTRE], stencil[BEFORE], stencil[BEHIND] = entries.centre, entries.before, entries.behind
-    stencil[BELOW], stencil[ABOVE] = entries.below, entries.above
-    fluxes, _, _ = balance.fluxes(state.pressure, state.fraction)
-    ends = np.concatenate([fluxes.near, fluxes.far])
-    fed = fluxes.net_outflow(grid.share)[grid.fixed]
-    share = grid.share
-    taken = np.array([((share - np.roll(share, -1, axis=0)) * fluxes.carried).sum(), fluxes.excess.sum()])
-    leaving, entering = np.concatenate([ends, -fed, taken]), np.concatenate([-ends, fed, -taken])
-    flows[INFLOW], flows[OUTFLOW] = np.maximum(entering, 0.0).sum(), np.maximum(leaving, 0.0).sum()
-    groove = float(fluxes.far.sum()) if film.section.far == "groove" else 0.0
-    flows[ENDS_NET], flows[SUPPLY_NET] = ends.sum() - groove, fed.sum() - taken.sum() - groove
-    flows[CHANNELS_NET] = flows[FILLING] = 0.0
+    parts: tuple[Any, Array, Array, Array], places: Array, motion: Motion, states: Array, past: Array, stencil: Array,
+    flows: Array, g: float = 0.0,
+) -> Array:  # fmt: skip
+    """(m, k, 5) what leaves the cells of a land, and its derivatives by the velocity v and the growth of v over the
+    width, which move the journal by g of themselves; stencil and flows <- as `balances` fills them.
+
+    parts: record, ring, width and cells of a land, see VolumeFilms; places: see land_places."""
+    own, ring, _, cells = parts
+    m, k = past.shape
+    right = np.empty((m, k, k + ALL_SIDES))
+    d, v = (
+        np.concatenate([np.subtract(middle, half), np.add(middle, half)])
+        for middle, half in ((motion.d, 0.5 * np.array(motion.slope)), (motion.v, 0.5 * np.array(motion.slope_rate)))
+    )
+    at = EndsMotion(d, v, float(motion.omega), g, 0.0)
+    land_balances(own, ring, cells, places, states, at, np.ascontiguousarray(past), stencil, right, flows)
+    near, far = right[:, :, k + BY_ENDS : k + BY_ENDS + 2], right[:, :, k + BY_ENDS + 2 :]
+    return -np.concatenate([right[:, :, [k + BY_ITSELF]], near + far, 0.5 * (far - near)], axis=2)
 
 
 def tilted_outflow(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> float:

@@ -7,14 +7,17 @@ far x, far y), near at z = -B/2. In between its displacement is linear along the
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
 from frbcli.compiled import Array, Indices
 from frbcli.film.cells.data import TIGHTLY, Records, volume_films
-from frbcli.film.cells.elimination.ring_solver import ring_solver
-from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm
+from frbcli.film.cells.elimination.ring_solver import TILTED, ring_solver
+from frbcli.film.cells.mesh.grid import VolumeGrid
+
+if TYPE_CHECKING:  # its solver is made of what stands here
+    from frbcli.film.cells.tilted.force import TiltedFilm
 
 MIDDLES, EDGES, WIDTHS, PLACES = range(4)
 
@@ -46,6 +49,14 @@ def tilted_volumes(
     for of, land in zip(places, lands, strict=True):
         grid = land.film.grid
         of[MIDDLES, :k], of[EDGES], of[WIDTHS, :k] = land.places(grid.height), land.places(grid.z), np.diff(grid.z)
-    data.films["solver_at"] = ring_solver(k, 1 + COORDINATES)
+    data.films["solver_at"] = ring_solver(k, TILTED)
     first = np.cumsum([0, *(len(film.lands) for film in films)])
     return TiltedVolumes(data.films, data.ring, data.cells, places, first)
+
+
+def land_places(grid: VolumeGrid) -> Array:
+    """(PLACES, k + 1) as TiltedVolumes has them, over the width of a land alone."""
+    k = len(grid.height)
+    places = np.zeros((PLACES, k + 1))
+    places[MIDDLES, :k], places[EDGES], places[WIDTHS, :k] = grid.height, grid.z, np.diff(grid.z)
+    return places

@@ -8,30 +8,30 @@ loads of the land that belong to u do the same virtual work as force and moments
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
+from frbcli.film.cells.elimination.block_cyclic import solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import pushed, pushing
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.mesh.tilted import tilted_cells
-from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.cells.tilted.clipped import mean_change
 from frbcli.film.cells.tilted.lands import parts
-from frbcli.film.gap import Section, gap_rate, graded_ring
+from frbcli.film.gap import Section, graded_ring
 from frbcli.film.grid import Array
-from frbcli.film.rectangles.film import FilmForce
+from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 COORDINATES = 4  # of the journal: its displacement along x and y, and its tilts about them
-STEP = 1e-3  # of the gap: differences of five points are exact for the cubes of gaps
-POINTS = ((-2.0, 1.0 / 12.0), (-1.0, -2.0 / 3.0), (1.0, 2.0 / 3.0), (2.0, -1.0 / 12.0))
+BY_TOTAL = [COORDINATES, 2 * COORDINATES]  # where changes with u end, and with its rate
 
 
 @dataclass(frozen=True)
@@ -119,16 +119,24 @@ def tilted_force(
     """
     if np.linalg.norm(film.ends(place), axis=1).max() >= 1.0:
         raise FilmUnsolved("the journal touches its shell at an end")
-    force, by_place, by_rate, fields = np.zeros(4), np.zeros((4, 4)), np.zeros((4, 4)), []
+    force, by_place, by_rate, spun = np.zeros(4), np.zeros((4, 4)), np.zeros((4, 4)), np.zeros(4)
+    fields, slopes = [], []
     for number, land in enumerate(film.lands):
-        clearance, motion = land.film.section.clearance, land.motion(place, rate, total)
-        solution = land_solution(land.film, motion, None if start is None else start[number])
-        loads, by_u, by_v = _land_force(land.film, motion, solution)
+        motion, to_u = land.motion(place, rate, total), land.map / land.film.section.clearance
+        solver, solution = _solved(land.film, motion, None if start is None else start[number])
+        loads, changes = _land_force(solver, motion, solution)
+        by_u, by_v, by_total = np.split(changes.loads, BY_TOTAL, axis=1)
         force += land.map.T @ loads
-        by_place += land.map.T @ by_u @ land.map / clearance
-        by_rate += land.map.T @ by_v @ land.map / clearance
+        by_place += land.map.T @ by_u @ to_u
+        by_rate += land.map.T @ by_v @ to_u
+        spun += land.map.T @ by_total[:, 0]
         fields.append(solution.w)
-    return FilmForce(force, by_place, by_rate, np.array(fields))
+        slopes.append((changes.field[:, :, :COORDINATES] @ to_u, changes.field[:, :, -1]))
+    law, followed = film.lands[0].film.law, None
+    if law.keeps_oil and not law.carries_gas:
+        moved, faster = (np.array(each) for each in zip(*slopes, strict=True))
+        followed = FieldSlopes(place, total, moved, faster, np.zeros_like(faster), spun)
+    return FilmForce(force, by_place, by_rate, np.array(fields), slopes=followed)
 
 
 def settled_force(film: TiltedFilm, place: Array, rate: Array, total: float) -> Array:
@@ -142,61 +150,50 @@ def settled_force(film: TiltedFilm, place: Array, rate: Array, total: float) -> 
 
 def land_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
     """The steady solution of a land, sought from the field `start`, then from a full film. Raises FilmUnsolved."""
+    return _solved(film, motion, start)[1]
+
+
+def _solved(film: VolumeFilm, motion: Motion, start: Array | None) -> tuple[FilmSolver, VolumeSolution]:
+    """See land_solution."""
     solver = FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega))
     try:
-        return solver.steady(motion, start)
+        return solver, solver.steady(motion, start)
     except FilmUnsolved:
         if start is None:
             raise
-        return solver.steady(motion)
+        return solver, solver.steady(motion)
 
 
-def _land_force(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> tuple[Array, Array, Array]:
-    """Loads (4,) that belong to u in N, and their derivatives (4, 4) by u in N and by its rate in N s."""
-    state, (m, k) = solution.state, film.grid.shape
-    stencil, by_u, by_v = land_slopes(film, motion, solution)
-    fields = np.concatenate([np.zeros((m, k, k)), -by_u, -by_v], axis=2)
+class LandChanges(NamedTuple):
+    """What changes with u, with its rate and with omega_J + omega_S: of the field (m, k, 9) and of the loads (4, 9), in
+    N, N s and N s."""
+
+    field: Array
+    loads: Array
+
+
+def _land_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> tuple[Array, LandChanges]:
+    """Loads (4,) that belong to u in N, and what they and the field change with."""
+    film, state, (m, k) = solver.film, solution.state, solver.film.grid.shape
+    stencil, *slopes = land_slopes(solver, motion, solution)
+    fields = np.concatenate([np.zeros((m, k, k)), *(-each for each in slopes)], axis=2)
     solve_blocks(stencil, np.zeros((m, k, k)), fields, stencil[0, 0], fields[0, 0])
-    changes = np.array([_loads(film, mean_change(film, state, fields[:, :, k + i])) for i in range(2 * COORDINATES)])
-    return _loads(film, film.mean_pressure(state)), changes[:COORDINATES].T, changes[COORDINATES:].T
+    changes = fields[:, :, k:]
+    loads = [_loads(film, mean_change(film, state, changes[:, :, i])) for i in range(changes.shape[2])]
+    return _loads(film, film.mean_pressure(state)), LandChanges(changes, np.array(loads).T)
 
 
-def land_slopes(film: VolumeFilm, motion: Motion, solution: VolumeSolution) -> tuple[Array, Array, Array]:
+def land_slopes(
+    solver: FilmSolver, motion: Motion, solution: VolumeSolution
+) -> tuple[Array, Array, Array, Array]:
     """Derivatives of the balances of the cells of a land in its settled state: the stencil (ENTRIES, m, k) by their
-    unknowns, and (m, k, 4) by u and by its rate."""
-    grid, state = film.grid, solution.state
-    balance = CellBalances(film.section, grid, motion, solution.before)
-    storage = Storage(gap_rate(motion.velocity_at(grid.height), grid.centre[:, None]), np.zeros(grid.shape))
-    _, entries = balance.residual(state, storage)
-    stencil = np.zeros((ENTRIES, *grid.shape))
-    stencil[CENTRE], stencil[BEFORE], stencil[BEHIND] = entries.centre, entries.before, entries.behind
-    stencil[BELOW], stencil[ABOVE] = entries.below, entries.above
-    stored = np.where(grid.fixed, 0.0, grid.area * state.fraction)
-    numbers = range(COORDINATES)
-    by_u = np.stack([_by_place(film, motion, solution, i) for i in numbers], axis=2)
-    by_v = np.stack([stored * gap_rate(_unit(i, grid.height), grid.centre[:, None]) for i in numbers], axis=2)
-    return stencil, by_u, by_v
-
-
-def _unit(i: int, z: Array) -> tuple[Array, Array]:
-    """(k,) displacement along x and y at positions z (k,) over the width, of coordinate i of u."""
-    along = np.ones_like(z) if i < 2 else z - 0.5
-    return (along, 0.0 * along) if i % 2 == 0 else (0.0 * along, along)
-
-
-def _by_place(film: VolumeFilm, motion: Motion, solution: VolumeSolution, i: int) -> Array:
-    """(m, k) derivative by coordinate i of u of what flows out of each cell."""
-    grid, state = film.grid, solution.state
-    step = STEP * (1.0 - math.hypot(*motion.d) - 0.5 * math.hypot(*motion.slope))
-    step = max(step, STEP * STEP)
-    total = np.zeros(grid.shape)
-    for side, weight in POINTS:
-        u = np.array([*motion.d, *motion.slope])
-        u[i] += side * step
-        moved = replace(motion, d=(u[0], u[1]), slope=(u[2], u[3]))
-        fluxes, _, _ = CellBalances(film.section, grid, moved, solution.before).fluxes(state.pressure, state.fraction)
-        total += weight / step * fluxes.net_outflow(grid.share)
-    return np.where(grid.fixed, 0.0, total)
+    unknowns, and (m, k, 4) by u and by its rate, (m, k, 1) by omega_J + omega_S, in which they are linear."""
+    (m, k), pace = solution.w.shape, math.copysign(max(abs(motion.omega), 1.0), motion.omega)
+    states, nothing = np.zeros((STATES, m, k)), np.zeros((m, k))
+    states[:CARRIED_GAS], states[BEFORE_UPSTREAM] = astuple(solution.state), solution.before
+    turned = solver.leaving(replace(motion, omega=motion.omega + pace), states, nothing)
+    both, moving = (solver.leaving(motion, states, nothing, g) for g in (1.0, 0.0))
+    return solver.stencil.copy(), (both - moving)[:, :, 1:], moving[:, :, 1:], (turned - moving)[:, :, :1] / pace
 
 
 def unit_loads(film: VolumeFilm) -> Array:

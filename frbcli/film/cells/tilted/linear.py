@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.film.cells.gas.linear import linear_states
-from frbcli.film.cells.linearised import LinearFilm, by_neighbours, by_total, lying
+from frbcli.film.cells.linearised import LinearFilm, by_neighbours, lying
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm, TiltedLand, land_slopes, unit_loads
 from frbcli.film.grid import Array
@@ -40,20 +40,21 @@ def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | No
     from scipy.sparse import diags
 
     film, motion = land.film, land.motion(place, np.zeros(COORDINATES), total)
-    solution, to_u = FilmSolver(film).steady(motion, start, upwind=True), land.map / film.section.clearance
+    solver, to_u = FilmSolver(film), land.map / film.section.clearance
+    solution = solver.steady(motion, start, upwind=True)
     if film.law.carries_gas:
         found = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
         moved = found.by_place @ to_u, found.by_rate @ to_u, found.by_total
         push = land.map.T @ found.push
         return LinearFilm(found.flow, found.storage, *moved, push, found.sheared, solution.field, ordered=True)
-    stencil, by_u, by_v = land_slopes(film, motion, solution)
+    stencil, by_u, by_v, by_total = land_slopes(solver, motion, solution)
     stored = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * solution.state.fraction_slope)
     return LinearFilm(
         flow=by_neighbours(stencil),
         storage=diags(stored.ravel(), format="csc"),
         by_place=by_u.reshape(-1, COORDINATES) @ to_u,
         by_rate=by_v.reshape(-1, COORDINATES) @ to_u,
-        by_total=by_total(film, motion, solution).ravel(),
+        by_total=by_total.ravel(),
         push=land.map.T @ (unit_loads(film) * solution.state.pressure_slope.ravel()),
         sheared=np.zeros(stored.size),  # films that follow a tilt have the torque of a full one
         field=solution.field,
