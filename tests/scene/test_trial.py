@@ -15,8 +15,9 @@ from frbcli.case.schema import Case
 from frbcli.cli.casefiles import check
 from frbcli.cli.main import run as frb
 from frbcli.compilation import CompilationNeededError
+from frbcli.errors import NotConverged
+from frbcli.runs import march
 from frbcli.runs.errors import trial as tried
-from frbcli.runs.march import March
 from frbcli.scene.costs.trial import Trial, planned_trial
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.expected_error import expected_error
@@ -70,10 +71,10 @@ def test_no_trial_without_cells_or_where_it_would_take_long(name: str, settings:
 
 def eccentricities(case: Case, trial: Trial, plan: Plan) -> Array:
     """(n, films) at the output times of a short run."""
-    march = March(case, plan, make_segments(case, plan), trial.profile)
+    run = march.March(case, plan, make_segments(case, plan), trial.profile)
     status, parts = RUNNING, list[Array]()
     while status == RUNNING:
-        status, signals = march.chunk()
+        status, signals = run.chunk()
         parts.append(np.column_stack([signals[f"eccentricity_{film}"] for film in ("inner", "outer")]))
     return np.concatenate(parts)
 
@@ -114,6 +115,18 @@ def test_runs_that_do_not_differ_or_end_early_tell_no_error(value: float, monkey
     case, trial = trial_of(RINGS, "rotor.unbalance=2.9 g*mm")
     assert trial is not None
     monkeypatch.setattr(tried, "_difference", lambda *_: value)
+    monkeypatch.setattr(tried, "kept_beside", lambda _: lambda make: make)
+    assert tried.tried_error(case, trial) is None
+
+
+def test_a_run_that_does_not_begin_leaves_the_error_to_its_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    case, trial = trial_of(RINGS, "rotor.unbalance=2.8 g*mm")
+    assert trial is not None
+
+    def fails(*_: object) -> object:
+        raise NotConverged("no")
+
+    monkeypatch.setattr(march, "March", fails)
     monkeypatch.setattr(tried, "kept_beside", lambda _: lambda make: make)
     assert tried.tried_error(case, trial) is None
 

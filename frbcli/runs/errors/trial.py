@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.errors import NotConverged
+from frbcli.errors import FrbError
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.kept import kept_beside
 from frbcli.scene.costs.trial import Trial
@@ -62,7 +62,7 @@ def _difference(case: Case, trial: Trial) -> float:
         finer = own.again(trial.finer)
         if not (_marched(own) and _marched(finer)):
             return math.nan
-    except NotConverged:
+    except FrbError:  # a run that does not begin says why
         return math.nan
     found = FewerCells(1.0, finer.samples).error(own.samples, own.system)
     return math.nan if found is None else found.eccentricity
