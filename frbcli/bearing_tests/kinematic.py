@@ -22,7 +22,6 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
-from frbcli.film.published.solution import NodeState
 from frbcli.html import Tabular
 from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
@@ -227,12 +226,12 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
     try:
         with advised(with_model(case, plan.cavitation)):
             if case.heat is not None:
-                warm = warm_resting_film(case, plan, omega, lambda alike, its_plan: _lasting(alike, its_plan)[0])
+                warm = warm_resting_film(case, plan, omega, lambda alike, its_plan: _lasting(alike, its_plan))
                 case, plan = warm.case, warm.plan
-        lasting, start = _lasting(case, plan)
+        lasting = _lasting(case, plan)
         displacement = lasting.d
         with advised(with_model(case, plan.cavitation)):
-            moment = tested_film(plan).moment(case, plan, lasting, start)
+            moment = tested_film(plan).moment(case, plan, lasting)
             stribeck = stribeck_curve(case, plan)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
@@ -257,15 +256,14 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
     )
 
 
-def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]:
-    """The motion of a rotation, which lasts, and what the published form begins with. Raises NotConverged."""
+def _lasting(case: Case, plan: KinematicPlan) -> Motion:
+    """The motion of a rotation, which lasts. Raises NotConverged."""
     motion = case.motion
     assert motion is not None
-    start: NodeState | None = None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     if motion.load is not None:
-        found, start = tested_film(plan).rest(case, plan, motion.load, omega)
-        return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega), start
+        found = tested_film(plan).rest(case, plan, motion.load, omega)
+        return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega)
     e, angle, section = motion.eccentricity or 0.0, motion.angle, plan.section
     along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
     turn = e * 2.0 * math.pi * motion.whirl_speed
@@ -273,7 +271,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> tuple[Motion, NodeState | None]
     if motion.velocity is not None:
         rates = [each / section.clearance for each in motion.velocity]
     slope, slope_rate = slope_of(tilt_of(case), section), slope_of(tilt_rate_of(case), section)
-    return Motion(displacement_of(case), (rates[0], rates[1]), omega, slope, slope_rate), start
+    return Motion(displacement_of(case), (rates[0], rates[1]), omega, slope, slope_rate)
 
 
 def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:

@@ -87,8 +87,8 @@ def _walk(
 def _point(case: Case, plan: KinematicPlan, load: float, speed: float) -> _Point:
     """The film under a load in N at a speed in Hz. Raises NotConverged."""
     film, omega, section = tested_film(plan), 2.0 * math.pi * speed, plan.section
-    place, start = film.rest(case, plan, load, omega)
+    place = film.rest(case, plan, load, omega)
     x, y = place.tolist()
-    torque = film.moment(case, plan, Motion((x, y), (0.0, 0.0), omega), start).loads.torque.journal
+    torque = film.moment(case, plan, Motion((x, y), (0.0, 0.0), omega)).loads.torque.journal
     own = rubbing_of(case).force(section.clearance * place, np.zeros(2), omega).force
     return _Point(speed, friction_coefficient(torque, load, section.radius), 0.0 + float(own[1]) / load)

@@ -10,24 +10,20 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.bearing_tests.forms.bearing_model import model_course, model_force, model_moment
-from frbcli.bearing_tests.forms.published import published_course, published_moment, resting_in_published
 from frbcli.bearing_tests.forms.short import short_course, short_force, short_moment
 from frbcli.bearing_tests.history import Course, film_course
 from frbcli.bearing_tests.resting import ForceOf, resting_displacement
 from frbcli.bearing_tests.steady_film import FilmMoment, film_force, film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
-from frbcli.film.published.solution import NodeState
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import GIVEN
-from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import SHORT
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 Tell = Callable[[int], None]
-Rest = tuple[Array, NodeState | None]
 
 
 @dataclass(frozen=True)
@@ -35,20 +31,19 @@ class TestedFilm:
     """The film of a planned test of a case, as functions that raise NotConverged.
 
     rest(case, plan, load, omega): (2,) displacement over the clearance in which it carries a load in N along -y at
-    omega rad/s, and the state from which it is solved again there, if that is needed. moment(case, plan, motion,
-    start): the film for a motion that lasts; start: of rest. course(case, plan, path, times, tell): the film along a
-    path at the times (n,) in s, see film_course; tell: called with the number of each moment.
+    omega rad/s. moment(case, plan, motion): the film for a motion that lasts. course(case, plan, path, times, tell):
+    the film along a path at the times (n,) in s, see film_course; tell: called with the number of each moment.
     """
 
     __test__ = False  # no test case, whatever its name begins with
 
-    rest: Callable[[Case, KinematicPlan, float, float], Rest]
-    moment: Callable[[Case, KinematicPlan, Motion, NodeState | None], FilmMoment]
+    rest: Callable[[Case, KinematicPlan, float, float], Array]
+    moment: Callable[[Case, KinematicPlan, Motion], FilmMoment]
     course: Callable[[Case, KinematicPlan, Path, Array, Tell | None], Course]
 
 
-def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: float) -> Rest:
-    return resting_displacement(case, plan, load, omega, force), None
+def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
+    return resting_displacement(case, plan, load, omega, force)
 
 
 def _rubbing(force: ForceOf) -> ForceOf:
@@ -72,23 +67,18 @@ def _on_summits(case: Case, motion: Motion, film: FilmMoment) -> FilmMoment:
 
 SOLVED = TestedFilm(  # on finite volumes, or the modal film of a rectangular gap
     partial(_rest, _rubbing(film_force)),
-    lambda case, plan, motion, _: _on_summits(case, motion, film_moment(case, plan, motion, plan.cells)),
+    lambda case, plan, motion: _on_summits(case, motion, film_moment(case, plan, motion, plan.cells)),
     film_course,
 )
 FILMS: dict[FilmForm, TestedFilm] = {
-    PUBLISHED: TestedFilm(
-        resting_in_published,
-        lambda case, plan, motion, start: _on_summits(case, motion, published_moment(case, plan, motion, start)),
-        published_course,
-    ),
     SHORT: TestedFilm(
         partial(_rest, _rubbing(short_force)),
-        lambda case, plan, motion, _: _on_summits(case, motion, short_moment(plan, motion)),
+        lambda case, plan, motion: _on_summits(case, motion, short_moment(plan, motion)),
         lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
     ),
     GIVEN: TestedFilm(
         partial(_rest, model_force),
-        lambda case, plan, motion, _: model_moment(case, plan, motion),
+        lambda case, plan, motion: model_moment(case, plan, motion),
         lambda case, plan, path, times, _: model_course(case, plan, path, times),
     ),
 }

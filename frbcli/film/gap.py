@@ -74,6 +74,15 @@ class LobedShell:
 
 
 @dataclass(frozen=True)
+class Diffusion:
+    """Artificial diffusion (4.42) of the published two-phase form. length: L of an element around, rad; along: whether
+    it acts along the axis, too."""
+
+    length: float
+    along: bool
+
+
+@dataclass(frozen=True)
 class Section:
     """One rectangular section of a film, SI units; pressures are gauge, over the ambient pressure.
 
@@ -104,6 +113,7 @@ class Section:
     flow_roughness: float = 0.0
     shear: float = 0.0
     bath: float = NO_BATH
+    diffusion: Diffusion | None = None
 
     @property
     def seals(self) -> tuple[float, float]:

@@ -22,7 +22,7 @@ from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import NO_BATH, Section, ends_at_ambient
 from frbcli.film.grid import Array
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
-from frbcli.scene.section import film_section
+from frbcli.scene.section import diffusion_of, film_section
 
 ROTOR, HOUSING = -1, -2  # what a film lies against, if it is not a ring
 PUMPED = 0.3  # share of the pressure that the largest speed could build up: a good unit of the unknown w
@@ -129,7 +129,7 @@ def turns_with_oil(case: Case, place: FilmPlace) -> bool:
     """Whether the cells of a film turn with the mean speed of journal and shell, as the oil between them does."""
     if case.film.grid != "auto":
         return case.film.grid == "half-speed"
-    plain = is_plain(place.geometry) and place.feed_holes is None
+    plain = is_plain(place.geometry) and place.feed_holes is None and diffusion_of(case, place.geometry) is None
     return plain and law_named(case.cavitation(place.geometry)).keeps_oil
 
 

@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+import math
+
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.supply import MIDDLE
-from frbcli.film.gap import LobedShell, Section, whole_width
+from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.gap import Diffusion, LobedShell, Section, whole_width
+
+ELEMENT = 2.0 * math.pi / 20.0  # L of (4.42) in rad: of the elements of figure 6.2
 
 
 def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = None) -> Section:
@@ -44,7 +49,21 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         largest_flow=bearing.supply.largest_flow / copies,
         flow_roughness=case.contact.flow_roughness,
         shear=case.contact.shear,
+        diffusion=diffusion_of(case, bearing),
     )
+
+
+def diffusion_of(case: Case, film: FilmGeometry) -> Diffusion | None:
+    """The artificial diffusion of a film of the two-phase model in its published form, None of others."""
+    given = case.film.two_phase
+    if case.cavitation(film) != TwoPhase.name or given.form != "published":
+        return None
+    return Diffusion(ELEMENT if given.diffusion != "none" else 0.0, along=given.diffusion == "consistent")
+
+
+def is_published(case: Case) -> bool:
+    """Whether films of a case have the published form."""
+    return any(diffusion_of(case, film) is not None for film in case.films)
 
 
 def _lobes(bearing: FilmGeometry) -> LobedShell | None:

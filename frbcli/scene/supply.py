@@ -58,7 +58,7 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)
         if is_unfed(section, law_named(cavitation)):
-            keeps = law_named(cavitation).keeps_oil and not form.creates_oil
+            keeps = law_named(cavitation).keeps_oil and section.diffusion is None
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
             found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
     return tuple(found)

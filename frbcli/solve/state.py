@@ -76,9 +76,8 @@ HISTORY = 3  # points of the step before that help to predict the stages of the 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
     past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
-    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films.py, and
-    element_films.py for the published form; errors: (2, ERROR_SPANS) largest fading sum and plain sum of the local
-    errors of the steps that end in each span."""
+    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films/; errors:
+    (2, ERROR_SPANS) largest fading sum and plain sum of the local errors of the steps that end in each span."""
 
     numbers: Array
     q: Array

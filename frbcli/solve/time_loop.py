@@ -186,10 +186,10 @@ def _solve_stage(
     for iteration in range(most_iterations(films)):
         forces(films, work, clearances, control, g, s, iteration, journal)
         numbers[SOLVES] += solved(films, m // 2)
-        share, left, moved, unsettled = correct(films, work, compliance, clearances, control, g, journal, newton)
+        share, left, moved = correct(films, work, compliance, clearances, control, g, journal, newton)
         if left == math.inf:
             return False, speed
-        left = left_over(films, work, left, moved, unsettled, allowed)
+        left = left_over(films, work, left, moved)
         if share == 1.0:
             late = accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
             left = max(left, g * late / _smallest(clearances))

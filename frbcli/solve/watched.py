@@ -13,8 +13,7 @@ import numpy as np
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
-from frbcli.film.published.data import LEFT
-from frbcli.film.state import NOW, PASSED
+from frbcli.film.state import PASSED
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, LoopOutput, RotorData, State
@@ -46,8 +45,8 @@ def advance_watched(
 
 
 def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) -> float:
-    """Oil that leaves film f now: of cells over its scale, through the open ends; of the published form in m^3/s; 0 of
-    a film whose motion tells it."""
+    """Oil that leaves film f now: of cells over its scale, through the open ends; 0 of a film whose motion tells
+    it."""
     raise NotImplementedError
 
 
@@ -68,7 +67,6 @@ by_kind(
         films.films[f], films.ring[f], films.cells[f], work.states[f], work.grids[f].x, work.grids[f].y,
         far_open[f] != 0.0,
     ),
-    elements=lambda films, work, flows, f, far_open: flows[NOW, f, LEFT],
 )  # fmt: skip
 
 

@@ -274,6 +274,6 @@ def test_refused_beside_what_does_not_know_it() -> None:
     loaded = CASE.replace("eccentricity = 0.4", 'load = "20 N"')
     assert "moment" in next(f.problem for f in faults(load_case_text(loaded, [TILT]), "rotation"))
     published = ("film.cavitation=two-phase", "film.two-phase.form=published", TILT)
-    assert [fault.key for fault in faults(case_of(*published), "rotation")] == ["motion.tilt"]
+    assert [fault.key for fault in faults(case_of(*published), "rotation")] == ["film.two-phase.form"]
     with pytest.raises(InputError, match="whirl_speed"):
         case_of('motion.velocity=["1 mm/s", "0 mm/s"]', 'motion.whirl_speed="3 Hz"')

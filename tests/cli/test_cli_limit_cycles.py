@@ -38,7 +38,6 @@ def test_the_command_tells_where_no_whirl_is_born(capsys: pytest.CaptureFixture[
 @pytest.mark.parametrize(
     ("settings", "told"),
     [
-        (["film.cavitation=two-phase", "film.two-phase.form=published"], "kinks in its force"),
         (["speed.to=0 Hz"], "no range of speeds"),
     ],
 )
@@ -91,7 +90,7 @@ def test_a_map_without_a_point_says_so(capsys: pytest.CaptureFixture[str]) -> No
 
 
 def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_path, monkeypatch) -> None:  # type: ignore[no-untyped-def]
-    """Of the Jeffcott rotor, whose whirl locks in; refused over a number, without unbalance, in the published form."""
+    """Of the Jeffcott rotor, whose whirl locks in; refused over a number and without unbalance."""
     monkeypatch.chdir(tmp_path)
     words = ["limit-cycles", "jeffcott", "--with-unbalance", "--set", "speed.from=186 Hz", "--set", "speed.to=192 Hz"]
     assert run([*words, "--json", "--csv", "table.csv"]) == 0
@@ -113,8 +112,6 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert "--with-unbalance is of the diagram" in capsys.readouterr().err
     assert run([*words, "--set", "rotor.unbalance=0 g*mm"]) == 2
     assert "is zero" in capsys.readouterr().err
-    assert run(["limit-cycles", "rigid-two-phase", "--with-unbalance", "--set", "film.two-phase.form=published"]) == 2
-    assert "has kinks in its force" in " ".join(capsys.readouterr().err.split())
 
 
 @pytest.mark.nightly  # a whole diagram for one line of text

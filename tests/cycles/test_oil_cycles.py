@@ -364,7 +364,6 @@ def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> Non
     [
         ('bearing.supply={kind="bores",count=4,diameter="2 mm",axial_position=0.5,on="journal",pressure="2 bar"}',
          "openings that turn"),
-        ("film.two-phase.form=published", "kinks in its force"),
     ],
 )  # fmt: skip
 def test_films_whose_map_changes_from_period_to_period_are_told(setting: str, told: str) -> None:

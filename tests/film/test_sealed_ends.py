@@ -206,7 +206,6 @@ def test_every_law_on_cells_takes_sealed_ends(law: str) -> None:
 @pytest.mark.parametrize(
     ("settings", "key", "remedy"),
     [
-        (["film.cavitation=two-phase", "film.two-phase.form=published"], "bearing.ends", "conservative"),
         (["film.theory=short", "bearing.supply.pressure=2 bar"], "bearing.ends", "finite"),
         (["film.cavitation=reynolds", "bearing.supply={kind=\"none\"}", "bearing.ends.sealed=0.001"],
          "bearing.ends", "at least 0.01"),

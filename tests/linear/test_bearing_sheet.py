@@ -297,7 +297,6 @@ def test_a_sheet_fills_one_screen_unless_more_is_asked_for(capsys: pytest.Captur
         (["bearing", "floating-ring", "--film", "iner"], "inner"),
         (["bearing", "squeeze", "--speed", "20 Hz"], "motion.load"),
         (["bearing", "jeffcott", "--csv", "nowhere/t.csv"], "does not exist"),
-        (["bearing", "jeffcott-two-phase", "--set", "film.two-phase.form=published"], "conservative"),
         (["bearing", "jeffcott", "--over", "eccentricity", "--load", "3 N"], "no --load"),
         (["bearing", "jeffcott", "--load", "-3 N"], "greater than 0"),
     ],

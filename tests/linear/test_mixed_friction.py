@@ -128,10 +128,6 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
     [
         (("contact.roughness=5 um", "contact.summit_density=1e9 1/m^2"), "contact.roughness", "meet all around"),
         (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
-        (
-            ("contact.flow_factors=true", "film.cavitation=two-phase", "film.two-phase.form=published"),
-            "contact.flow_factors", "films on cells",
-        ),
         (("contact.flow_factors=true", "film.solution=table"), "film.solution", "flow factors change with the gap"),
         (
             ("contact.flow_factors=true", "contact.journal_roughness=0.4 um",

@@ -189,7 +189,3 @@ def test_linear_amplitudes_hold_up_to_the_share_of_the_gap_that_is_called_doubtf
             assert error < (0.04 if share < 0.1 else 0.15 if share < DOUBTFUL else math.inf)
     assert found.gap_share.max() > DOUBTFUL
 
-
-def test_a_film_whose_oil_does_not_settle_has_no_linear_response(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["response", "jeffcott-two-phase", "--set", "film.two-phase.form=published", "--no-picture"]) == 2
-    assert "has kinks in its force" in capsys.readouterr().err

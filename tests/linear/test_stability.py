@@ -289,9 +289,6 @@ def test_film_whose_oil_does_not_settle_is_refused_under_the_key_that_says_so() 
     with pytest.raises(InputError) as refused:
         stability(load_case("floating-ring", ["bearing.inner.cavitation=elrod"]), [100.0])
     assert [fault.key for fault in refused.value.faults] == ["bearing.inner.cavitation"]
-    with pytest.raises(InputError) as refused:
-        stability(load_case("jeffcott-two-phase", ["film.two-phase.form=published"]), [100.0])
-    assert [fault.key for fault in refused.value.faults] == ["film.two-phase.form"]
 
 
 def test_one_speed_has_no_threshold_and_says_whether_it_is_stable() -> None:

@@ -211,7 +211,6 @@ def test_bad_inputs_are_one_clear_fault(settings: list[str], told: str) -> None:
 
 
 REFUSED = {
-    "elements": (["film.cavitation=two-phase", "film.two-phase.form=published"], "does not follow"),
     "steps": (['bearing.clearance_steps=[{ time = "1 s", clearance = "40 um" }]'], "clearance_steps"),
     "pressures of two kinds": (["oil.cavitation_pressure=0.5 bar"], "cavitation_pressure"),
 }

@@ -82,8 +82,8 @@ class Law:
     films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn in;
     empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
     whether a source keeps the pressure from falling below p_cav; edges: whether the edge of its cavity within a cell is
-    known, see `edged`; published_form: whether it has a published form, on
-    quadratic elements; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
+    known, see `edged`; published_form: whether it has a published form, with
+    artificial diffusion; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
     exchanged of the law, and of which `cell` takes two more parameters and has two more results, see bubbly.py.
     order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
     fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.

@@ -13,7 +13,7 @@ from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.ends import end_slopes
 from frbcli.film.cells.balance.feed import supply_line, supply_pressure
-from frbcli.film.cells.balance.plain import NO_DISTANCE
+from frbcli.film.cells.diffusion.plain import NO_DISTANCE, diffusing, end_reaches
 from frbcli.film.cells.elimination.ring_solver import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
@@ -27,6 +27,7 @@ TIGHTLY = 1e-4  # settled, where nothing is said of it
 
 CLOSED, GIVEN, FREE, FED = range(4)
 ENDS = {"symmetry": CLOSED, "oil-bath": GIVEN, "groove": FED, "free-to-air": FREE}
+BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # right-hand sides of the balances
 # Of forces: how they clip the pressure at p_cav.
 NO_CLIP, BY_CELLS, BETWEEN_MIDDLES = range(3)
 
@@ -38,14 +39,15 @@ def record(*fields: tuple[Any, ...]) -> Any:
 
 SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  # see Scales
 # An end of a section: CLOSED, GIVEN, FREE, or FED by a groove; the slope of the pressure there, see EndSlope; the
-# pressure in a groove.
-END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"))
+# pressure in a groove; 1 over the distance from the last unknown, with the seal, over which oil diffuses.
+END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"), ("reach", "f8"))
 # One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it keeps
 # its oil; carries_gas: whether that carries free gas; bored: whether flows around take the gaps of both cells, as
 # beside bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s; supplied_gas,
 # gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
 # of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces that it flows
-# between, and shear: see Section; parameters: of its law, of a centred journal at 1 rad/s.
+# between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its L, and by how
+# much more it acts along than around, see diffusion/spread.py; parameters: of its law, of a centred journal at 1 rad/s.
 # Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply` is the largest; of
 # a supply that gives a flow at the most: given, line and lowest of supply_line.
 FILM = record(
@@ -67,6 +69,9 @@ FILM = record(
     ("bored", "?"),
     ("roughness", "f8"),
     ("shear", "f8"),
+    ("diffuses", "?"),
+    ("length", "f8"),
+    ("spread", "f8"),
     ("fraction", "f8"),
     ("share", "f8"),
     ("supply", "f8"),
@@ -161,6 +166,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     slopes = end_slopes(film.grid.height, section.seals)
     for end, edge, slope in zip((own.near, own.far), (section.near, section.far), slopes, strict=True):
         end.kind, end.rise, end.bend = ENDS[edge], *slope
+    own.near.reach, own.far.reach = end_reaches(film.grid.height, section.seals)
     own.far.pressure = section.far_pressure / section.pressure_scale if section.far == "groove" else 0.0
     own.follow_at, own.cells_at = addresses(law)
     own.solver_at = ring_solver(film.grid.shape[1])
@@ -170,6 +176,7 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
     if law.carries_gas:
         own.supplied_gas, own.gas_content = law.supplied_gas, law.gas_content
     own.roughness, own.shear = section.flow_roughness / section.clearance, section.shear
+    own.diffuses, own.length, own.spread = section.diffusion is not None, *diffusing(section, film.grid)
     own.parameters[:] = given_parameters(law)
     own.fraction, own.share, own.supply = 1.0, 1.0, supply_pressure(section) / section.pressure_scale
     own.given, own.line, own.lowest = supply_line(film)

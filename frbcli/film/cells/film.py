@@ -37,7 +37,8 @@ __all__ = [
 @dataclass(frozen=True)
 class Flows:
     """Oil per time in scaled units (R b C, 1/s), by one section: in and out at its ends, grooves and holes; made by the
-    law; stored; fed by grooves and holes net; leaving at the ends net; still: what is too little to count."""
+    law and by artificial diffusion; stored; fed by grooves and holes net; leaving at the ends net; still: what is too
+    little to count."""
 
     inflow: float
     outflow: float

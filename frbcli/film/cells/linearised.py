@@ -22,15 +22,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import (
-    BY_ITSELF,
-    FLOWS,
-    SIDES,
-    SUPPLY_NET,
-    GridMotion,
-    balances,
-    without_ends,
-)
+from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, GridMotion, balances, without_ends
 from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -40,7 +32,7 @@ from frbcli.film.cells.balance.states import (
     STATES,
     cell_states,
 )
-from frbcli.film.cells.data import AREA, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIN, UNKNOWN
+from frbcli.film.cells.data import AREA, BY_ITSELF, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIDES, SIN, UNKNOWN
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.linear import linear_states

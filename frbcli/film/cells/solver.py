@@ -17,7 +17,16 @@ import numpy as np
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, INFLOW, OUTFLOW, SIDES, SUPPLY_NET, GridMotion, balances
+from frbcli.film.cells.balance.balances import (
+    CREATED,
+    ENDS_NET,
+    FLOWS,
+    INFLOW,
+    OUTFLOW,
+    SUPPLY_NET,
+    GridMotion,
+    balances,
+)
 from frbcli.film.cells.balance.carried import UPWIND, before_upstream
 from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
 from frbcli.film.cells.balance.plain import CellBalances
@@ -34,7 +43,7 @@ from frbcli.film.cells.balance.states import (
     cell_states,
 )
 from frbcli.film.cells.cavity_edge import full_cells, set_edges
-from frbcli.film.cells.data import VolumeFilms, volume_films
+from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
@@ -361,7 +370,7 @@ class FilmSolver:
         flows = Flows(
             inflow=float(self._flows[INFLOW]),
             outflow=float(self._flows[OUTFLOW]),
-            source=float((area * source).sum()),
+            source=float((area * source).sum()) + float(self._flows[CREATED]),
             stored=float((area * (storage.factor * fraction - storage.past)).sum()),
             supply=float(self._flows[SUPPLY_NET]),
             ends=float(self._flows[ENDS_NET]),

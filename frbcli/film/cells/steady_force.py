@@ -9,7 +9,7 @@ import numpy as np
 
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
-from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, FLOWS, SIDES, GridMotion, balances
+from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.states import (
@@ -21,7 +21,7 @@ from frbcli.film.cells.balance.states import (
     cell_states,
 )
 from frbcli.film.cells.cavity_edge import edge_slopes, set_edges
-from frbcli.film.cells.data import AREA
+from frbcli.film.cells.data import AREA, BY_ITSELF, BY_X, BY_Y, SIDES
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
@@ -30,6 +30,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
+SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative
 NUDGE = 1e-4  # of the gap, the pace and the filling, for derivatives of a film whose supply is limited
 
 
@@ -109,10 +110,10 @@ def oil_slopes(
 ) -> tuple[Array, Array, Array, Array]:
     """Derivatives of what leaves the cells of a settled film, see balances for the arguments: the stencil
     (ENTRIES, m, k) by their unknowns, and (m, k, 2) by the displacement and the velocity over the clearance, (m, k, 1)
-    by omega_J + omega_S, in which it is linear."""
+    by omega_J + omega_S, in which it is linear but for artificial diffusion."""
     (m, k), (x, y) = states.shape[1:], motion.d
     stencil, nothing, step = np.zeros((ENTRIES, m, k)), np.zeros((m, k)), math.copysign(1.0, motion.omega)
-    step = step * max(abs(motion.omega), 1.0)
+    step = step * max(abs(motion.omega), 1.0) * (SPEED_STEP if own.diffuses else 1.0)
 
     def left(omega: float, g: float) -> Array:
         """(m, k, SIDES) what leaves the cells, and by a velocity of the journal that moves it by g of itself."""

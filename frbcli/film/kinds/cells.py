@@ -11,7 +11,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.balances import ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
+from frbcli.film.cells.balance.balances import CREATED, ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.feed import ALL, supply_line
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cell_ends import CellEnds
@@ -204,7 +204,10 @@ class CellFilms(Films):
             keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
             for film, keeps in zip(self.own, self.remembering, strict=True)
         ]
-        return passed_oil(size, flows)
+        found = passed_oil(size, flows)
+        if any(film.section.diffusion is not None for film in self.own):
+            found["oil_created_m3"] = float(np.asarray(size) @ flows[PASSED, :, CREATED])
+        return found
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         film, d = self.own[i], place / self.clearances[i]
@@ -314,13 +317,13 @@ def unknowns_of(films: Sequence[VolumeFilm], content: Array, near: Array, w: Arr
 
 
 def missing_oil(film: VolumeFilm, now: Array, oil: Array, passed: Array) -> float:
-    """Oil (m, k) of a film that its unknowns, which hold `now`, do not account for, over what has passed through:
-    passed (FLOWS,)."""
+    """Oil (m, k) of a film that its unknowns, which hold `now`, do not account for, with what artificial diffusion has
+    created, over what has passed through: passed (FLOWS,)."""
     free = ~film.grid.fixed
     area = film.grid.area[free]
     # per turnover of the film's own oil, if less than that has passed so far
     through = max(float(max(passed[INFLOW], passed[OUTFLOW])), float((area * now[free]).sum()))
-    return abs(float((area * (now - oil)[free]).sum())) / through
+    return (abs(float((area * (now - oil)[free]).sum())) + abs(float(passed[CREATED]))) / through
 
 
 def passed_oil(size: Sequence[float], flows: Array) -> dict[str, float]:

@@ -11,8 +11,9 @@ import numpy as np
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.grid import Array
-from frbcli.scene.forms.form import FilmForm, SolveCounts, cells_B
+from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import ALONG, USUAL, cells_time, coarser_cells, compared_states, worst_film
+from frbcli.scene.section import is_published
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -29,6 +30,7 @@ FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
 KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
 # Fronts that cross cells make the local error of second order; the steps fall with the size of the cells.
 FRONT_ORDER, FRONT_CELLS = 2.0, 1.0 / 3.0
+GENTLE = 0.9  # x_1 of a step of theta(p) that is not steep
 EXPECTED = "largest one expected, of weight and unbalance in short bearings without openings; the cells are for it"
 
 
@@ -88,10 +90,22 @@ class CellForm(FilmForm):
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         assert films.cells is not None
         around, along = films.cells
-        told = ("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")
-        if films.eccentricity is None:
-            return (told,)
-        return (told, ("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
+        told = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
+        if films.eccentricity is not None:
+            told.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
+        if is_published(case) and (transport := self.transport(case)) is not None:
+            told += [("form", "published", PUBLISHED), transport]
+        return tuple(told)
+
+    def remedies(self, case: Case) -> tuple[str, ...]:
+        if not is_published(case):
+            return ()
+        two_phase, found = case.film.two_phase, ['film.two-phase.form = "conservative"']
+        if two_phase.diffusion != "consistent":
+            found.append('film.two-phase.diffusion = "consistent"')
+        if two_phase.steepness > GENTLE:
+            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
+        return tuple(found)
 
 
 def cells_of(plan: Plan) -> tuple[int, int]:

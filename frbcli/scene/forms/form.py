@@ -18,12 +18,19 @@ from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Array, Mesh
 from frbcli.scene.gate.rule import Rule
+from frbcli.scene.section import is_published
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.scene.planning.film_choice import FilmChoice
     from frbcli.scene.planning.planned import Plan
 
+PUBLISHED = "two-phase in its published form (4.31): creates oil where it cavitates, and states how much"
+DIFFUSIONS = {
+    "consistent": "artificial, around and along as published (4.42): transports oil in from the edges",
+    "streamline": "artificial (4.42), around only: what it transports along is none",
+    "none": "no artificial diffusion: a steep step may prevent convergence",
+}
 MATRICES = 6  # of the axial elements of the finer mesh, held at a time
 BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held at a time, bytes of a cell
 
@@ -71,7 +78,6 @@ class FilmForm:
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
     follows_supply: ClassVar[bool] = True  # whether its pressures may follow those of the supply over time
-    creates_oil: ClassVar[bool] = False  # whether oil is part of the state, and some is created
     compiling: ClassVar[tuple[float, float]] = 16.0, 3.6e8  # at the first start: CPU time in s, memory in bytes
     rules: ClassVar[tuple[Rule, ...]] = ()  # what it is not made for, and why
 
@@ -137,9 +143,11 @@ class FilmForm:
             told.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
         return tuple(told)
 
-    def about_oil(self, law: type[Law]) -> str:
+    def about_oil(self, case: Case, law: type[Law]) -> str:
         """What a law makes of the oil."""
         if law.keeps_oil:
+            if law.published_form and is_published(case):
+                return "the oil is part of the state, and some is created"
             return f"{'mass-conserving: ' if law.conserves else ''}the oil is part of the state"
         if not law.cavitates:
             return "the film has no state and does not cavitate"
@@ -156,11 +164,15 @@ class FilmForm:
 
     def transport(self, case: Case) -> tuple[str, str, str] | None:
         """The decision about the transport of oil: choice, value, reason."""
+        if is_published(case):
+            return "diffusion", case.film.two_phase.diffusion, DIFFUSIONS[case.film.two_phase.diffusion]
         reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
         return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
-    def told_in_tests(self, law: type[Law]) -> tuple[str, str]:
+    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         """How the film of a kinematic test is computed: value and reason of a decision."""
+        if is_published(case):
+            return "finite volumes", PUBLISHED
         if law.keeps_oil:
             return "finite volumes", f"{law.name}: conserves oil and keeps it from moment to moment"
         return "finite volumes", f"{law.name}: has no state, each moment is a steady film of its own"

@@ -16,12 +16,11 @@ from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.inclined import INCLINED
-from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
-from frbcli.scene.section import film_section
+from frbcli.scene.section import film_section, is_published
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 
@@ -125,14 +124,32 @@ def sealed_faults(case: Case) -> Iterator[Fault]:
     form = form_of(case)
     for key, film in _sealed_films(case):
         at = f"{key}.ends"
-        if form is PUBLISHED:
-            problem = "seals the ends, and the published form is that of (4.31) with its own ends, open ones."
-            yield Fault(at, _told(film), None, problem, 'Write film.two-phase.form = "conservative".')
-        elif case.film.theory == "short" and film_form(case, film, "short") is CLIPPED:
+        if case.film.theory == "short" and film_form(case, film, "short") is CLIPPED:
             problem = "lets a cavity reach the ends, where a short bearing clips between the pressures of open ends."
             yield Fault(at, _told(film), None, problem, 'Write film.theory = "finite".')
         elif form.by_cells:
             yield from _enclosed(case, key, film)
+
+
+def published_faults(case: Case) -> Iterator[Fault]:
+    """What does not go with the published form of the two-phase model, which its artificial diffusion (4.42) makes."""
+    if not is_published(case):
+        return
+    key, form, remedy = "film.two-phase.form", "published", 'Write form = "conservative".'
+    if case.heat is not None:
+        problem = "creates oil, which would carry away heat that no film has received: [thermal] would not balance."
+        yield Fault(key, form, None, problem, remedy)
+    if case.film.grid == "half-speed":
+        problem = "turns the cells with the oil, which no longer passes them, so that the diffusion (4.42) vanishes."
+        yield Fault("film.grid", case.film.grid, None, problem, 'Write "auto".')
+
+
+def published_tilt_faults(case: Case, tilted: bool) -> Iterator[Fault]:
+    """Films in the published form whose gap is not even along the axis. tilted: whether it is not."""
+    if is_published(case) and tilted:
+        problem = "spreads oil in gaps that are even along the axis alone."
+        remedy = 'Write form = "conservative", or leave the tilt out.'
+        yield Fault("film.two-phase.form", "published", None, problem, remedy)
 
 
 def enclosed_faults(case: Case) -> Iterator[Fault]:

@@ -48,6 +48,7 @@ from frbcli.scene.machine.elements import (
     without_film,
 )
 from frbcli.scene.planning.film_choice import form_of
+from frbcli.scene.tilt import tilts
 
 
 def _of_films(of: Callable[[Case], Faults]) -> Callable[[Case], Faults]:
@@ -67,6 +68,12 @@ RULES = (
     Rule(films.limited_supply_faults, ALL),
     Rule(films.bath_faults, ALL),
     Rule(films.sealed_faults, ALL),
+    Rule(films.published_faults, ALL),
+    Rule(lambda case: films.published_tilt_faults(case, tilts(case)), KINEMATIC),
+    Rule(
+        lambda case: films.published_tilt_faults(case, form_of(case).inclines),
+        tuple(each for each in ALL if each not in KINEMATIC),
+    ),
     Rule(films.mesh_faults, ALL),
     Rule(films.rough_faults, ALL),
     Rule(films.rough_tilt_faults, KINEMATIC),

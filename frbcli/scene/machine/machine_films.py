@@ -10,7 +10,6 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
@@ -19,15 +18,12 @@ from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Array, Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
-from frbcli.film.kinds.elements import ElementFilms
 from frbcli.film.kinds.inclined import InclinedFilms
 from frbcli.film.kinds.models import ModelFilms
 from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
-from frbcli.film.published.data import element_film
-from frbcli.film.published.film import PublishedFilm
 from frbcli.film.rectangles.film import make_film
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
@@ -35,7 +31,6 @@ from frbcli.scene.forms.cells import CELLS, cells_of
 from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.none import NO_FILM
-from frbcli.scene.forms.published import PUBLISHED
 from frbcli.scene.forms.solutions import SOLUTIONS
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.machine.bearing_model_films import bearing_film
@@ -52,7 +47,7 @@ SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
     default that of the run."""
-    makers = {NO_FILM: lambda *_: NoFilms(), CELLS: _cells, PUBLISHED: _elements, SOLUTIONS: _solutions, GIVEN: _models}
+    makers = {NO_FILM: lambda *_: NoFilms(), CELLS: _cells, SOLUTIONS: _solutions, GIVEN: _models}
     makers |= {TILTED: _tilted, INCLINED: _inclined}
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
 
@@ -93,21 +88,6 @@ def settled_share(tolerance: float) -> float:
     """What the balances of the cells may be off by in a stage, over the pace of their film; tolerance: of a step."""
     tightest, loosest = SETTLED_RANGE
     return min(max(SETTLED_OVER_TOLERANCE * tolerance, tightest), loosest)
-
-
-def _elements(case: Case, plan: Plan, _: float | None) -> Films:
-    sections = [film_section(case, place.geometry) for place in film_places(case)]
-    films = [published_film(case, section, cells_of(plan)) for section in sections]
-    most = max(film.mesh.around for film in films), max(film.mesh.along for film in films)
-    own = tuple(published_film(case, section, most) for section in sections)
-    data = map(element_film, own, centrifugal_pressures(case, sections))
-    return ElementFilms(_clearances(case), own, tuple(data), case.film.cavitation_factor)
-
-
-def published_film(case: Case, section: Section, elements: tuple[int, int]) -> PublishedFilm:
-    """The film of a section with elements around and along."""
-    two_phase = case.film.two_phase
-    return PublishedFilm(section, TwoPhase(two_phase.steepness), two_phase.diffusion, *elements)
 
 
 def _solutions(case: Case, plan: Plan, _: float | None) -> Films:

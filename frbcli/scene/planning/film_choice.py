@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS, CellForm
@@ -19,7 +18,6 @@ from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.models import GIVEN, WHY
 from frbcli.scene.forms.none import NO_FILM
-from frbcli.scene.forms.published import PUBLISHED, PUBLISHED_ERROR, published_elements
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 from frbcli.scene.forms.tilted import TILTED
@@ -71,8 +69,6 @@ def form_of(case: Case) -> FilmForm:
         return TILTED
     if case.film.bearing_model:
         return GIVEN
-    if TwoPhase.name in case.cavitations and case.film.two_phase.form == "published":
-        return PUBLISHED
     if any(misaligned(case)):
         return INCLINED
     if _on_volumes(case):
@@ -82,7 +78,7 @@ def form_of(case: Case) -> FilmForm:
 
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
-    choices = {NO_FILM: _no_film, GIVEN: _given, PUBLISHED: _published, SOLUTIONS: _solutions}
+    choices = {NO_FILM: _no_film, GIVEN: _given, SOLUTIONS: _solutions}
     choices |= {CELLS: _volumes, TILTED: _volumes, INCLINED: _volumes}
     return choices.get(form_of(case), _rectangles)(case, target)
 
@@ -94,12 +90,6 @@ def _no_film(_: Case, __: float) -> FilmChoice:
 def _given(case: Case, _: float) -> FilmChoice:
     each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
     return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
-
-
-def _published(case: Case, _: float) -> FilmChoice:
-    cells, mesh_why = published_elements(case)
-    theory_why = "set in the case" if case.film.theory != "auto" else "the film has elements"
-    return FilmChoice("finite", PUBLISHED, DEFAULT_MESH, cells, PUBLISHED_ERROR, theory_why, mesh_why)
 
 
 def _volumes(case: Case, target: float) -> FilmChoice:

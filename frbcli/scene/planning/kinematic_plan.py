@@ -179,7 +179,7 @@ def _decisions(
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
     yield from _lobe_decision(section)
-    yield Decision("film", *form.told_in_tests(law))
+    yield Decision("film", *form.told_in_tests(case, law))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
     elif law.closed and bearing.ends == "free-to-air":

@@ -188,7 +188,7 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
     for told, cavitation, is_set in _cavitations(case):
-        reason = films.form.about_oil(law_named(cavitation))
+        reason = films.form.about_oil(case, law_named(cavitation))
         decide("cavitation", told, f"{'set in the case' if is_set else 'the default'}; {reason}")
 
 

@@ -9,7 +9,7 @@ import math
 from typing import Any, NamedTuple
 
 from frbcli.compiled import Array, compiled
-from frbcli.solve.films.forces import move_film, step_back
+from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations
 from frbcli.solve.heat import warm_stage
 from frbcli.solve.inputs import supply_warm
@@ -66,13 +66,11 @@ def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: 
     """Newton's method for all films under given journals; FORCE. Returns the iterations, 0: not solved."""
     for iteration in range(most_iterations(films)):
         forces(films, work, clearances, control, g, s, iteration, journal)
-        if step_back(films, work, journal):
-            continue
         unsettled = 0
         for f in range(clearances.shape[0]):
             if not math.isfinite(journal[FORCE, 2 * f] + journal[FORCE, 2 * f + 1]):
                 return 0
-            unsettled += move_film(films, work, f, 0.0, 0.0, 1.0, g)
+            unsettled += move_film(films, work, f, 0.0, 0.0, g)
         if unsettled == 0:
             return iteration + 1
     return 0
@@ -80,7 +78,7 @@ def _solve_films(films: Any, work: Any, clearances: Array, control: Control, g: 
 
 @compiled()
 def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
-    """Largest embedded error of the oil of a cell, H theta, or theta at the points of elements."""
+    """Largest embedded error of the oil of a cell, H theta."""
     stages, count, m, k = stage_oil.shape
     error = 0.0
     for f in range(count):

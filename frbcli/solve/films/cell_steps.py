@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from frbcli.compiled import Array, compiled
-from frbcli.film.cells.balance.balances import FILLING, FLOWS, SIDES
+from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURNOVER
-from frbcli.film.cells.data import SHEARED, Records, VolumeFilms
+from frbcli.film.cells.data import SHEARED, SIDES, Records, VolumeFilms
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.gas.carry import NONE, PATHS
 from frbcli.film.state import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W

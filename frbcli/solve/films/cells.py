@@ -13,26 +13,20 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import EMPTY
-from frbcli.film.cells.balance.balances import (
-    BY_ITSELF,
-    BY_X,
-    BY_Y,
-    CHANNELS_NET,
-    ENDS_NET,
-    SIDES,
-    SUPPLY_NET,
-    GridMotion,
-    balances,
-)
+from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.balance.resting import find_resting, rests
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE_SLOPE, cell_states, follow_law, hold
 from frbcli.film.cells.channels.flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
     COS,
     GAP,
     SHEARED,
+    SIDES,
     SIN,
     UNKNOWN,
     Records,
@@ -247,7 +241,7 @@ def store_ahead(
             content = h * (theta + states[FRACTION_SLOPE, i, j] * change) + theta * grows
             rates[i, j] = content / g - past[i, j] if cells[UNKNOWN, i, j] != 0.0 else 0.0
             gained += cells[AREA, i, j] * rates[i, j]
-    flows[ENDS_NET] = flows[SUPPLY_NET] + flows[CHANNELS_NET] - gained
+    flows[ENDS_NET] = flows[SUPPLY_NET] + flows[CHANNELS_NET] + flows[CREATED] - gained
 
 
 @compiled()

@@ -14,7 +14,6 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.dense import solve_dense
-from frbcli.film.cells.balance.balances import BY_ITSELF, SIDES
 from frbcli.film.cells.balance.states import follow_law
 from frbcli.film.cells.channels.flow import (
     channel_pressures,
@@ -23,7 +22,7 @@ from frbcli.film.cells.channels.flow import (
     mean_changes,
     push_of_channel,
 )
-from frbcli.film.cells.data import Records, VolumeFilms
+from frbcli.film.cells.data import BY_ITSELF, SIDES, Records, VolumeFilms
 
 
 @compiled()

@@ -23,8 +23,7 @@ from frbcli.solve.films.cells import (
     store_ahead,
 )
 from frbcli.solve.films.channels import follow_journals, join, set_laws, set_pressures
-from frbcli.solve.films.elements import back_off, element_drag, element_response, left_of_elements, move_elements
-from frbcli.solve.films.kinds import CELLS, ELEMENTS, NONE, TILTED, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, NONE, TILTED, by_kind, kind_of
 from frbcli.solve.films.steps import Scaled, Supplied
 from frbcli.solve.films.tilted import ENDS, end_response, join_ends, meet_ends, move_end, tilted_sheared
 from frbcli.solve.stage.equations import FilmMotion
@@ -66,21 +65,14 @@ def follow_channels(films: Any, work: Work, correction: Array, share: float) -> 
     raise NotImplementedError
 
 
-def step_back(films: Any, work: Work, rows: Array) -> bool:
-    """After all films have been asked: whether one does not go to where the last correction led, and has taken itself
-    and U of the rows of equations.py back by some of it. It is to be asked again."""
+def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, g: float) -> int:
+    """Take the film along with a correction u of the velocity that it feels, over the clearance; 1 if not settled."""
     raise NotImplementedError
 
 
-def move_film(films: Any, work: Work, f: int, u_x: float, u_y: float, share: float, g: float) -> int:
-    """Take the film along with a correction u of the velocity that it feels, over the clearance, the given share of
-    the full one; 1 if not settled."""
-    raise NotImplementedError
-
-
-def left_over(films: Any, work: Work, smooth: float, moved: float, unsettled: int, allowed: float) -> float:
-    """Error of the journals that may be left after a correction by `moved`, of which no more than `allowed` may be
-    left: `smooth` for forces without kinks, infinite as long as films are unsettled."""
+def left_over(films: Any, work: Work, smooth: float, moved: float) -> float:
+    """Error of the journals that may be left after a correction by `moved`: `smooth` for forces without kinks, infinite
+    as long as films are unsettled."""
     raise NotImplementedError
 
 
@@ -158,10 +150,6 @@ def _film_response(films, work, f, motion, g, s, iteration):  # type: ignore[no-
         return lambda films, work, f, motion, g, s, iteration: _supplied(
             films, f, work.scales[f], work.shares[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
         )
-    if kind == ELEMENTS:
-        return lambda films, work, f, motion, g, s, iteration: element_response(
-            films[f], work.films[f], work.grids[f], motion, g, s, iteration
-        )
     if isinstance(films, types.UniTuple):
         return lambda films, work, f, motion, g, s, iteration: film_force(
             films[f], motion.d_x, motion.d_y, motion.v_x, motion.v_y, motion.omega
@@ -197,7 +185,7 @@ def _follow(films, work, correction, share):  # type: ignore[no-untyped-def]
         follow_journals(films, work.answers, correction, share, work.changes)
 
 
-def _move(films, work, f, u_x, u_y, share, g):  # type: ignore[no-untyped-def]
+def _move(films, work, f, u_x, u_y, g):  # type: ignore[no-untyped-def]
     """move_film of films with cells."""
     unsettled = move_cells(
         films.ring[f], films.cells[f], work.w[f], work.states[f], work.fields[f], work.grids[f], u_x, u_y, g,
@@ -230,28 +218,18 @@ by_kind(
 )
 by_kind(follow_channels, others=lambda films, work, correction, share: None, cells=_follow)
 by_kind(
-    step_back,
-    inline=True,
-    others=lambda films, work, rows: False,
-    elements=lambda films, work, rows: back_off(work, rows),
-)
-by_kind(
     left_over,
     inline=True,
-    others=lambda films, work, smooth, moved, unsettled, allowed: smooth,
-    cells=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
-    tilted=lambda films, work, smooth, moved, unsettled, allowed: left_of_cells(work.grids, smooth, moved),
-    elements=lambda films, work, smooth, moved, unsettled, allowed: left_of_elements(work, moved, allowed),
+    others=lambda films, work, smooth, moved: smooth,
+    cells=lambda films, work, smooth, moved: left_of_cells(work.grids, smooth, moved),
+    tilted=lambda films, work, smooth, moved: left_of_cells(work.grids, smooth, moved),
 )
 by_kind(
     move_film,
     inline=True,
-    others=lambda films, work, f, u_x, u_y, share, g: 0,
+    others=lambda films, work, f, u_x, u_y, g: 0,
     cells=_move,
-    tilted=lambda films, work, f, u_x, u_y, share, g: move_end(films, work, f, u_x, u_y, g),
-    elements=lambda films, work, f, u_x, u_y, share, g: move_elements(
-        films[f], work.films[f], work.grids[f], work.stage_oil[work.films[f].notes[0].stage, f], u_x, u_y, share, g
-    ),
+    tilted=lambda films, work, f, u_x, u_y, g: move_end(films, work, f, u_x, u_y, g),
 )
 by_kind(
     drag_integral,
@@ -260,6 +238,5 @@ by_kind(
     others=lambda films, work, f, d_x, d_y, factor: 2.0 * math.pi / math.sqrt(max(1.0 - d_x * d_x - d_y * d_y, 1e-6)),
     cells=_sheared,
     tilted=lambda films, work, f, d_x, d_y, factor: tilted_sheared(films, work, f, factor),
-    elements=lambda films, work, f, d_x, d_y, factor: element_drag(films[f], work.films[f], d_x, d_y, factor),
 )
 by_kind(solved, inline=True, others=lambda films, count: count, tilted=lambda films, count: count // ENDS)

@@ -4,8 +4,7 @@
 - a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
 - a tuple of BearingModelFilm, a tuple of FilmData that follow viscosity and clearance by functions of their own;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
-- TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py;
-- a tuple of ElementFilm, of elements of the published two-phase form with unknowns of their own, see elements.py.
+- TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py.
 """
 
 from __future__ import annotations
@@ -21,11 +20,10 @@ from frbcli.compiled import AS_KERNELS
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.cells.tilted.data import TiltedVolumes
-from frbcli.film.published.data import ElementFilm
 
-NONE, TABLES, MODELS, CELLS, TILTED, ELEMENTS = "none", "tables", "models", "cells", "tilted", "elements"
+NONE, TABLES, MODELS, CELLS, TILTED = "none", "tables", "models", "cells", "tilted"
 _KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED}
-_KINDS_IN_TUPLES = {BearingModelFilm: MODELS, ElementFilm: ELEMENTS}
+_KINDS_IN_TUPLES: dict[Any, str] = {BearingModelFilm: MODELS}
 
 
 def kind_of(films: Any) -> str:

@@ -11,17 +11,9 @@ import numpy as np
 
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
-from frbcli.solve.films.elements import (
-    MOST_ITERATIONS,
-    ElementWork,
-    accept_elements,
-    begin_elements,
-    make_element_work,
-    write_element_oil,
-)
 from frbcli.solve.films.fillings import filling_error
 from frbcli.solve.films.grid import GRID
-from frbcli.solve.films.kinds import CELLS, ELEMENTS, MODELS, TILTED, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, MODELS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 from frbcli.solve.state import Array
 
@@ -58,12 +50,10 @@ class Supplied(NamedTuple):
 
 def make_work(
     films: Any, wet: Array, stages: int, scales: Array | None = None, shares: Array | None = None
-) -> Work | TiltedWork | ElementWork | NoCells | Scaled | Supplied:
+) -> Work | TiltedWork | NoCells | Scaled | Supplied:
     """Scratch for films and their state wet (WET, F, m, k). scales: of tabulated films with heat; shares: of their
     supply pressure, where it changes, which the scales then follow, too."""
     kind = kind_of(films)
-    if kind == ELEMENTS:
-        return make_element_work(films, stages)
     if kind == CELLS:
         return make_cell_work(films, wet, stages)
     if kind == TILTED:
@@ -118,14 +108,12 @@ by_kind(
     others=lambda films: NEWTON_LIMIT,
     cells=lambda films: CELL_LIMIT,
     tilted=lambda films: CELL_LIMIT,
-    elements=lambda films: MOST_ITERATIONS,
 )
 by_kind(
     begin_stage,
     others=lambda films, work, wet, flows, weights, s, step, g, ahead, lag: None,
     cells=begin_cells,
     tilted=begin_cells,
-    elements=begin_elements,
 )
 by_kind(
     film_error,
@@ -138,12 +126,10 @@ by_kind(
     others=lambda films, work, wet, flows, weights, step: None,
     cells=accept_cells,
     tilted=accept_cells,
-    elements=accept_elements,
 )
 by_kind(
     write_oil,
     others=lambda films, work, out_oil, first, last: None,
     cells=write_cell_oil,
     tilted=lambda films, work, out_oil, first, last: write_land_oil(films, work, out_oil, first, last),
-    elements=write_element_oil,
 )

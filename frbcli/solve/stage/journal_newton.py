@@ -10,7 +10,7 @@ from typing import Any
 
 from frbcli.compiled import Array, compiled
 from frbcli.dense import solve_dense
-from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_films, move_film, step_back
+from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_films, move_film
 from frbcli.solve.stage.contact import feel, push_back, shell_ahead
 from frbcli.solve.stage.equations import (
     BY_X,
@@ -104,15 +104,13 @@ def forces(
 def correct(
     films: Any, work: Any, compliance: Array, clearances: Array, control: Control, g: float, journal: Array,
     newton: Array,
-) -> tuple[float, float, float, int]:  # fmt: skip
+) -> tuple[float, float, float]:  # fmt: skip
     """One correction of U by Newton's method, and of the films' cells with it.
 
     Returns (share of it that was applied, what may be left of the error of a smooth force, how far the journals moved
-    over their clearances, films that had not settled). What may be left is infinite for a correction that is not
-    finite. Nothing is applied, but some of the last correction is taken back, where a film steps back.
+    over their clearances). What may be left is infinite for a correction that is not
+    finite.
     """
-    if step_back(films, work, journal):
-        return 0.0, 0.0, 0.0, 1
     m, crossed = compliance.shape[0], work.cross.shape[0]
     for i in range(m):
         total = journal[U_0, i] - journal[U, i]
@@ -126,14 +124,14 @@ def correct(
         newton[i, i] += 1.0
         journal[CORRECTION, i] = total
     _solve_small(newton, journal)
-    share, moved, left, unsettled = 1.0, 0.0, 0.0, 0
+    share, moved, left = 1.0, 0.0, 0.0
     for f in range(clearances.shape[0]):
         x, y, c = 2 * f, 2 * f + 1, clearances[f]
         at_x, at_y = (journal[X_0, x] + g * journal[U, x]) / c, (journal[X_0, y] + g * journal[U, y]) / c
         c_x, c_y = g * journal[CORRECTION, x] / c, g * journal[CORRECTION, y] / c
         move = norm(c_x, c_y)
         if not math.isfinite(move):
-            return 0.0, math.inf, math.inf, 0
+            return 0.0, math.inf, math.inf
         moved = max(moved, move)
         here = norm(at_x, at_y)
         end = shell_ahead(here, control.contact_eccentricity, control.contact_stiffness)
@@ -158,5 +156,5 @@ def correct(
         c_x, c_y = share * journal[CORRECTION, x] / clearances[f], share * journal[CORRECTION, y] / clearances[f]
         felt_x = journal[FOLLOWS_X, x] * c_x + journal[FOLLOWS_Y, x] * c_y
         felt_y = journal[FOLLOWS_X, y] * c_x + journal[FOLLOWS_Y, y] * c_y
-        unsettled += move_film(films, work, f, felt_x, felt_y, share, g)
-    return share, min(left, moved), moved, unsettled
+        move_film(films, work, f, felt_x, felt_y, g)
+    return share, min(left, moved), moved

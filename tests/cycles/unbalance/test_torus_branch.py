@@ -150,9 +150,8 @@ def whirl_in_time(machine: Machine, torus: Torus, share: float) -> float:
     ("case", "problem"),
     [
         (lambda: jeffcott(0.0), "is zero"),
-        (lambda: frbcli.load_case("rigid-two-phase", ["film.two-phase.form=published"]), "has kinks in its force"),
     ],
-    ids=["none", "published form"],
+    ids=["none"],
 )
 def test_what_it_is_not_computed_of_is_refused(case, problem: str) -> None:  # type: ignore[no-untyped-def]
     with pytest.raises(frbcli.InputError, match=problem):

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
-from frbcli.film.cells.balance.balances import SIDES
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
-from frbcli.film.cells.data import BETWEEN_MIDDLES, BY_CELLS, volume_films
+from frbcli.film.cells.data import BETWEEN_MIDDLES, BY_CELLS, SIDES, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid

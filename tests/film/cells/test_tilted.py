@@ -15,9 +15,9 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.balance.balances import FLOWS, SIDES, GridMotion, balances
+from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
-from frbcli.film.cells.data import volume_films
+from frbcli.film.cells.data import SIDES, volume_films
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import FilmLoads, loads

@@ -1,4 +1,5 @@
-"""The published two-phase form: kernels against plain forms, limits, figure 6.7, and the oil that it creates."""
+"""The published two-phase form on finite volumes: kernel and plain form, limits, quadratic elements, figure 6.7, and
+the oil that it creates."""
 
 from __future__ import annotations
 
@@ -10,27 +11,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 from films import rectangular
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import spsolve
 
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest, rotation, squeeze, whirl
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.errors import InputError
-from frbcli.film.cavitation.law import Scales
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.motion import Motion
-from frbcli.film.gap import Section
+from frbcli.film.cells.balance.balances import CREATED, FLOWS, INFLOW, OUTFLOW, GridMotion, balances
+from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.states import STATES, cell_states, follow_law
+from frbcli.film.cells.data import SIDES, volume_films
+from frbcli.film.cells.diffusion.plain import spreads
+from frbcli.film.cells.elimination.block_cyclic import ENTRIES
+from frbcli.film.cells.film import VolumeFilm, reference_pressure, volume_grid
+from frbcli.film.cells.loads import force, loads
+from frbcli.film.cells.motion import Motion, Storage
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import oil_slopes, steady_force
+from frbcli.film.gap import Diffusion, Hole, Section, gap_height
 from frbcli.film.grid import Array, Mesh
-from frbcli.film.published.equations.assembly import artificial_diffusion, assemble
-from frbcli.film.published.equations.law import make_step, oil_fraction, step_pressure
-from frbcli.film.published.equations.ring import make_ring, solve_ring
-from frbcli.film.published.equations.unknown import make_unknowns, pressures_of, unknowns_of
-from frbcli.film.published.film import PublishedFilm
-from frbcli.film.published.loads import published_loads
-from frbcli.film.published.plain import terms
 from frbcli.film.rectangles.untabulated import direct_force
-from frbcli.scene.planning.kinematic_plan import kinematic_plan
+from frbcli.scene.films import run_grid
+from frbcli.scene.section import ELEMENT
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6
 CASE = """
@@ -51,191 +53,202 @@ two-phase = { steepness = 0.99, form = "published" }
 load = "29.9 N"
 speed = "120 Hz"
 """
+HOLES = (Hole(1.0, 0.005, 0.2, 0.0025, 1.5e5, True), Hole(-2.0, 0.0095, 0.15, 0.0012, 0.5e5, False))
+M, K = 30, 6
+Ends = tuple[str, str]
 
 
 def groove_section(ends: str = "oil-bath", **changes: object) -> Section:
     """One of the two films of table A.1, circumferential groove at ambient pressure."""
-    section = Section(12.5e-3, 10e-3, 20e-3, 35e-6, 12e-3, 1e5, 1e5, copies=2, near=ends, far="groove")
+    section = Section(12.5e-3, 10e-3, 20e-3, 35e-6, 12e-3, 1e5, 1e5, copies=2, near=ends, far="groove",
+                      diffusion=Diffusion(ELEMENT, along=True))  # fmt: skip
     return replace(section, **changes)  # type: ignore[arg-type]
+
+
+def film_of(section: Section, law: TwoPhase, cells: tuple[int, int] = (40, 20)) -> VolumeFilm:
+    return VolumeFilm(section, run_grid(section, cells), law, reference_pressure(section, turning(0.0, 0.0)))
 
 
 def turning(x: float, y: float, v: tuple[float, float] = (0.0, 0.0)) -> Motion:
     return Motion((x, y), v, OMEGA)
 
 
-def assembled(film: PublishedFilm, motion: Motion, w: Array, past: Array, rate: float) -> tuple[Array, Array, Array]:
-    """Element matrices and right-hand sides at unknowns w (nodes,), and the nodes' pressures."""
-    step = make_step(film.law, film.cavitation, film.ambient)
-    unknowns = make_unknowns(film.mesh, film.elements.fixed, step, film.cavity)
-    pressure, slope = pressures_of(unknowns, step, w)
-    matrix, right = np.zeros((len(film.mesh.nodes), 9, 9)), np.zeros((len(film.mesh.nodes), 9, 5))
-    assemble(film.elements, step, film.gap(motion), pressure, slope, rate, past, matrix, right)
-    return matrix, right, pressure
+def steady(film: VolumeFilm, motion: Motion) -> Array:
+    """(2,) force of a film that has settled."""
+    return np.array(force(film, film.mean_pressure(FilmSolver(film).steady(motion).state)))
 
 
-def whole(film: PublishedFilm, parts: Array) -> Array:
-    """Sums (nodes, ...) over the elements' parts (e, 9, ...)."""
-    total = np.zeros((film.mesh.phi.size, *parts.shape[2:]))
-    np.add.at(total, film.mesh.nodes, parts)
-    return total
+def parts_of(ends: Ends, along: bool, omega: float) -> tuple[VolumeFilm, tuple[Array, ...], Array]:
+    """A film with holes whose cells hold anything: its arrays, and their states."""
+    section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 0.9e5, 2, *ends, 0.7e5, holes=HOLES,
+                      sealed=0.6, diffusion=Diffusion(ELEMENT, along))  # type: ignore[arg-type]  # fmt: skip
+    grid = volume_grid(section, np.linspace(0, 2 * np.pi, M + 1), np.linspace(0, 1, K + 1))
+    film = VolumeFilm(section, grid, TwoPhase(0.9), 500.0)
+    data, numbers, states = volume_films([film]), np.empty(LAW_NUMBERS), np.zeros((STATES, M, K))
+    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    follow_law(parts[0], 0.3, -0.5, 0.0, 0.0, omega, numbers)
+    w = np.random.default_rng(2).uniform(-1.2, 0.6, (M, K))
+    w[3:9] = -0.4  # cells that hold the same: chords have no slope
+    cell_states(parts[0], parts[3], numbers, 0.0, w, states)
+    return film, parts, states
 
 
-@pytest.fixture(params=["oil-bath", "free-to-air"])
-def rough(request: pytest.FixtureRequest) -> tuple[PublishedFilm, Motion, Array, Array]:
-    """A small film at unknowns without any order: film, motion, unknowns (nodes,), past (e, 9)."""
-    film = PublishedFilm(groove_section(request.param), TwoPhase(0.9), around=6, along=3)
-    random = np.random.default_rng(1)
-    w = random.uniform(-0.3, 0.3, film.mesh.phi.size)
-    return film, turning(0.3, -0.2, (1.0, -2.0)), w, random.uniform(0.0, 300.0, film.mesh.angle.shape)
+def balanced(parts: tuple[Array, ...], states: Array, motion: GridMotion, past: Array) -> tuple[Array, Array, Array]:
+    found = np.zeros((ENTRIES, M, K)), np.zeros((M, K, K + SIDES)), np.zeros(FLOWS)
+    balances(*parts, states, motion, past, *found)
+    return found
 
 
-def test_compiled_law_is_the_plain_one() -> None:
-    law, scales = TwoPhase(0.95), Scales(5.0, -0.5, 5.0)
-    step = make_step(law, scales.cavitation, scales.ambient)
-    w = np.linspace(-1.4, 1.2, 301)
-    state = law.cells(w, scales)
-    found = np.array([step_pressure(step, step.cavity / scales.reference, x) for x in w])
-    assert found[:, 0] == pytest.approx(state.pressure, rel=1e-12, abs=1e-12)
-    assert found[:, 1] == pytest.approx(state.pressure_slope, rel=1e-9)
-    theta = np.array([oil_fraction(step, p) for p in state.pressure])
-    assert theta[:, 0] == pytest.approx(state.fraction, abs=1e-9)
-    p, nudge = np.linspace(-0.9, -0.55, 50), 1e-6
-    ahead, behind = (np.array([oil_fraction(step, x + s * nudge) for x in p]) for s in (1.0, -1.0))
-    here = np.array([oil_fraction(step, x) for x in p])
-    assert here[:, 1:] == pytest.approx((ahead - behind)[:, :2] / (2.0 * nudge), rel=1e-4, abs=1e-4)
+@pytest.mark.parametrize("ends", [("oil-bath", "groove"), ("free-to-air", "symmetry"), ("free-to-air", "oil-bath")])
+@pytest.mark.parametrize(("omega", "along"), [(300.0, True), (-200.0, True), (300.0, False), (0.0, True)])
+def test_balances_are_the_plain_ones(ends: Ends, omega: float, along: bool) -> None:
+    film, parts, states = parts_of(ends, along, omega)
+    past, rate = np.random.default_rng(3).uniform(0.0, 3e3, (M, K)), 2e3
+    motion = Motion((0.3, -0.5), (10.0, 40.0), omega)
+    gap = gap_height(film.section, motion.d, film.grid.centre)[:, None]
+    state = film.cells(np.zeros((M, K)))
+    state = type(state)(*states[:6])
+    residual, plain = CellBalances(film.section, film.grid, motion).residual(state, Storage(rate * gap, past))
+    stencil, fields, flows = balanced(parts, states, GridMotion(*motion.d, omega, g=1e-4, rate=rate), past)
+    assert np.allclose(-fields[:, :, K], residual, rtol=1e-10, atol=1e-11 * np.abs(residual).max())
+    for entry, name in enumerate(("centre", "before", "behind", "below", "above")):
+        expected = getattr(plain, name)
+        assert np.allclose(stencil[entry], expected, rtol=1e-10, atol=1e-11 * np.abs(expected).max()), name
+    created = spreads(film.section, film.grid, motion, state).created(film.grid.fixed)
+    assert flows[CREATED] == pytest.approx(created, rel=1e-10)
+    assert (created > 0.0) == (omega != 0.0)
 
 
-def test_unknowns_and_pressures_are_inverse(rough: tuple[PublishedFilm, Motion, Array, Array]) -> None:
-    film = rough[0]
-    step = make_step(film.law, film.cavitation, film.ambient)
-    unknowns = make_unknowns(film.mesh, film.elements.fixed, step, film.cavity)
-    w = np.random.default_rng(2).uniform(-1.2, 3.0, film.mesh.phi.size)
-    back = unknowns_of(unknowns, step, pressures_of(unknowns, step, w)[0])
-    assert back[~film.elements.fixed] == pytest.approx(w[~film.elements.fixed], abs=1e-9)
+def test_what_diffuses_is_neither_lost_nor_more_than_is_told() -> None:
+    """All cells together gain what comes in less what goes out, and what is created."""
+    _, parts, states = parts_of(("oil-bath", "groove"), True, 300.0)
+    _, fields, flows = balanced(parts, states, GridMotion(0.3, -0.5, 300.0), np.zeros((M, K)))
+    gained = fields[:, :, K].sum()
+    assert gained == pytest.approx(flows[INFLOW] - flows[OUTFLOW] + flows[CREATED], rel=1e-10)
+    assert abs(flows[CREATED]) > 0.01 * abs(gained)
 
 
-def test_artificial_diffusion_is_consistent() -> None:
-    """(4.44): Peclet numbers below 1 with it, however large they were; and nothing to add where they are small."""
-    for steep in (1e-3, 1e-1, 1.0, 10.0, 100.0):
-        added, by_steep, by_height = artificial_diffusion(0.3, 377.0, 0.7, steep)
-        beta = 377.0 * 0.7 * steep
-        assert 0.3 * beta / (2.0 * (0.7**3 + added)) < 1.0
-        nudge = 1e-6 * steep
-        more, less = (artificial_diffusion(0.3, 377.0, 0.7, steep + s * nudge)[0] for s in (1.0, -1.0))
-        assert by_steep == pytest.approx((more - less) / (2.0 * nudge), rel=1e-6)
-        higher, lower = (artificial_diffusion(0.3, 377.0, 0.7 + s * 1e-6, steep)[0] for s in (1.0, -1.0))
-        assert by_height == pytest.approx((higher - lower) / 2e-6, rel=1e-6)
-    assert artificial_diffusion(0.3, 377.0, 0.7, 1e-6)[0] < 1e-7
+def test_derivatives_are_those_of_the_balances() -> None:
+    """By the unknowns, and by the velocity of a journal that it moves."""
+    film, parts, _ = parts_of(("oil-bath", "groove"), True, 300.0)
+    past, g, v = np.zeros((M, K)), 1e-4, np.array([30.0, 50.0])
+    w, numbers = np.random.default_rng(5).uniform(-0.6, 0.6, (M, K)), np.empty(LAW_NUMBERS)
+    follow_law(parts[0], 0.3, -0.5, 0.0, 0.0, 300.0, numbers)
+
+    def left(w: Array, v: Array) -> tuple[Array, Array, Array]:
+        states = np.zeros((STATES, M, K))
+        cell_states(parts[0], parts[3], numbers, 0.0, w, states)
+        d = np.array([0.3, -0.5]) + g * v
+        return balanced(parts, states, GridMotion(d[0], d[1], 300.0, v[0], v[1], 0.0, g, 1.0 / g), past)
+
+    stencil, fields, _ = left(w, v)
+    change, step = np.random.default_rng(6).normal(size=(M, K)), 1e-7
+    measured = (left(w + step * change, v)[1][:, :, K] - left(w - step * change, v)[1][:, :, K]) / (2.0 * step)
+    expected = stencil[0] * change
+    for entry, shift in ((1, (1, 0)), (2, (-1, 0)), (3, (0, 1)), (4, (0, -1))):
+        expected += stencil[entry] * np.roll(change, shift, (0, 1))
+    free = ~film.grid.fixed
+    np.testing.assert_allclose(-measured[free], expected[free], rtol=1e-5, atol=1e-6 * np.abs(expected).max())
+    for side, unit in enumerate(1e-2 * np.eye(2)):
+        measured = (left(w, v + unit)[1][:, :, K] - left(w, v - unit)[1][:, :, K]) / 2e-2
+        scale = np.abs(fields[:, :, K + 1 + side]).max()
+        np.testing.assert_allclose(measured[free], fields[:, :, K + 1 + side][free], rtol=1e-5, atol=1e-6 * scale)
 
 
-def test_assembly_is_the_plain_weak_form(rough: tuple[PublishedFilm, Motion, Array, Array]) -> None:
-    film, motion, w, past = rough
-    _, right, pressure = assembled(film, motion, w, past, 200.0)
-    theta, slope = film.law.fraction(film.over_cavitation(film.at_points(pressure)))
-    plain = terms(film.elements, film.gap(motion), pressure, theta, slope / film.cavity, 200.0 * theta - past)
-    open_nodes = ~film.elements.fixed
-    expected = -whole(film, plain.residual)[open_nodes]
-    assert whole(film, right)[open_nodes, 0] == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+# Forces in N of quadratic elements, 20 x 10 of a section, and 40 x 10, and the mean oil fraction of their points of
+# integration, which lie nearer to the edges of elements than their areas: steady solutions of the weak form of (4.31)
+# with (4.42) on elements of the lengths L, for d, v and speed.
+ELEMENTS = [
+    ("oil-bath", 0.9, (0.18, -0.06), (0.0, 0.0), 120.0, 20, (2.28, 28.79), 0.992),
+    ("oil-bath", 0.99, (0.18, -0.06), (0.0, 0.0), 120.0, 40, (1.57, 28.13), 0.985),
+    ("oil-bath", 0.99, (0.3, -0.35), (0.0, 0.0), 30.0, 20, (7.57, 24.45), 0.982),
+    ("oil-bath", 0.9, (0.3, -0.35), (0.0, 0.0), 30.0, 40, (8.42, 25.95), 0.960),
+    ("oil-bath", 0.99, (0.3, -0.2), (30.0, -60.0), 120.0, 20, (-18.53, 114.73), 0.983),
+    ("free-to-air", 0.99, (0.18, -0.06), (0.0, 0.0), 120.0, 20, (0.89, 29.82), 0.973),
+    ("free-to-air", 0.9, (0.3, -0.35), (0.0, 0.0), 30.0, 20, (9.43, 27.67), 0.935),
+    ("free-to-air", 0.9, (0.3, -0.6), (0.0, 0.0), 30.0, 40, (21.67, 74.94), 0.844),
+    ("free-to-air", 0.99, (0.3, -0.2), (30.0, -60.0), 120.0, 40, (-26.48, 114.10), 0.907),
+]
 
 
-def test_matrix_and_derivatives_are_those_of_the_residual(rough: tuple[PublishedFilm, Motion, Array, Array]) -> None:
-    film, motion, w, past = rough
-    open_nodes, nudge = ~film.elements.fixed, 1e-6
-    matrix, right, _ = assembled(film, motion, w, past, 200.0)
-    direction = np.random.default_rng(3).uniform(-1.0, 1.0, w.size)
-
-    def residual(motion: Motion, w: Array) -> Array:
-        return np.asarray(whole(film, assembled(film, motion, w, past, 200.0)[1])[open_nodes, 0])
-
-    found = whole(film, np.einsum("eab,eb->ea", matrix, direction[film.mesh.nodes]))[open_nodes]
-    slope = (residual(motion, w - nudge * direction) - residual(motion, w + nudge * direction)) / (2.0 * nudge)
-    assert found == pytest.approx(slope, abs=1e-5 * np.abs(slope).max())
-    for k in range(4):
-        moved = []
-        for sign in (1.0, -1.0):
-            values = np.array([*motion.d, *motion.v])
-            values[k] += sign * nudge
-            moved.append(residual(Motion((values[0], values[1]), (values[2], values[3]), OMEGA), w))
-        slope = (moved[0] - moved[1]) / (2.0 * nudge)
-        assert whole(film, right)[open_nodes, 1 + k] == pytest.approx(slope, abs=2e-4 * np.abs(slope).max())
+@pytest.mark.parametrize(("ends", "steepness", "d", "v", "speed_Hz", "around", "elements", "oil"), ELEMENTS)
+def test_forces_are_those_of_quadratic_elements(
+    ends: str, steepness: float, d: tuple[float, float], v: tuple[float, float], speed_Hz: float, around: int,
+    elements: tuple[float, float], oil: float,
+) -> None:  # fmt: skip
+    """To 2 %: elements and cells do not follow the edges of cavities alike, whose diffusion is the same. Without the
+    diffusion the film starves: at x_1 = 0.99 next to nothing is left of its force."""
+    section = groove_section(ends, diffusion=Diffusion(2.0 * math.pi / around, along=True))
+    film, motion = film_of(section, TwoPhase(steepness), (2 * around, 20)), Motion(d, v, 2.0 * math.pi * speed_Hz)
+    solution = FilmSolver(film).steady(motion)
+    found = loads(film, motion, solution)
+    assert found.force == pytest.approx(elements, abs=0.02 * math.hypot(*elements))
+    assert found.oil_fraction == pytest.approx(oil, abs=1.5e-2)
 
 
-def test_ring_is_solved_as_by_a_sparse_elimination(rough: tuple[PublishedFilm, Motion, Array, Array]) -> None:
-    film, motion, w, past = rough
-    matrix, right, _ = assembled(film, motion, w, past, 200.0)
-    nodes, size = film.mesh.nodes, film.mesh.phi.size
-    rows, columns = np.repeat(nodes, 9, axis=1).ravel(), np.tile(nodes, (1, 9)).ravel()
-    expected = spsolve(coo_matrix((matrix.ravel(), (rows, columns)), shape=(size, size)).tocsc(), whole(film, right))
-    found = np.empty((*film.mesh.phi.shape, 5))
-    solve_ring(make_ring(6, 3, 5), matrix, right, found)
-    assert found.reshape(size, 5) == pytest.approx(expected, abs=1e-10 * np.abs(expected).max())
+@pytest.mark.parametrize("steepness", [0.9, 0.99, 0.999, 0.9999])
+@pytest.mark.parametrize("ends", ["oil-bath", "free-to-air"])
+def test_every_step_is_solved(ends: str, steepness: float) -> None:
+    """Steep ones, too, which elements do not solve."""
+    section = groove_section(ends)
+    for d in ((0.1, -0.85), (0.02, -0.01)):
+        assert np.hypot(*steady(film_of(section, TwoPhase(steepness)), turning(*d))) > 1.0
+
+
+def test_forces_converge_with_the_cells_for_one_length_of_the_diffusion() -> None:
+    section, motion = groove_section(), turning(0.3, -0.35)
+    coarse, fine, finest = (steady(film_of(section, TwoPhase(0.9), (20 * n, 10 * n)), motion) for n in (1, 2, 4))
+    size = float(np.hypot(*finest))
+    assert np.hypot(*(fine - finest)) < 2e-2 * size
+    assert np.hypot(*(fine - finest)) < 0.6 * np.hypot(*(coarse - finest))
 
 
 def test_full_film_is_that_of_sommerfeld() -> None:
-    """Nothing cavitates under a high pressure: the modal film's force, to what 20 x 10 elements are away from it."""
+    """Nothing cavitates under a high pressure: the modal film's force, and nothing diffuses."""
     section = groove_section(ambient_pressure=50e5, cavitation_pressure=1e5)
-    film = PublishedFilm(section, TwoPhase(0.9, outer_slope=1e-9))
-    solution = film.steady(turning(0.3, -0.2, (5.0, 3.0)))
+    film, motion = film_of(section, TwoPhase(0.9, outer_slope=1e-9), (80, 20)), turning(0.3, -0.2, (5.0, 3.0))
+    solution = FilmSolver(film).steady(motion)
     bearing = rectangular(20e-3, 25e-3, 35e-6, 12e-3, 50e5, 1e5, groove=2)
     place, velocity = 35e-6 * np.array([0.3, -0.2]), 35e-6 * np.array([5.0, 3.0])
     expected = direct_force(bearing, "sommerfeld", Mesh(10, 192), place, velocity, OMEGA)
-    assert solution.response.force == pytest.approx(expected, rel=2e-3)
-    oil = published_loads(film, solution).oil
-    assert oil.defect_relative == pytest.approx(0.0, abs=1e-3)
+    found = loads(film, motion, solution)
+    assert found.force == pytest.approx(expected, rel=3e-3)
+    assert found.oil.defect_relative == pytest.approx(0.0, abs=1e-9)
 
 
-def test_derivatives_of_the_force() -> None:
-    film, nudge = PublishedFilm(groove_section(), TwoPhase(0.9)), 1e-4
-    middle = film.steady(turning(0.18, -0.06))
-    assert middle.residual < 1e-9
-    for k in range(2):
-        for velocity in (False, True):
-            forces = []
-            for sign in (1.0, -1.0):
-                step = (sign * nudge * (1 - k), sign * nudge * k)
-                moved = turning(0.18, -0.06, step) if velocity else turning(0.18 + step[0], -0.06 + step[1])
-                forces.append(film.steady(moved, middle.state).response.force)
-            slope = (forces[0] - forces[1]) / (2.0 * nudge)
-            found = (middle.response.by_v if velocity else middle.response.by_d)[:, k]
-            assert found == pytest.approx(slope, rel=1e-3, abs=1e-3 * np.abs(slope).max())
+@pytest.mark.parametrize("steepness", [0.9, 0.99])
+def test_stiffness_has_no_kinks(steepness: float) -> None:
+    """Over 1e-4 and over 1e-3 of the clearance it is that of small motions: so sheets and thresholds know it."""
+    section, omega, clearance = groove_section(), OMEGA, 35e-6
+    film, place = film_of(section, TwoPhase(steepness), (40, 10)), np.array([0.18, -0.06])
+    linear = steady_force(film, clearance * place, np.zeros(2), omega).by_displacement * clearance
+    for step in (1e-4, 1e-3):
+        columns = [steady(film, turning(*(place + side))) - steady(film, turning(*(place - side)))
+                   for side in step * np.eye(2)]  # fmt: skip
+        measured = np.column_stack(columns) / (2.0 * step)
+        assert measured == pytest.approx(linear, abs=2e-3 * np.abs(linear).max())
+
+
+def test_derivative_by_the_speed_is_that_of_the_balances() -> None:
+    """Of the sum of both speeds, which turning rings and sheets ask for, against the plain ones."""
+    film, motion = film_of(groove_section(), TwoPhase(0.9), (24, 6)), turning(0.18, -0.06)
+    solution, data = FilmSolver(film).steady(motion), volume_films([film])
+    parts = data.films[0], data.ring[0], data.width[0], data.cells[0]
+    states, numbers = np.zeros((STATES, 24, 6)), np.empty(LAW_NUMBERS)
+    follow_law(parts[0], *motion.d, 0.0, 0.0, OMEGA, numbers)
+    cell_states(parts[0], parts[3], numbers, 0.0, solution.w, states)
+    sides = []
+    for omega in (OMEGA * (1.0 + 1e-4), OMEGA * (1.0 - 1e-4)):
+        balance = CellBalances(film.section, film.grid, replace(motion, omega=omega))
+        sides.append(balance.residual(solution.state, Storage(np.zeros((24, 1)), np.zeros(film.grid.shape)))[0])
+    measured, found = (sides[0] - sides[1]) / (2e-4 * OMEGA), oil_slopes(*parts, states, motion)[-1][:, :, 0]
+    np.testing.assert_allclose(found, measured, atol=1e-5 * np.abs(measured).max())
 
 
 def test_turning_the_other_way_mirrors_the_force() -> None:
-    film = PublishedFilm(groove_section("free-to-air"), TwoPhase(0.9))
-    there = film.steady(turning(0.2, -0.3)).response.force
-    back = film.steady(Motion((-0.2, -0.3), (0.0, 0.0), -OMEGA)).response.force
+    film = film_of(groove_section("free-to-air"), TwoPhase(0.9))
+    there, back = steady(film, turning(0.2, -0.3)), steady(film, Motion((-0.2, -0.3), (0.0, 0.0), -OMEGA))
     assert back == pytest.approx(there * [-1.0, 1.0], rel=1e-6)
-
-
-def test_steps_settle_at_a_steady_film() -> None:
-    """At one of several: theta'(p) is so narrow that the points of an element meet it in more ways than one."""
-    film, motion = PublishedFilm(groove_section(), TwoPhase(0.9)), turning(0.18, -0.06)
-    state = film.steady(turning(0.15, -0.1)).state
-    for _ in range(12):
-        solution = film.step(lambda _: motion, state, 0.0, 2e-3)
-        state = solution.state
-    near, far = film.steady(motion, state), film.steady(motion)
-    assert solution.response.force == pytest.approx(near.response.force, rel=1e-4)
-    assert near.response.force == pytest.approx(far.response.force, abs=5e-3 * np.abs(far.response.force).max())
-
-
-def test_steps_of_a_whirl_agree() -> None:
-    film, rate = PublishedFilm(groove_section(), TwoPhase(0.9)), 0.5 * OMEGA
-
-    def whirl(t: float) -> Motion:
-        c, s = math.cos(rate * t), math.sin(rate * t)
-        return turning(0.08 + 0.1 * c, -0.06 + 0.1 * s, (-0.1 * rate * s, 0.1 * rate * c))
-
-    forces, start = [], film.steady(turning(0.18, -0.06)).state
-    for count in (10, 40):
-        state, dt = start, 2e-3 / count
-        for n in range(count):
-            solution = film.step(whirl, state, n * dt, dt)
-            state = solution.state
-        forces.append(solution.response.force)
-    assert forces[0] == pytest.approx(forces[1], abs=2e-3 * np.abs(forces[1]).max())
-    still = film.steady(turning(*whirl(2e-3).d)).response.force
-    assert np.abs(forces[1] - still).max() > 0.1 * np.abs(still).max()
 
 
 def rest(path: Path, *settings: str) -> KinematicResult:
@@ -247,21 +260,23 @@ def rest(path: Path, *settings: str) -> KinematicResult:
 def test_largest_pressures_of_figure_6_7(tmp_path: Path, ends: str, printed: float) -> None:
     """Section 6.4.3: resting under 29.9 N at 120 Hz. And what figure 6.7 does not tell: nearly all oil is created."""
     result = rest(tmp_path / "case.toml", f"bearing.ends={ends}")
-    loads = result.loads
-    assert loads is not None
-    assert loads.force == pytest.approx((0.0, 29.9), abs=1e-3)
-    assert loads.p_max == pytest.approx(printed, rel=0.03)
-    assert loads.oil.defect_relative < -0.9
-    assert loads.oil.out_m3_s > 10.0 * loads.oil.in_m3_s
+    found = result.loads
+    assert found is not None
+    assert found.force == pytest.approx((0.0, 29.9), abs=1e-3)
+    assert found.p_max == pytest.approx(printed, rel=0.03)
+    assert found.oil.defect_relative < -0.9
+    assert found.oil.out_m3_s > 10.0 * found.oil.in_m3_s
 
 
-def test_diffusion_along_the_stream_only_creates_less(tmp_path: Path) -> None:
+def test_diffusion_along_the_stream_only_creates_nothing(tmp_path: Path) -> None:
+    """Between full ends and a groove all oil that appears has diffused along."""
     gentle = ("film.two-phase.steepness=0.9", "bearing.ends=oil-bath")
     isotropic = rest(tmp_path / "a.toml", *gentle).loads
     streamline = rest(tmp_path / "b.toml", *gentle, "film.two-phase.diffusion=streamline").loads
     assert isotropic is not None
     assert streamline is not None
-    assert isotropic.oil.defect_relative < streamline.oil.defect_relative - 0.1
+    assert isotropic.oil.defect_relative < -0.5
+    assert streamline.oil.defect_relative == pytest.approx(0.0, abs=1e-9)
     assert streamline.oil_fraction < isotropic.oil_fraction - 0.05
 
 
@@ -286,23 +301,43 @@ def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
     expected = np.column_stack([np.interp(times, linear.history.time_s, each) for each in linear.history.force.T])
     assert full.loads is not None
     theta = full.loads.oil_fraction
-    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=2e-3 * largest)
+    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=1e-2 * largest)
     assert theta == pytest.approx(1.039, abs=1e-3)
-    assert full.force_error < 4e-2  # of a whirl whose force falls from the first step on
 
 
-@pytest.mark.nightly  # 6 s beside the squeeze above
-def test_a_squeeze_of_the_published_form_is_symmetric(tmp_path: Path) -> None:
-    """The journal moves along y only; and it returns what the film has kept."""
-    result = squeeze(moved(tmp_path / "case.toml")).results[0]
+# Largest and mean force in N over a period of 30 Hz at an eccentricity of 0.5, with 20 x 10 quadratic elements.
+MOVED_ELEMENTS = [
+    (squeeze, "free-to-air", 0.9, 77.59, 30.41),
+    (squeeze, "free-to-air", 0.99, 73.55, 27.31),
+    (squeeze, "oil-bath", 0.9, 75.26, 29.98),
+    (squeeze, "oil-bath", 0.99, 71.71, 26.50),
+    (whirl, "free-to-air", 0.9, 21.90, 13.99),
+]
+
+
+@pytest.mark.nightly  # 1 to 2 s each
+@pytest.mark.parametrize(("test", "ends", "steepness", "largest", "mean"), MOVED_ELEMENTS)
+def test_moved_journals_feel_what_they_feel_of_quadratic_elements(
+    tmp_path: Path, test: Callable[[Case], KinematicTest], ends: str, steepness: float, largest: float, mean: float
+) -> None:
+    (tmp_path / "case.toml").write_text(CASE, encoding="utf-8")
+    motion = {"eccentricity": 0.5, "frequency": "30 Hz", "periods": 1} | ({"speed": "60 Hz"} if test is whirl else {})
+    settings = {"motion": motion, "film.two-phase.steepness": steepness, "bearing.ends": ends}
+    result = test(load_case(tmp_path / "case.toml").with_settings(settings)).results[0]
     assert result.history is not None
-    assert result.loads is not None
-    across, along = np.abs(result.history.force).max(axis=0)
-    assert across < 1e-9 * along
-    assert 0.5 < result.loads.oil_fraction < 1.0
-    assert result.status == "ok"
+    found = np.hypot(*result.history.force.T)
+    assert (found.max(), found.mean()) == pytest.approx((largest, mean), rel=5e-3)
 
 
-def test_a_ramp_of_the_supply_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"bearing\.supply\.ramp"):
-        kinematic_plan(moved(tmp_path / "case.toml", "bearing.supply.ramp=0.01 s"), None, "squeeze")
+def test_a_ramp_of_the_supply_is_followed(tmp_path: Path) -> None:
+    """As in films of other laws: the share (4.11) of the pressure; before its rise the film is that without it."""
+    fed = ("bearing.supply.pressure=3 bar", "motion={eccentricity=0.3, frequency='10 Hz', periods=0.2}")
+    ramped, full, none = (
+        squeeze(moved(tmp_path / "case.toml", *fed, *settings)).results[0].history
+        for settings in (("bearing.supply.ramp=0.005 s",), (), ("bearing.supply.pressure=1 bar",))
+    )
+    assert ramped is not None
+    assert full is not None
+    assert none is not None
+    assert ramped.force[0] == pytest.approx(none.force[0], abs=0.1 * np.abs(none.force).max())
+    assert ramped.force[-1] == pytest.approx(full.force[-1], abs=0.05 * np.abs(full.force).max())

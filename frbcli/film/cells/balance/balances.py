@@ -1,4 +1,4 @@
-"""The oil balances of the cells of one film with all derivatives, compiled: Balance.residual in one sweep.
+"""The oil balances (3.9), (4.31) of the cells of a film with all derivatives, compiled: Balance.residual in one sweep.
 
 Beside the derivatives by w of the cells stand those by the displacement of the journal, so that rotor and film can be
 solved together.
@@ -30,6 +30,9 @@ from frbcli.film.cells.data import (
     AREA,
     AROUND,
     BATHED,
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
     CLOSED,
     COS,
     EDGE,
@@ -45,18 +48,19 @@ from frbcli.film.cells.data import (
     GAP,
     LENGTH,
     SHARE,
+    SIDES,
     SIN,
     UNKNOWN,
 )
+from frbcli.film.cells.diffusion.spread import spread_oil
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
-# and what leaves the solution net, see gas/carry.py; and the rate of the filling of openings whose supply gives a flow
-# at the most, see feed.py.
-INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, FILLING, FLOWS = range(10)
-BY_ITSELF, BY_X, BY_Y, SIDES = range(4)  # the right-hand sides
+# and what leaves the solution net, see gas/carry.py; oil that artificial diffusion creates, see spread.py; and the rate
+# of the filling of openings whose supply gives a flow at the most, see feed.py.
+INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 
 class GridMotion(NamedTuple):
@@ -156,6 +160,15 @@ def _between_rough(
     return factor * through, factor * by_x + rises * s * through, factor * by_y - rises * c * through
 
 
+@compiled(inline=True)
+def _carried(states: Array, i: int, n: int, j: int, forward: bool, diffuses: bool) -> tuple[float, float, float]:
+    """carried_at through the face after a cell; beside artificial diffusion the mean of both cells."""
+    t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
+    if diffuses:
+        return 0.5 * (t + t_n), 0.5, 0.5
+    return carried_at(t, t_n, states[BEFORE_UPSTREAM, i, j], forward)
+
+
 @compiled()
 def _flow_around(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array,
@@ -167,6 +180,7 @@ def _flow_around(
     sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
     forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
     taken = 0.0  # by the openings in cells that are film in part
+    diffuses = film.diffuses
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
         if rests(states, i) or rests(states, n):
@@ -205,9 +219,7 @@ def _flow_around(
             share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
             theta, own, other = 0.0, 0.0, 0.0
             if not still:
-                theta, here, next_ = carried_at(
-                    states[FRACTION, i, j], states[FRACTION, n, j], states[BEFORE_UPSTREAM, i, j], forward
-                )
+                theta, here, next_ = _carried(states, i, n, j, forward, diffuses)
                 own = swept * here * states[FRACTION_SLOPE, i, j]
                 other = swept * next_ * states[FRACTION_SLOPE, n, j]
             pressed, drawn = through * fall, swept * theta
@@ -432,6 +444,10 @@ def balances(
     if film.bored:
         _carry_out_of_excess(ring, cells, states, motion, stencil, right, flows)
     _flow_along(film, ring, cells, states, motion, stencil, right)
+    if film.diffuses and film.length > 0.0:
+        flows[CREATED] = spread_oil(
+            film, ring, cells, states, motion.d_x, motion.d_y, motion.omega, motion.g, stencil, right
+        )
     _store(ring, cells, states, motion, past, stencil, right)
     _flow_through_ends(film, ring, cells, states, motion, stencil, right, flows)
     hold_given(cells, stencil, right, flows, SIDES)

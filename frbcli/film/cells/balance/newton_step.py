@@ -6,13 +6,16 @@ import numpy as np
 
 from frbcli.compiled import Array, compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
-from frbcli.film.cells.balance.balances import BY_ITSELF, BY_X, BY_Y, GridMotion, balances
+from frbcli.film.cells.balance.balances import GridMotion, balances
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
 from frbcli.film.cells.data import (
     AREA,
     BETWEEN_MIDDLES,
+    BY_ITSELF,
+    BY_X,
+    BY_Y,
     COS,
     GAP,
     LOAD,

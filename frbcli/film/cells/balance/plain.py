@@ -13,14 +13,13 @@ from numpy.typing import NDArray
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.carried import UPWIND, limited
 from frbcli.film.cells.balance.ends import BEND, EndSlope, end_outflow, end_slopes
+from frbcli.film.cells.diffusion.plain import NO_DISTANCE, Spreads, spreads
 from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 from frbcli.film.roughness.flow_factors import pressure_flow, shear_flow
-
-NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there
 
 
 class EndFlow(NamedTuple):
@@ -137,7 +136,10 @@ class CellBalances:
     def _at_faces(self, loose: Array) -> tuple[Array, Array, Array]:
         """(m, k) oil fraction at the face after each cell and its derivatives by those of this cell and the next.
 
-        loose: (m, k) oil fractions, full at the most."""
+        loose: (m, k) oil fractions, full at the most. Beside artificial diffusion it is the mean of both."""
+        if self.section.diffusion is not None:
+            half = np.full_like(loose, 0.5)
+            return half * (loose + np.roll(loose, -1, axis=0)), half, half
         forward, after = self.motion.omega >= 0.0, np.roll(loose, -1, axis=0)
         upstream, downstream = (loose, after) if forward else (after, loose)
         across = downstream - upstream
@@ -173,7 +175,11 @@ class CellBalances:
         fluxes, near, far = self.fluxes(state.pressure, state.fraction)
         kept = storage.factor * state.fraction
         residual = fluxes.net_outflow(self.grid.share) + area * (kept - storage.past - state.source)
-        return np.where(fixed, 0.0, residual), self._stencil(state, storage, near, far)
+        stencil = self._stencil(state, storage, near, far)
+        if self.section.diffusion is not None:
+            spread = spreads(self.section, self.grid, self.motion, state)
+            residual, stencil = residual + spread.net_outflow(), with_spread(stencil, spread, ~fixed)
+        return np.where(fixed, 0.0, residual), stencil
 
     def _stencil(self, state: CellState, storage: Storage, near: EndFlow, far: EndFlow) -> Stencil:
         c, p_w, t_w = self.conductances, state.pressure_slope, state.fraction_slope
@@ -202,3 +208,22 @@ class CellBalances:
             below=free * below,
             above=free * above,
         )
+
+
+def with_spread(stencil: Stencil, spread: Spreads, free: NDArray[np.bool_]) -> Stencil:
+    """The stencil with the derivatives of the artificial diffusion; free: (m, k) cells that have a balance."""
+    around, along = spread.around, spread.along
+    centre = around.by_own - np.roll(around.by_next, 1, axis=0)
+    centre[:, :-1] += along.by_own
+    centre[:, 1:] -= along.by_next
+    centre[:, 0] += spread.near.by_own
+    centre[:, -1] += spread.far.by_own
+    below, above = np.zeros_like(centre), np.zeros_like(centre)
+    below[:, 1:], above[:, :-1] = -along.by_own, along.by_next
+    return Stencil(
+        centre=stencil.centre + free * centre,
+        before=stencil.before - free * np.roll(around.by_own, 1, axis=0),
+        behind=stencil.behind + free * around.by_next,
+        below=stencil.below + free * below,
+        above=stencil.above + free * above,
+    )

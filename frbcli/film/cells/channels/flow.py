@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from frbcli.compiled import Array, Indices, compiled
-from frbcli.film.cells.balance.balances import CHANNELS_NET, SIDES
+from frbcli.film.cells.balance.balances import CHANNELS_NET
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
 from frbcli.film.cells.data import (
@@ -24,6 +24,7 @@ from frbcli.film.cells.data import (
     NO_CLIP,
     PUSH_X,
     PUSH_Y,
+    SIDES,
     Records,
 )
 from frbcli.film.cells.elimination.block_cyclic import CENTRE

@@ -63,18 +63,6 @@ def bathed(section: Section, phi: Array) -> Array:
     return _interval_cover(phi, math.pi, math.pi - math.acos(section.bath))
 
 
-def hole_area(section: Section, hole: Hole) -> float:
-    """Area in m^2 of the part of a hole that lies within the section (a round one on the edge z = 1 of a symmetric
-    section counts by half)."""
-    square = 4.0 * section.radius * hole.half_angle
-    low = max(-1.0, -hole.axial / hole.half_width)
-    high = min(1.0, (section.width - hole.axial) / hole.half_width)
-    if not hole.round:
-        return square * hole.half_width * 0.5 * (high - low)
-    primitive = _below_circle(np.array([low, high]))
-    return square * hole.half_width * 0.5 * float(primitive[1] - primitive[0])
-
-
 def wrapped(angle: Array) -> Array:
     """Angles brought to [-pi, pi)."""
     return np.asarray(np.mod(angle + math.pi, 2.0 * math.pi) - math.pi, dtype=np.float64)

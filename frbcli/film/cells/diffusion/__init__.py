@@ -1,0 +1,1 @@
+"""Artificial diffusion of the published two-phase form on finite volumes, compiled and plain."""

@@ -1,1 +1,0 @@
-"""The two-phase model as published (4.31): quadratic elements, artificial diffusion; it does not conserve oil."""

@@ -1,1 +1,0 @@
-"""Equation (4.31) on quadratic elements, compiled: its law, its unknowns, its matrix and their elimination."""

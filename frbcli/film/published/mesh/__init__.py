@@ -1,1 +1,0 @@
-"""Quadratic elements on a section."""
