@@ -8,15 +8,20 @@ trigonometric polynomial between them, so that turned back by S(rho) it is a fix
     x = S(rho) M(x),
 
 with a shift of a excluded by <dx_0/da, x - x_0> = 0. As in fixed_point.py the derivative of M is taken in the slow
-motions alone: at each point those of the rotor, and what of the oil of a film moves along with them one period later;
-the rest of the oil is repeated. Its eigenvalues lie on circles about 0, one for each Lyapunov exponent, and those of
-smooth disturbances tell their radii: one is 1, of a shift of a, and the motion is stable if no other one is above 1.
+motions alone: at each point those of the rotor, and what of the oil of a film moves along with them one period later.
+The rest of the oil is repeated, and stays in a film for a few periods: next to half the speed, where two turns of the
+curve nearly close, what it leaves of a correction is enlarged so much that repetition alone does not end. Each step
+therefore is the combination of the last corrections that leaves least (Anderson, J. ACM 12, 1965).
+
+The eigenvalues of the derivative lie on circles about 0, one for each Lyapunov exponent, and those of smooth
+disturbances tell their radii: one is 1, of a shift of a, and the motion is stable if no other one is above 1. For them
+the oil is followed over three periods: with one of them the radius of the shift is known to 3 % only.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,8 +38,10 @@ ITERATIONS = 30
 CLOSE, NOISE = 3e-6, 1e-4  # corrections of the rotor that end the iteration: always, and if they become no smaller
 PATIENCE = 4  # iterations in which corrections have to become half of what they were
 RENEWED = 2  # times that the derivative is computed
+REMEMBERED, INDEPENDENT = 12, 1e-8  # corrections that are combined, and the smallest singular value of those that count
 STRAY = 0.5  # a correction beyond which the iteration is given up
-NEW = 1e-3  # oil that moves along with the rotor by less is not a direction of its own
+NEW = 0.01  # oil that moves along with the rotor by less is not a direction of its own
+FOR_STEPS, FOR_RADII = 1, 3  # periods over which the oil that moves along with the rotor is followed
 SMOOTH, LOW = 0.9, 6  # share of a disturbance in the lowest N / LOW harmonics from which on it is smooth
 
 
@@ -98,6 +105,17 @@ def along_cycle(shooting: Shooting, shot: Shot) -> tuple[tuple[Wet, ...], float]
     return tuple(wets), 2.0 * math.pi / (time * omega)
 
 
+def combined(known: list[tuple[Array, Array]]) -> Array:
+    """The unknowns behind a step, of the last ones and their corrections (n,): where a linear correction of what they
+    differ by is smallest."""
+    (at, correction), count = known[-1], len(known)
+    if count == 1:
+        return at + correction
+    before = [np.transpose([known[i][part] - known[i - 1][part] for i in range(1, count)]) for part in (0, 1)]
+    shares = np.linalg.lstsq(before[1], correction, rcond=INDEPENDENT)[0]
+    return np.asarray(at + correction - (before[0] + before[1]) @ shares)
+
+
 class _Curves:
     """Finds the curve of a machine at a speed in rad/s. unit: of its states, rad/s."""
 
@@ -117,21 +135,29 @@ class _Curves:
             (self.image(x + by * each, near) - self.image(x - by * each, near)) / (2.0 * by) for each in directions.T
         ])  # fmt: skip
 
-    def slow(self, states: Array, near: tuple[Wet, ...], turn: Array, gap: float) -> tuple[Array, Array]:
-        """(N, n, k) slow motions at each point and what the map makes of them. turn: S(rho)."""
-        rotor, by = np.eye(states.shape[1])[:, : self.flow.slow], DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
+    def slow(
+        self, states: Array, near: tuple[Wet, ...], turn: Array, gap: float, generations: int
+    ) -> tuple[Array, Array]:
+        """(N, n, k) slow motions at each point, of length 1 or 0, and what the map makes of them: those of the rotor,
+        and of the oil as often as `generations` says what the last ones have moved one period later. turn: S(rho)."""
+        slow, by = self.flow.slow, DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
+        rotor = np.eye(states.shape[1])[:, :slow]
         images = np.array([self.changed(x, wet, rotor, by) for x, wet in zip(states, near, strict=True)])
-        if not self.flow.held.any():
-            return np.broadcast_to(rotor, images.shape), images
-        oil = np.tensordot(turn, images, axes=1)
-        oil[:, : self.flow.slow] = 0.0
-        along, sizes, _ = np.linalg.svd(oil, full_matrices=False)
-        along = along * (sizes > NEW)[:, None, :]
-        moved = np.array([
-            self.changed(x, wet, each, by) for x, wet, each in zip(states, near, along, strict=True)
-        ])  # fmt: skip
-        both = np.broadcast_to(rotor, images.shape)
-        return np.concatenate([both, along], axis=2), np.concatenate([images, moved], axis=2)
+        directions, moved = np.broadcast_to(rotor, images.shape), images
+        for _ in range(generations if self.flow.held.any() else 0):
+            oil = np.tensordot(turn, moved, axes=1)
+            oil[:, :slow] = 0.0
+            outside = oil - directions @ (directions.transpose(0, 2, 1) @ oil)
+            along, sizes, _ = np.linalg.svd(outside, full_matrices=False)
+            some = sizes.max(axis=0) > NEW
+            if not some.any():
+                break
+            along = (along * (sizes > NEW)[:, None, :])[..., some]
+            change = [self.changed(x, wet, each, by) for x, wet, each in zip(states, near, along, strict=True)]
+            directions = np.concatenate([directions, along], axis=2)
+            images = np.concatenate([images, np.array(change)], axis=2)
+            moved = images @ (directions.transpose(0, 2, 1) @ oil)
+        return directions, images
 
     def solved(self, wets: tuple[Wet, ...], states: Array, rho: float) -> InvariantCurve | None:
         """The curve next to a guess; None if it does not converge. Raises Unreachable."""
@@ -140,6 +166,7 @@ class _Curves:
         row = (between(count, phases, slope=True) @ states)[:, :slow]
         first, sizes, renewed, age = states, [np.inf], 0, 0
         directions = images = np.zeros((0, 0, 0))
+        known: list[tuple[Array, Array]] = []
         for _ in range(ITERATIONS):
             passages = [self.passage(x, wet) for x, wet in zip(states, wets, strict=True)]
             found = np.array([self.flow.packed(each.end, self.unit) for each in passages])
@@ -151,14 +178,12 @@ class _Curves:
             residual = turned - states
             stays = age > PATIENCE and sizes[-1] > 0.5 * min(sizes[:-PATIENCE])
             if sizes[-1] < CLOSE or (stays and min(sizes) < NOISE):
-                directions, images = self.slow(states, wets, turn, gap)
-                radii = self._radii(directions, images, turn)
-                return InvariantCurve(wets, states, rho, self.omega, orbits, radii)
+                return InvariantCurve(wets, states, rho, self.omega, orbits, np.zeros(0))
             if stays and renewed == RENEWED:
                 return None
             if renewed == 0 or stays:
-                directions, images = self.slow(states, wets, turn, gap)
-                renewed, age = renewed + 1, 0
+                directions, images = self.slow(states, wets, turn, gap, FOR_STEPS)
+                renewed, age, known = renewed + 1, 0, []
             reduced = np.einsum("ina,ij,jnb->iajb", directions, turn, images, optimize=True)
             k = directions.shape[2]
             matrix = np.eye(count * k + 1)
@@ -174,24 +199,30 @@ class _Curves:
             change = residual + np.einsum("ij,jna,ja->in", turn, images, step, optimize=True) + by_rho * on
             if not np.isfinite(change).all() or np.abs(change[:, :slow]).max() > STRAY:
                 return None
-            states, rho = states + change, rho + on
+            known = [*known[-REMEMBERED:], (np.append(states, rho), np.append(change, on))]
+            there = combined(known)
+            states, rho = there[:-1].reshape(states.shape), float(there[-1])
             beside = np.round(np.arange(count) - count * rho).astype(int) % count
             wets = tuple(passages[each].end for each in beside)
             sizes.append(float(np.abs(change[:, :slow]).max()))
             age += 1
         return None
 
-    @staticmethod
-    def _radii(directions: Array, images: Array, turn: Array) -> Array:
-        """Moduli of the eigenvalues of smooth disturbances, by falling size."""
-        count, _, k = directions.shape
+    def with_radii(self, curve: InvariantCurve) -> InvariantCurve:
+        """A curve with the moduli of the eigenvalues of smooth disturbances, by falling size. Raises Unreachable."""
+        count, orbits = len(curve.states), curve.displacements
+        gap = 1.0 - float(np.hypot(orbits[..., 0], orbits[..., 1]).max())
+        phases = 2.0 * np.pi * np.arange(count) / count
+        turn = between(count, phases - 2.0 * np.pi * curve.rho)
+        directions, images = self.slow(curve.states, curve.wets, turn, gap, FOR_RADII)
+        k = directions.shape[2]
         reduced = np.einsum("ina,ij,jnb->iajb", directions, turn, images, optimize=True)
         values, vectors = np.linalg.eig(reduced.reshape(count * k, count * k))
         waves = np.abs(np.fft.fft(vectors.reshape(count, k, -1), axis=0)) ** 2
         waves = waves.sum(axis=1)
         low = np.abs(np.fft.fftfreq(count, 1.0 / count)) <= count / LOW
         smooth = waves[low].sum(axis=0) > SMOOTH * waves.sum(axis=0)
-        return np.sort(np.abs(values[smooth]))[::-1]
+        return replace(curve, radii=np.sort(np.abs(values[smooth]))[::-1])
 
 
 def invariant_curve(
@@ -201,22 +232,20 @@ def invariant_curve(
     wets, rho = start
     states = np.array([flow.packed(wet, unit) for wet in wets])
     curves = _Curves(flow, unit, omega)
-    for count in POINTS:
-        if count != len(states):
-            phases = 2.0 * np.pi * np.arange(count) / count
-            wets = tuple(wets[each] for each in np.round(phases / (2.0 * np.pi) * len(wets)).astype(int) % len(wets))
-            states = between(len(states), phases) @ states
-        try:
+    found = None
+    try:
+        for count in POINTS:
+            if count != len(states):
+                phases = 2.0 * np.pi * np.arange(count) / count
+                places = np.round(phases / (2.0 * np.pi) * len(wets)).astype(int) % len(wets)
+                wets, states = tuple(wets[each] for each in places), between(len(states), phases) @ states
             found = curves.solved(wets, states, rho)
-        except (Unreachable, np.linalg.LinAlgError):
-            return None
-        if found is None:
-            return None
-        tail = _tail(found)
-        if tail < TAIL:
-            return found
-        wets, states, rho = found.wets, found.states, found.rho
-    return found if tail < TAIL_AT_MOST else None
+            if found is None or _tail(found) < TAIL:
+                break
+            wets, states, rho = found.wets, found.states, found.rho
+        return None if found is None or _tail(found) > TAIL_AT_MOST else curves.with_radii(found)
+    except (Unreachable, np.linalg.LinAlgError):
+        return None
 
 
 def _tail(curve: InvariantCurve) -> float:
