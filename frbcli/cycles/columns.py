@@ -119,6 +119,10 @@ def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
     )
 
 
+# Of a MissingWhirl in JSON
+MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl with the unbalance was found at a stable cycle"))
+
+
 def _other_line(whirl: UnbalancedWhirl) -> str:
     others = whirl.lines[2:3]
     return "locks in" if whirl.locked else ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in others)

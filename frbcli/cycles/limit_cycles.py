@@ -21,7 +21,7 @@ from frbcli.cycles.parts.machine import make_machine
 from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
-from frbcli.cycles.unbalance.branches import whirls_with_unbalance
+from frbcli.cycles.unbalance.branches import of_no_whirl, whirls_with_unbalance
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
@@ -78,7 +78,7 @@ def limit_cycles(
     _check_asked(case, asked, slowest, fastest)
     if by_shooting(case):
         found = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
-        return _with_missing(found, speeds_Hz)
+        return _with_missing(of_no_whirl(found) if with_unbalance else found, speeds_Hz)
     system = make_system(case, make_plan(case))
     try:
         with advised(case):
@@ -96,7 +96,8 @@ def limit_cycles(
     if rotor.over_speed is None and (rotor.loads or rotor.unbalance_cos.any() or rotor.unbalance_sin.any()):
         response = synchronous_response(Synchronous(walk.course, slowest / fastest), walk.resting.points[-1])
         found = with_response(found, walk, response)
-    return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
+    found = replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
+    return of_no_whirl(found) if with_unbalance else found
 
 
 def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: float) -> None:

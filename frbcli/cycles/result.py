@@ -108,15 +108,26 @@ class UnbalancedWhirl:
 
 
 @dataclass(frozen=True)
+class MissingWhirl:
+    """A speed at which no whirl with the unbalance was found beside a stable cycle. reason: what is known of why, a
+    sentence without its end."""
+
+    speed_Hz: float
+    reason: str
+
+
+@dataclass(frozen=True)
 class CycleBranch:
     """Cycles in their order from a Hopf point on. start: its number among the special points,
     None where the Hopf point lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones
-    become with the unbalance, and what these motions lead to behind folds, if asked for."""
+    become with the unbalance, and what these motions lead to behind folds, if asked for; missing: those of which that
+    is not known."""
 
     start: int | None
     points: tuple[CyclePoint, ...]
     note: str
     with_unbalance: tuple[UnbalancedWhirl, ...] = ()
+    missing: tuple[MissingWhirl, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ from frbcli.cycles.shooting.invariant_curve import (
 from frbcli.cycles.shooting.period_map import SAMPLES, Passage, PeriodMap, Wet, period_map, wet_at
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
-from frbcli.cycles.shooting.whirls import _locked, whirls_of_branch
+from frbcli.cycles.shooting.whirls import _locked, _run, whirls_of_branch
 
 OMEGA = 2.0 * math.pi * 120.0
 TURNS = 60
@@ -233,7 +233,9 @@ def test_a_curve_without_unbalance_is_the_cycle() -> None:
 def test_a_whirl_that_locks_in_is_what_the_time_loop_ends_in_with_oil_that_films_keep() -> None:
     fed = 'bearing.supply.pressure="2 bar"', "rotor.unbalance=10 g*mm"
     free, shot = whirling("rigid-two-phase", 82.0, 300, *fed)
-    found = _locked(free.with_all_unbalance, shot)
+    run = _run(free.with_all_unbalance, shot)
+    assert run is not None
+    found = _locked(free.with_all_unbalance, run)
     assert found is not None
     _, orbit = after(free.with_all_unbalance, found.wet, 2.0 * math.pi * 82.0, 150, 2)
     np.testing.assert_allclose(largest(orbit), found.eccentricity_max, atol=1e-6)

@@ -14,6 +14,7 @@ from paths import DOCS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
+    MISSING,
     cycle_columns,
     diagram_columns,
     equilibrium_columns,
@@ -94,6 +95,7 @@ TABLES: dict[str, Columns] = {
     "cycles": of_json(cycle_columns((), heat=True, tilts=True)),
     "whirls": of_json(whirl_columns(())),
     "lines": of_json(line_columns(())),
+    "missing whirls": of_json(MISSING),
     "special points": of_json(special_columns(())),
     "map": of_pandas(map_columns("KEY", "", "KEY of --and", "", crossings=True)),
     "map points": of_json(map_point_columns(())),

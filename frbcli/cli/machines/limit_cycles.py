@@ -259,9 +259,13 @@ def _in_words(point: CyclePoint) -> str:
 
 
 def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
-    """A table of the whirls with unbalance, if there are any."""
+    """Where none was found with the unbalance and why, and a table of those that were."""
     from frbcli.cycles.columns import WHIRLS
 
+    for number, branch in enumerate(found.branches):
+        for reason in dict.fromkeys(missing.reason for missing in branch.missing):
+            speeds = [f"{missing.speed_Hz:.4g}" for missing in branch.missing if missing.reason == reason]
+            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl at {', '.join(speeds)} Hz: {reason}.")
     whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
     if not whirls:
         return
@@ -286,7 +290,7 @@ def _left_out(found: LimitCycles, with_unbalance: bool) -> list[str]:
 
 
 def _document(found: LimitCycles) -> dict[str, object]:
-    from frbcli.cycles.columns import equilibrium_columns, special_columns
+    from frbcli.cycles.columns import MISSING, equilibrium_columns, special_columns
 
     films, heat = found.films, found.case.heat is not None
     special = documents(special_columns(films, found.over), found.special)
@@ -302,6 +306,7 @@ def _document(found: LimitCycles) -> dict[str, object]:
                 "points": [_cycle(found, point) for point in branch.points],
                 "note": branch.note,
                 "with_unbalance": [_whirl(found, whirl) for whirl in branch.with_unbalance],
+                "missing": documents(MISSING, branch.missing),
             }
             for branch in found.branches
         ],

@@ -33,6 +33,7 @@ from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, Per
 from frbcli.cycles.shooting.shots import BLURRED, WIDE, Shooting, Shot
 
 POINTS = (33, 65, 129)  # of a curve, odd: the number is raised until the last harmonics are small
+PER_CELL = 2  # least points over the cells around of films with oil: where its edge crosses cells, the curve bends
 TAIL, TAIL_AT_MOST = 1e-4, 1e-3  # of a displacement over the clearance in the last eighth of the harmonics
 ITERATIONS = 30
 CLOSE, NOISE = 3e-6, 1e-4  # corrections of the rotor that end the iteration: always, and if they become no smaller
@@ -232,6 +233,7 @@ def invariant_curve(
     wets, rho = start
     states = np.array([flow.packed(wet, unit) for wet in wets])
     curves = _Curves(flow, unit, omega)
+    enough = min(PER_CELL * flow.held.shape[1], POINTS[-1]) if flow.held.any() else 0
     found = None
     try:
         for count in POINTS:
@@ -240,7 +242,7 @@ def invariant_curve(
                 places = np.round(phases / (2.0 * np.pi) * len(wets)).astype(int) % len(wets)
                 wets, states = tuple(wets[each] for each in places), between(len(states), phases) @ states
             found = curves.solved(wets, states, rho)
-            if found is None or _tail(found) < TAIL:
+            if found is None or (_tail(found) < TAIL and count >= enough):
                 break
             wets, states, rho = found.wets, found.states, found.rho
         return None if found is None or _tail(found) > TAIL_AT_MOST else curves.with_radii(found)

@@ -5,16 +5,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.cycles.method.continuation import Unreachable, halved_until
-from frbcli.cycles.result import CycleBranch, UnbalancedWhirl, hertz
+from frbcli.cycles.result import CycleBranch, MissingWhirl, UnbalancedWhirl, hertz
 from frbcli.cycles.shooting.invariant_curve import InvariantCurve, along_cycle, invariant_curve
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, Wet
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
-from frbcli.cycles.unbalance.branches import not_found, taken
+from frbcli.cycles.unbalance.branches import taken
 from frbcli.cycles.unbalance.synchronous import WHIRLS
 from frbcli.cycles.unbalance.whirls import free_lines, locked_lines, nearly_half
 
@@ -23,7 +24,8 @@ Observer = Callable[[int, float, float], None]
 SMALLEST = 0.25  # share of the unbalance in a step, where one does not lead to all of it
 APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
 SETTLING = 150  # pairs of periods of the rotor after which a whirl that locks in nearly repeats
-REPEATS = 0.02  # change of the state in two periods above which it has not locked in
+LAST, PER_PERIOD = 100, 32  # of them, in which a whirl is watched, and its moments in each
+REPEATS = 0.02  # change of the state in one or two periods above which a motion does not nearly repeat
 
 
 def whirls_of_branch(
@@ -37,20 +39,66 @@ def whirls_of_branch(
         if place == 0:
             continue
         point, shot = branch.points[place], shots[place - 1]
-        locked = _locked(driven, shot)
+        half = nearly_half(point.frequency_Hz, point.speed_Hz)
+        run = _run(driven, shot) if half else None
+        locked = None if run is None else _locked(driven, run)
+        found = _curve(shooting, shot, before) if locked is None else None
         if locked is not None:
             whirls.append(_locked_whirl(driven, locked))
-        else:
-            found = _curve(shooting, shot, before)
-            if found is None:
-                missing.append(point.speed_Hz)
-                continue
+        elif found is not None:
             before = found
             whirls.append(_free_whirl(driven, found))
+        else:
+            missing.append(MissingWhirl(point.speed_Hz, _why(run if half else _run(driven, shot))))
+            continue
         if observe is not None:
             observe(len(whirls), point.speed_Hz, float(whirls[-1].eccentricity_max.max()))
-    remarks = [f"With unbalance {remark}" for remark in not_found(missing)]
-    return replace(branch, with_unbalance=tuple(whirls), note=" ".join([branch.note, *remarks]).strip())
+    return replace(branch, with_unbalance=tuple(whirls), missing=tuple(missing))
+
+
+@dataclass(frozen=True)
+class Run:
+    """What the time loop makes of a cycle with the unbalance. omega: rad/s; wet: the machine after SETTLING pairs of
+    periods of the rotor; moved: how far its state then goes in one and in two periods; last: (t, J, 2) displacements
+    over the last LAST periods before; frequency: rad/s, their whirl's."""
+
+    omega: float
+    wet: Wet
+    moved: tuple[float, float]
+    last: Array
+    frequency: float
+
+
+def _run(driven: Shooting, shot: Shot) -> Run | None:
+    """What a cycle becomes in the time loop; None if that ends before."""
+    flow, omega, wet = driven.flow, driven.unit * math.exp(shot.p[1]), shot.wet
+    try:
+        for _ in range(SETTLING - LAST // 2):
+            wet = flow.passage(wet, 4.0 * math.pi / omega, omega, 2 * STEPS_PER_REVOLUTION, 1).end
+        time = 2.0 * math.pi * LAST / omega
+        passage = flow.passage(wet, time, omega, LAST * STEPS_PER_REVOLUTION, LAST * PER_PERIOD)
+        ends = [passage.end]
+        for _ in range(2):
+            ends.append(flow.passage(ends[-1], 2.0 * math.pi / omega, omega, STEPS_PER_REVOLUTION, 1).end)
+    except Unreachable:
+        return None
+    first, *others = (flow.packed(end, driven.unit) for end in ends)
+    once, twice = (float(np.linalg.norm(other - first)) for other in others)
+    d = passage.displacements[:, int(np.ptp(passage.displacements, axis=0).max(axis=1).argmax())]
+    turned = np.unwrap(np.arctan2(*(d - d.mean(axis=0)).T[::-1]))
+    return Run(omega, passage.end, (once, twice), passage.displacements, float(turned[-1] - turned[0]) / time)
+
+
+def _why(run: Run | None) -> str:
+    """Why no whirl was found, by what the time loop makes of the cycle."""
+    if run is None:
+        return "a run from the cycle ends early, as where a journal touches its shell"
+    if run.moved[0] < REPEATS:
+        return "a run from the cycle comes back to the synchronous motion"
+    if run.moved[1] < REPEATS:
+        return "a run from the cycle nearly repeats after two turns of the rotor, and slowly goes on"
+    seen = f"{abs(hertz(run.frequency)):.4g} Hz and an eccentricity of {np.hypot(*run.last.T).max():.3f}"
+    return f"a run from the cycle whirls on with {seen}, and the iteration does not converge to it"
 
 
 def _curve(shooting: Shooting, shot: Shot, before: InvariantCurve | None) -> InvariantCurve | None:
@@ -79,21 +127,11 @@ def _curve(shooting: Shooting, shot: Shot, before: InvariantCurve | None) -> Inv
     return found
 
 
-def _locked(driven: Shooting, shot: Shot) -> Shot | None:
-    """The motion of two periods of the rotor that a cycle ends in; None if it does not."""
-    omega = driven.unit * math.exp(shot.p[1])
-    if not nearly_half(driven.unit * 2.0 * math.pi * math.exp(-shot.p[0]), omega):
+def _locked(driven: Shooting, run: Run) -> Shot | None:
+    """The motion of two periods of the rotor that a run of a cycle ends in; None if it does not."""
+    if run.moved[1] > REPEATS:
         return None
-    wet, before = shot.wet, shot.x
-    try:
-        for _ in range(SETTLING):
-            before = driven.flow.packed(wet, driven.unit)
-            wet = driven.flow.passage(wet, 4.0 * math.pi / omega, omega, 2 * STEPS_PER_REVOLUTION, 1).end
-    except Unreachable:
-        return None
-    if float(np.linalg.norm(driven.flow.packed(wet, driven.unit) - before)) > REPEATS:
-        return None
-    found = driven.locked_in(wet, omega)
+    found = driven.locked_in(run.wet, run.omega)
     if found is None or not found.multipliers.stable:
         return None
     half = np.fft.rfft(found.displacements[:-1], axis=0, norm="forward")[1::2]

@@ -8,11 +8,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from frbcli.arrays import Array
+from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import ASKED, FOLD
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.parts.reduced_states import reduced_space
-from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, UnbalancedWhirl, hertz
+from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, MissingWhirl, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, follow_torus
 from frbcli.cycles.unbalance.two_frequencies import Torus
@@ -25,6 +26,7 @@ APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a b
 SAME = 1e-3  # of its frequency: a motion lies on a branch that passes it at this distance
 MOST_INTERVALS = 60_000  # in which the stability of a motion behind others is to be seen
 BORDER = 1e-9  # of the fastest speed
+UNKNOWN = "the equations do not lead to one"
 
 
 def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
@@ -44,24 +46,26 @@ def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Ob
             observe(count, whirl.speed_Hz, float(whirl.eccentricity_max.max()))
 
     for number, branch in enumerate(found.branches):
-        whirls, remarks = _with_unbalance(follower, branch, tell)
+        driven, remarks = _with_unbalance(follower, branch, tell)
         notes += [f"Branch {number + 1} with unbalance: {remark}" for remark in remarks]
-        branches.append(replace(branch, with_unbalance=tuple(whirls)))
+        branches.append(driven)
     return replace(found, branches=tuple(branches), notes=tuple(notes))
 
 
-def _with_unbalance(
-    follower: TorusFollower, branch: CycleBranch, tell: Tell
-) -> tuple[list[UnbalancedWhirl], list[str]]:
-    """The whirls of a branch in its order, and what is to be said of them."""
-    course = follower.course
-    chain, motions = Chain(course.at_its_heat), {}
+def _with_unbalance(follower: TorusFollower, branch: CycleBranch, tell: Tell) -> tuple[CycleBranch, list[str]]:
+    """A branch with its whirls in its order, and what is to be said of them."""
+    course, missing, remarks = follower.course, [], []
+    chain, motions = Chain(course.at_its_heat), dict[int, WhirlFound | None]()
     for place in taken(branch, APART * hertz((follower.range[1] - follower.range[0]) * follower.pace)):
         point = branch.points[place]
-        motions[place] = chain.next(course.machine_at(point.speed_Hz / course.scale), point)
-        if (motion := motions[place]) is not None:
+        try:
+            motion = chain.next(course.machine_at(point.speed_Hz / course.scale), point)
+        except Unreachable as why:
+            motions[place] = None
+            missing.append(MissingWhirl(point.speed_Hz, str(why) or UNKNOWN))
+        else:
+            motions[place] = motion
             tell(motion.whirl)
-    remarks = not_found([branch.points[place].speed_Hz for place, motion in motions.items() if motion is None])
     ends = [end for place in motions for way in (-1, 1) if (end := _end(follower, branch.points, motions, place, way))]
     behind: dict[tuple[int, int], list[UnbalancedWhirl]] = {}
     reached: list[_End] = []
@@ -73,10 +77,10 @@ def _with_unbalance(
             behind[end.place, end.way], remark = _followed(follower, end, others, reached, tell)
             remarks.append(remark)
     whirls = []
-    for place, motion in motions.items():
-        own = [] if motion is None else [motion.whirl]
+    for place, there in motions.items():
+        own = [] if there is None else [there.whirl]
         whirls += [*reversed(behind.get((place, -1), [])), *own, *behind.get((place, 1), [])]
-    return whirls, remarks
+    return replace(branch, with_unbalance=tuple(whirls), missing=tuple(missing)), remarks
 
 
 def taken(branch: CycleBranch, apart: float) -> list[int]:
@@ -89,13 +93,31 @@ def taken(branch: CycleBranch, apart: float) -> list[int]:
     return places
 
 
-def not_found(missing: Sequence[float]) -> list[str]:
-    """What is to be said of speeds in Hz at which no motion was found."""
-    if not missing:
+def of_no_whirl(found: LimitCycles) -> LimitCycles:
+    """A diagram whose whirls with the unbalance were asked for, with what is to be said where none was sought, and
+    where the synchronous motion is stable."""
+    notes = list(found.notes)
+    if not any(branch.with_unbalance or branch.missing for branch in found.branches):
+        notes.append("With unbalance: no branch has a stable cycle, from which a whirl is sought.")
+    return replace(found, notes=(*notes, *_synchronous(found)))
+
+
+def _synchronous(found: LimitCycles) -> list[str]:
+    """Where the synchronous motion is stable, in words."""
+    points = sorted(found.synchronous, key=lambda point: point.speed_Hz)
+    if not points:
         return []
-    where = f"{min(missing):.4g} Hz" if len(missing) == 1 else f"{min(missing):.4g} and {max(missing):.4g} Hz"
-    between = "at" if len(missing) == 1 else f"at {len(missing)} speeds between"
-    return [f"no motion was found {between} {where}."]
+    spans: list[tuple[bool, list[float]]] = []
+    for point in points:
+        if not spans or spans[-1][0] != point.stable:
+            spans.append((point.stable, []))
+        spans[-1][1].append(point.speed_Hz)
+    told = [f"{'stable' if stable else 'unstable'} {_span(speeds)}" for stable, speeds in spans]
+    return [f"The synchronous motion is {', '.join(told)}, where it was computed."]
+
+
+def _span(speeds: Sequence[float]) -> str:
+    return f"at {speeds[0]:.4g} Hz" if len(speeds) == 1 else f"from {speeds[0]:.4g} to {speeds[-1]:.4g} Hz"
 
 
 @dataclass(frozen=True, eq=False)

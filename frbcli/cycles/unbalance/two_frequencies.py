@@ -83,7 +83,7 @@ def solved(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
         step = balance.newton_step(residual)
         motion = torus.motion + unpacked(step[:-1], machine.size)
         torus = replace(torus, motion=motion, nu=torus.nu + float(step[-1] * machine.pace))
-    raise Unreachable
+    raise Unreachable("Newton's method does not find one")
 
 
 def fitted(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
@@ -93,16 +93,16 @@ def fitted(machine: Machine, guess: Torus, share: float = 1.0) -> Torus:
         torus = solved(machine, torus, share)
         whirl = torus.motion[(torus.orders == [1, 0]).all(axis=1), : 2 * machine.film_count]
         if np.abs(whirl).max() < WHIRLS:
-            break
+            raise Unreachable("the whirl ends in the synchronous motion")
         wanted = left_out(machine, torus)
         if not len(wanted):
             return torus
         orders = np.concatenate([torus.orders, wanted])
         if len(orders) > MOST:
-            break
+            raise Unreachable(f"it needs more than {MOST} lines, as next to speeds at which a whirl locks in")
         added = np.zeros((len(wanted), machine.size))
         torus = replace(torus, orders=orders, motion=np.concatenate([torus.motion, added]))
-    raise Unreachable
+    raise Unreachable("it needs ever more lines")
 
 
 def with_unbalance(machine: Machine, guess: Torus) -> Torus:
@@ -112,10 +112,10 @@ def with_unbalance(machine: Machine, guess: Torus) -> Torus:
         higher = min(1.0, share + step)
         try:
             torus, share, step = fitted(machine, torus, higher), higher, 2.0 * step
-        except Unreachable:
+        except Unreachable as why:
             step *= 0.5
             if step < SMALLEST:
-                raise
+                raise Unreachable(f"{why} with more than {share:.0%} of the unbalance") from None
     return torus
 
 

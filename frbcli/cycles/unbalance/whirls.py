@@ -46,8 +46,8 @@ class Chain:
         self.locked: Cycle | None = None
         self.last: tuple[Torus, Torus] | None = None  # without and with the unbalance
 
-    def next(self, machine: Machine, point: CyclePoint) -> WhirlFound | None:
-        """The motion that a cycle of a machine becomes; None if it is not found."""
+    def next(self, machine: Machine, point: CyclePoint) -> WhirlFound:
+        """The motion that a cycle of a machine becomes. Raises Unreachable, with the reason, if it is not found."""
         motion = motion_of(machine, point)
         nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
         cycle = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]])
@@ -55,7 +55,7 @@ class Chain:
             machine, torus = self._settled(machine, motion, nu, omega)
         except Unreachable:
             self.last = None
-            return None
+            raise
         if self.locked is not None:
             return WhirlFound(_locked_whirl(machine, self.locked), None, cycle)
         assert torus is not None
@@ -80,7 +80,7 @@ class Chain:
             before, machine = machine.temperatures, self.at_its_heat(*moved, omega)
             if float(np.abs(machine.temperatures - before).max()) < WARM_ENOUGH:
                 return machine, torus
-        raise Unreachable
+        raise Unreachable("its temperatures do not settle")
 
     def _found(self, machine: Machine, motion: Complex, nu: float, omega: float) -> Torus | None:
         """The motion of two frequencies of a machine; None if it has locked in. Raises Unreachable."""
