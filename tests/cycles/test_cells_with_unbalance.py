@@ -12,8 +12,10 @@ from functools import lru_cache
 import numpy as np
 import pytest
 from known_flows import KnownFlow
+from marches import rigid_shaft
 
 import frbcli
+from frbcli.case.schema import Case
 from frbcli.cycles.result import CycleBranch, CyclePoint
 from frbcli.cycles.shooting.invariant_curve import (
     TAIL,
@@ -139,8 +141,8 @@ def test_a_carried_whirl_is_found_with_its_exponents(decay: float, stable: bool)
     assert curve.stable is stable
 
 
-def test_a_cycle_of_a_branch_becomes_a_whirl_with_its_lines() -> None:
-    flow = Carried(lambda z, _: z, held=np.zeros(1))
+def one_cycle(flow: KnownFlow) -> tuple[Shooting, CycleBranch, Shot]:
+    """The whirl of a known flow as a branch of one stable cycle behind a resting position."""
     free, wet = Shooting(flow, 2.0), flow.wet(np.array([0.5, 0.0, 0.0, 0.0]), 2.0)  # type: ignore[arg-type]
     p = np.array([math.log(2.0 * math.pi / 0.47), 0.0])
     shot = free._near(wet, p, np.zeros(6), 200)
@@ -150,14 +152,40 @@ def test_a_cycle_of_a_branch_becomes_a_whirl_with_its_lines() -> None:
         harmonics=np.zeros((1, 1, 2), dtype=complex),
     )  # fmt: skip
     branch = CycleBranch(0, (rest, replace(rest, speed_Hz=1.0 / math.pi, stable=True)), "It leaves the range.")
+    return free, branch, shot
+
+
+def test_a_cycle_of_a_branch_becomes_a_whirl_with_its_lines() -> None:
+    free, branch, shot = one_cycle(Carried(lambda z, _: z, held=np.zeros(1)))
     found = whirls_of_branch(free, branch, [shot], 1.0, None)
     assert found.note == branch.note
+    assert not found.missing
     (whirl,) = found.with_unbalance
     assert (whirl.locked, whirl.stable) == (False, True)
     assert whirl.speed_Hz == pytest.approx(1.0 / math.pi)
     assert whirl.frequency_Hz == pytest.approx(0.47 / math.pi, rel=1e-6)
     assert [line.name for line in whirl.lines] == ["nu", "Omega"]
     np.testing.assert_allclose([line.amplitude[0] for line in whirl.lines], [0.5, 0.1], atol=1e-6)
+
+
+@dataclass(frozen=True)
+class Decaying(Carried):
+    """The same without a whirl: what is off the circle of the unbalance decays, or, without it, stays."""
+
+    def passage(self, wet: Wet, time: float, omega: float, _: int, samples: int = SAMPLES) -> Passage:
+        t = np.linspace(0.0, time, samples + 1)
+        z = (complex(*wet.q) - 0.1 * self.driven) * np.exp((0.47j * omega - 0.2 * self.driven) * t)
+        moved = z + 0.1 * self.driven * np.exp(1j * omega * t)
+        places = np.column_stack([moved.real, moved.imag])
+        return Passage(replace(wet, q=places[-1]), places[:, None])
+
+
+def test_a_speed_at_which_the_whirl_decays_says_so() -> None:
+    """The curve shrinks to a point, of which no phase can be told."""
+    free, branch, shot = one_cycle(Decaying(lambda z, _: z, held=np.zeros(1)))
+    (missing,) = whirls_of_branch(free, branch, [shot], 1.0, None).missing
+    assert missing.speed_Hz == pytest.approx(1.0 / math.pi)
+    assert missing.reason == "a run from the cycle comes back to the synchronous motion"
 
 
 def whirling(name: str, speed_Hz: float, turns: int, *settings: str) -> tuple[Shooting, Shot]:
@@ -175,6 +203,43 @@ def whirling(name: str, speed_Hz: float, turns: int, *settings: str) -> tuple[Sh
     turned = np.unwrap(np.arctan2(d[:, 1], d[:, 0]))
     p = np.array([math.log(2.0 * math.pi * 60.0 * 2.0 * math.pi / (turned[-1] - turned[0])), 0.0])
     return free, replace(free._near(passage.end, p, np.zeros(len(rest.x) + 2), 200))
+
+
+SLOT = 'bearing.supply={kind="axial-slots",position="0 deg",opening_angle="20 deg",length="12 mm",pressure="2 bar"}'
+POCKET = 'bearing.supply={kind="pocket",position="0 deg",opening_angle="60 deg",width="10 mm",pressure="2 bar"}'
+GROOVE = 'bearing.inner.supply={kind="circumferential-groove",pressure="2 bar"}'
+SHAKEN, CELLS = "rotor.unbalance=20 g*mm", "accuracy.mesh=[4,24]"
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize(
+    ("case", "speed_Hz"),
+    [
+        (frbcli.load_case("jeffcott", [SHAKEN, CELLS, POCKET, "film.cavitation=reynolds"]), 110.0),
+        (frbcli.load_case("jeffcott", [SHAKEN, CELLS, SLOT, "film.cavitation=elrod"]), 110.0),
+        (frbcli.load_case("jeffcott", [SHAKEN, CELLS, SLOT, "film.cavitation=penalty"]), 110.0),
+        (rigid_shaft(CELLS, "film.tilt=follows", "disk.0.position=12 mm"), 150.0),
+        (frbcli.load_case("floating-ring", [SHAKEN, CELLS, GROOVE, "film.cavitation=reynolds"]), 50.0),
+        (
+            frbcli.load_case(
+                "floating-ring", [SHAKEN, "accuracy.mesh=[5,32]", GROOVE, "film.cavitation=two-phase"]
+            ),
+            55.0,
+        ),
+    ],
+    ids=("pocket", "slot and oil", "slot and penalty", "tilt", "ring", "ring and oil"),
+)  # fmt: skip
+def test_synchronous_motions_of_all_films_are_what_the_time_loop_ends_in(case: Case, speed_Hz: float) -> None:
+    flow, omega = period_map(case), 2.0 * math.pi * speed_Hz
+    free = Shooting(flow, omega)
+    rest = settled(free, omega)
+    assert rest is not None
+    shot = free.with_all_unbalance.with_unbalance(rest)
+    assert shot is not None
+    assert shot.multipliers.stable
+    _, orbit = after(free.with_all_unbalance, rest.wet, omega, 160)
+    assert np.abs(shot.eccentricity_max - np.hypot(*rest.displacement.T)).max() > 0.01
+    np.testing.assert_allclose(largest(orbit), shot.eccentricity_max, atol=1e-6)
 
 
 HEAVY = (
