@@ -57,7 +57,7 @@ def whirls_of_branch(
 
 
 @dataclass(frozen=True)
-class Run:
+class HeldRun:
     """What the time loop makes of a cycle with the unbalance. omega: rad/s; wet: the machine after SETTLING pairs of
     periods of the rotor; moved: how far its state then goes in one and in two periods; last: (t, J, 2) displacements
     over the last LAST periods before; frequency: rad/s, their whirl's."""
@@ -69,7 +69,7 @@ class Run:
     frequency: float
 
 
-def _run(driven: Shooting, shot: Shot) -> Run | None:
+def _run(driven: Shooting, shot: Shot) -> HeldRun | None:
     """What a cycle becomes in the time loop; None if that ends before."""
     flow, omega, wet = driven.flow, driven.unit * math.exp(shot.p[1]), shot.wet
     try:
@@ -86,10 +86,10 @@ def _run(driven: Shooting, shot: Shot) -> Run | None:
     once, twice = (float(np.linalg.norm(other - first)) for other in others)
     d = passage.displacements[:, int(np.ptp(passage.displacements, axis=0).max(axis=1).argmax())]
     turned = np.unwrap(np.arctan2(*(d - d.mean(axis=0)).T[::-1]))
-    return Run(omega, passage.end, (once, twice), passage.displacements, float(turned[-1] - turned[0]) / time)
+    return HeldRun(omega, passage.end, (once, twice), passage.displacements, float(turned[-1] - turned[0]) / time)
 
 
-def _why(run: Run | None) -> str:
+def _why(run: HeldRun | None) -> str:
     """Why no whirl was found, by what the time loop makes of the cycle."""
     if run is None:
         return "a run from the cycle ends early, as where a journal touches its shell"
@@ -127,7 +127,7 @@ def _curve(shooting: Shooting, shot: Shot, before: InvariantCurve | None) -> Inv
     return found
 
 
-def _locked(driven: Shooting, run: Run) -> Shot | None:
+def _locked(driven: Shooting, run: HeldRun) -> Shot | None:
     """The motion of two periods of the rotor that a run of a cycle ends in; None if it does not."""
     if run.moved[1] > REPEATS:
         return None
