@@ -13,8 +13,8 @@ from frbcli.cycles.method.balance import left_out, packed
 from frbcli.cycles.method.continuation import (
     Place,
     Strides,
-    Unreachable,
     halved_until,
+    located,
     next_length,
     oriented,
     step_from,
@@ -169,28 +169,16 @@ def _crossing(
     follower: Follower, place: Place, length: float, ends: tuple[Multipliers, Multipliers]
 ) -> Place | None:
     """Where a multiplier crosses the unit circle within a step, between those at its ends."""
-    from scipy.optimize import brentq
-
-    number = max(found.unstable for found in ends) - 1
+    number, asked = max(found.unstable for found in ends) - 1, follower.equations(place)
     known = {0.0: ends[0].growth(number), length: ends[1].growth(number)}
+    if known[0.0] * known[length] > 0.0:  # one end is within the error of the trivial multiplier
+        found = step_from(asked, place, min(known, key=lambda along: abs(known[along])))
+        return None if found is None else oriented(found, place.tangent)
 
-    def growth(along: float) -> float:
-        if along not in known:
-            known[along] = follower.multipliers(at(along), ends[1]).growth(number)
-        return known[along]
+    def growth(one: Place) -> float:
+        return follower.multipliers(one, ends[1]).growth(number)
 
-    def at(along: float) -> Place:
-        there = step_from(follower.equations(place), place, along)
-        if there is None:
-            raise Unreachable
-        return oriented(there, place.tangent)
-
-    try:
-        if known[0.0] * known[length] > 0.0:  # one end is within the error of the trivial multiplier
-            return at(min(known, key=lambda along: abs(known[along])))
-        return at(float(brentq(growth, 0.0, length, xtol=CLOSE * length)))
-    except Unreachable:
-        return None
+    return located(asked, place, length, growth, CLOSE * length, known)
 
 
 def _why_not(follower: Follower, place: Place) -> str:

@@ -29,6 +29,7 @@ from frbcli.cycles.method.continuation import (
     Place,
     Strides,
     Unreachable,
+    at_value,
     corrected,
     halved_until,
     next_length,
@@ -36,6 +37,7 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
+from frbcli.cycles.method.cycle import with_harmonics
 from frbcli.cycles.method.equilibria import equations as resting_equations
 from frbcli.cycles.parts.machine import film_loads, transfer
 
@@ -189,10 +191,8 @@ def _on_border(equations: Callable[[Array], Equations], there: Place, corners: t
     """The place next to one outside of the rectangle in which the curve leaves it."""
     at, limits = there.y[-2:], np.clip(there.y[-2:], *corners)
     number = int(np.argmax(np.abs(at - limits))) - 2
-    guess = there.y + (limits[number] - at[number]) / there.tangent[number] * there.tangent
-    guess[number] = limits[number]
-    found = corrected(equations(there.y), guess, unit_vector(len(guess), number))
-    return there if found is None else oriented(found, there.tangent)
+    found = at_value(equations(there.y), there, limits[number], number)
+    return there if found is None else found
 
 
 def _stepped(
@@ -215,7 +215,7 @@ def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Plac
             return place
         more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
         y, tangent = (
-            np.concatenate([vector[:before], with_harmonics(vector[before:], machine.size, more)])
+            np.concatenate([vector[:before], with_harmonics(vector[before:], machine.size, more, 3)])
             for vector in (place.y, place.tangent)
         )
         found = corrected(equations(y), y, tangent / np.linalg.norm(tangent))
@@ -223,11 +223,3 @@ def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Plac
             return None
         place = oriented(found, tangent)
     return place
-
-
-def with_harmonics(vector: Array, c: int, harmonics: int) -> Array:
-    """Unknowns of a fold with other harmonics, new ones zero."""
-    body = np.zeros(c * (2 * harmonics + 1))
-    kept = min(len(body), len(vector) - 3)
-    body[:kept] = vector[:kept]
-    return np.concatenate([body, vector[-3:]])

@@ -25,14 +25,13 @@ from frbcli.cycles.maps.curves import (
     fold_equations,
     follow_both,
     hopf_equations,
-    with_harmonics,
 )
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.balance import Balance
-from frbcli.cycles.method.continuation import Equations, Place, Unreachable, step_from
+from frbcli.cycles.method.continuation import Equations, Place, Unreachable, located
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, amplitude, eccentricities
+from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, amplitude, eccentricities, with_harmonics
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.cycles.unbalance.synchronous import synchronous_equations
@@ -43,6 +42,7 @@ BAUTIN, CUSP = "bautin", "cusp"
 ACROSS = 200  # values of the first number at which the growth at rest is evaluated
 KNOWN = 4e-3  # distance in the plane, over its size, and of the frequency: a point lies on a curve that is known
 SMALL = 0.04  # amplitude over the clearance below which a curve of folds has come to that of Hopf points
+SHARP = 1e-6  # of a step: how closely a cusp or a change of the criticality is located
 MET = "It meets the curve of Hopf points."
 
 
@@ -270,7 +270,7 @@ def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Arr
     """The curve through a point, unless it is known or not found."""
     size = plane.machine(start).size
     if kind == FOLD and (len(start) - 3) // size // 2 > MOST_HARMONICS:
-        start = with_harmonics(start, size, MOST_HARMONICS)
+        start = with_harmonics(start, size, MOST_HARMONICS, 3)
     if any(_lies_on(plane, curve, _point(plane, kind, start)) for curve in known if curve.kind == kind):
         return []
 
@@ -358,24 +358,10 @@ def _zero(
     equations: Callable[[Array], Equations], pair: tuple[Place, Place], told: Callable[[Place], float]
 ) -> Place | None:
     """Where a number of the places between two changes its sign."""
-    from scipy.optimize import brentq
-
     place, other = pair
-    asked, length = equations(place.y), float((other.y - place.y) @ place.tangent)
-
-    def at(along: float) -> Place:
-        if along in (0.0, length):
-            return place if along == 0.0 else other
-        found = step_from(asked, place, along)
-        if found is None:
-            raise Unreachable
-        turned = found.tangent if found.tangent @ place.tangent > 0.0 else -found.tangent
-        return Place(found.y, turned)
-
-    try:
-        return at(float(brentq(lambda along: told(at(along)), 0.0, length, xtol=1e-6 * abs(length), maxiter=40)))
-    except (Unreachable, ValueError, RuntimeError):
-        return None
+    length = float((other.y - place.y) @ place.tangent)
+    known = {0.0: told(place), length: told(other)}
+    return located(equations(place.y), place, length, told, SHARP * abs(length), known)
 
 
 def _lies_on(plane: MapPlane, curve: MapCurve, point: MapPoint) -> bool:

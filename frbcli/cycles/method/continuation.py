@@ -6,9 +6,10 @@ plane across t. The plane is met also where the curve turns back in its paramete
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
+from types import MappingProxyType
 from typing import TypeVar
 
 import numpy as np
@@ -162,29 +163,56 @@ def _between(found: dict[float, Place | None], at: float) -> Array | None:
     return known[below] + (at - below) / (above - below) * (known[above] - known[below])
 
 
-def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
-    """Where the parameter turns back within a step of `length` from `place`, to a share `tolerance` of it: the tangent
-    has no part along the parameter there. None where it does not turn back, or cannot be followed."""
+def located(
+    equations: Equations,
+    place: Place,
+    length: float,
+    told: Callable[[Place], float],
+    tolerance: float,
+    known: Mapping[float, float] = MappingProxyType({}),
+) -> Place | None:
+    """The place within a step of `length` from one at which a number that is told of places changes its sign, known to
+    a length `tolerance` along the tangent. known: the number at some lengths. None where it does not change its sign,
+    or the curve cannot be followed."""
     from scipy.optimize import brentq
 
     found: dict[float, Place | None] = {0.0: place}
+    numbers = dict(known)
 
-    def turning(at: float) -> float:
-        if at not in found:
-            other = step_from(equations, place, at)
-            if other is None and (near := _between(found, at)) is not None:
-                other = step_from(equations, place, at, near)
-            found[at] = None if other is None else oriented(other, place.tangent)
-        there = found[at]
+    def at(along: float) -> Place:
+        if along not in found:
+            other = step_from(equations, place, along)
+            if other is None and (near := _between(found, along)) is not None:
+                other = step_from(equations, place, along, near)
+            found[along] = None if other is None else oriented(other, place.tangent)
+        there = found[along]
         if there is None:
             raise Unreachable
-        return float(there.tangent[-1])
+        return there
+
+    def number(along: float) -> float:
+        if along not in numbers:
+            numbers[along] = told(at(along))
+        return numbers[along]
 
     try:
-        if turning(0.0) * turning(length) > 0.0:
+        if number(0.0) * number(length) > 0.0:
             return None
-        root = float(brentq(turning, 0.0, length, xtol=tolerance * max(length, 1.0), rtol=1e-12))
-        turning(root)
+        return at(float(brentq(number, 0.0, length, xtol=tolerance, rtol=1e-12)))
     except Unreachable:
         return None
-    return found[root]
+
+
+def fold_between(equations: Equations, place: Place, length: float, tolerance: float = 1e-9) -> Place | None:
+    """Where the parameter turns back within a step of `length` from `place`, to a share `tolerance` of it: the tangent
+    has no part along the parameter there. None where it does not turn back, or cannot be followed."""
+    return located(equations, place, length, lambda one: float(one.tangent[-1]), tolerance * max(length, 1.0))
+
+
+def at_value(equations: Equations, near: Place, value: float, number: int = -1) -> Place | None:
+    """The point at a value of one unknown, the last one if not given, next to another point; None if it is not
+    found."""
+    guess = near.y + (value - near.y[number]) / near.tangent[number] * near.tangent
+    guess[number] = value
+    found = corrected(equations, guess, unit_vector(len(guess), number))
+    return None if found is None else oriented(found, near.tangent)

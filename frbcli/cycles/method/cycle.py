@@ -31,17 +31,19 @@ class Cycle:
     kind: str = ""
 
 
+def with_harmonics(vector: Array, c: int, harmonics: int, numbers: int = 2) -> Array:
+    """Unknowns of a cycle with other harmonics, new ones zero. numbers: how many stand behind them, frequency, speed
+    and what else."""
+    body = np.zeros(c * (2 * harmonics + 1))
+    kept = min(len(body), len(vector) - numbers)
+    body[:kept] = vector[:kept]
+    return np.concatenate([body, vector[-numbers:]])
+
+
 def resized(place: Place, c: int, harmonics: int) -> Place:
     """The place with other harmonics, new ones zero; as it was found."""
-
-    def cut(vector: Array) -> Array:
-        body = np.zeros(c * (2 * harmonics + 1))
-        kept = min(len(body), len(vector) - 2)
-        body[:kept] = vector[:kept]
-        return np.concatenate([body, vector[-2:]])
-
-    tangent = cut(place.tangent)
-    return replace(place, y=cut(place.y), tangent=tangent / np.linalg.norm(tangent))
+    tangent = with_harmonics(place.tangent, c, harmonics)
+    return replace(place, y=with_harmonics(place.y, c, harmonics), tangent=tangent / np.linalg.norm(tangent))
 
 
 def resized_like(place: Place, other: Place, c: int) -> Place:

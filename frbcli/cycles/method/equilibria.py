@@ -12,7 +12,17 @@ from functools import partial
 import numpy as np
 
 from frbcli.arrays import Array, Complex
-from frbcli.cycles.method.continuation import Equations, Place, Strides, follow, oriented, reached, unit_vector
+from frbcli.cycles.method.continuation import (
+    Equations,
+    Place,
+    Strides,
+    Unreachable,
+    at_value,
+    follow,
+    oriented,
+    reached,
+    unit_vector,
+)
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
@@ -101,10 +111,10 @@ def resting_along(course: MachineCourse, near: Array, lowest: float, highest: fl
             break
     note = ""
     if places[-1].y[-1] <= lowest < places[-2].y[-1]:
-        before = places[-2]
-        guess = before.y + (lowest - before.y[-1]) / before.tangent[-1] * before.tangent
-        guess[-1] = lowest
-        places[-1] = reached(asked, guess, down)
+        end = at_value(asked, places[-2], lowest)
+        if end is None:
+            raise Unreachable
+        places[-1] = end
     else:
         lost = f"{places[-1].y[-1] * course.scale:.4g} {course.unit}".rstrip()
         note = f"The resting positions could not be followed below {lost}."

@@ -19,6 +19,7 @@ from frbcli.cycles.method.continuation import (
     Place,
     Strides,
     Unreachable,
+    at_value,
     corrected,
     fold_between,
     halved_until,
@@ -134,9 +135,8 @@ class TorusFollower:
 
     def at_speed(self, here: TorusPlace, speed: float) -> TorusPlace | None:
         """The motion next to a place at a speed over the pace."""
-        guess = here.place.y + (speed - here.place.y[-1]) / here.place.tangent[-1] * here.place.tangent
-        found = corrected(self.equations(here), guess, unit_vector(len(guess)))
-        return None if found is None else replace(here, place=oriented(found, here.place.tangent))
+        found = at_value(self.equations(here), here.place, speed)
+        return None if found is None else replace(here, place=found)
 
 
 def follow_torus(
