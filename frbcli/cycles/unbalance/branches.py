@@ -16,7 +16,7 @@ from frbcli.cycles.parts.reduced_states import reduced_space
 from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles, MissingWhirl, UnbalancedWhirl, hertz
 from frbcli.cycles.unbalance.growth import is_stable
 from frbcli.cycles.unbalance.torus_branch import TorusFollower, TorusPlace, follow_torus
-from frbcli.cycles.unbalance.two_frequencies import Torus
+from frbcli.cycles.unbalance.two_frequencies import UNKNOWN, Torus
 from frbcli.cycles.unbalance.whirls import Chain, WhirlFound, free_whirl
 
 Observer = Callable[[int, float, float], None]
@@ -26,7 +26,6 @@ APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a b
 SAME = 1e-3  # of its frequency: a motion lies on a branch that passes it at this distance
 MOST_INTERVALS = 60_000  # in which the stability of a motion behind others is to be seen
 BORDER = 1e-9  # of the fastest speed
-UNKNOWN = "the equations do not lead to one"
 
 
 def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:

@@ -30,6 +30,7 @@ from frbcli.cycles.unbalance.synchronous import WHIRLS
 
 Orders = NDArray[np.int64]
 
+UNKNOWN = "the equations do not lead to one"
 TAIL = 1e-6  # of the clearance: what a harmonic that is left out may have
 MARGIN = np.array([4, 2])  # by how many orders beyond the largest ones harmonics are looked for
 MOST = 600  # harmonics
@@ -115,7 +116,7 @@ def with_unbalance(machine: Machine, guess: Torus) -> Torus:
         except Unreachable as why:
             step *= 0.5
             if step < SMALLEST:
-                raise Unreachable(f"{why} with more than {share:.0%} of the unbalance") from None
+                raise Unreachable(f"{str(why) or UNKNOWN} with more than {share:.0%} of the unbalance") from None
     return torus
 
 
