@@ -7,7 +7,8 @@ turn together; L maps forces onto the machine, and onto the rings their moments 
 
 How a film answers depends on where its fronts lie between its cells: fronts cross cells one at a time, and the
 derivative jumps. So Z is the mean over PLACES of the cells. Its error is of first order in the size of the cells:
-MESHES extrapolates two sizes, and the difference to the finer one is the expected error.
+MESHES extrapolates two sizes, and the difference to the finer one is the expected error. What the mean over the places
+leaves is a part of the error of its own: see place_errors.
 """
 
 from __future__ import annotations
@@ -37,6 +38,7 @@ Complex = NDArray[np.complex128]
 # Cells around, and along a half of the width, with their weights in the extrapolation.
 MESHES = (((96, 12), 2.0), ((48, 6), -1.0))
 PLACES = 8  # of the cells, over one cell
+SPREAD = 2.0  # standard deviations of what the mean over the places leaves that are told as its error
 PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
@@ -50,13 +52,15 @@ NEARLY_REAL = 1e-3  # imaginary part over |s|: round-off of a start that is real
 class DynamicFilm:
     """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
     exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
-    the oil, but for `exact`. `turns`: whether it is one beside rings, see LinearFilm.turning."""
+    the oil, but for `exact`; lying: of each of MESHES with its cells in each of PLACES, times the weight of the mesh.
+    `turns`: whether it is one beside rings, see LinearFilm.turning."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
     one: DynamicStiffness
     summits: DynamicStiffness
     exact: LinearFilm | None = None
+    lying: tuple[tuple[DynamicStiffness, ...], ...] = ()
 
     def oil_at(self, frequency: float) -> tuple[Array, Array]:
         """Stiffness and damping (c, d) at a frequency in rad/s, above 0, without the summits."""
@@ -70,7 +74,7 @@ class DynamicFilm:
         at = slice(0, len(summits.force))
         more.place[at, at], more.rate[at, at] = memoryless(summits)
         own, fine, one = (weighted([(each, 1.0), (more, 1.0)]) for each in (self.own, self.fine, self.one))
-        return DynamicFilm(own, fine, one, more, self.exact)
+        return DynamicFilm(own, fine, one, more, self.exact, self.lying)
 
 
 def dynamic_film(
@@ -80,9 +84,10 @@ def dynamic_film(
     Films.linear; total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises
     NotConverged."""
     frequencies = [share * abs(omega) for share in PROJECTED]
+    lying: list[tuple[DynamicStiffness, ...]] = []
     means: list[DynamicStiffness] = []
     begun: list[tuple[DynamicStiffness, LinearFilm]] = []
-    for cells, _ in MESHES:
+    for cells, weight in MESHES:
         on_cells = film(cells)
         parts: list[tuple[DynamicStiffness, float]] = []
         start: Array | None = None
@@ -93,9 +98,10 @@ def dynamic_film(
             parts.append((dynamic_stiffness(linear, frequencies), 1.0 / PLACES))
             begun.append((parts[-1][0], linear))
         means.append(weighted(parts))
+        lying.append(tuple(weighted([(part, weight)]) for part, _ in parts))
     own = weighted([(mean, weight) for mean, (_, weight) in zip(means, MESHES, strict=True)])
     one, exact = begun[0]
-    return DynamicFilm(own, means[0], one, _nothing(one), exact)
+    return DynamicFilm(own, means[0], one, _nothing(one), exact, tuple(lying))
 
 
 def constant_film(force: FilmForce, place: Array, turns: bool = False) -> DynamicFilm:
@@ -193,6 +199,30 @@ def followed(
     """The eigenvalues of `modes` on other films, those that are known leading to them."""
     found = [_iterated(machine, films, value, shape) for value, shape in known]
     return [each for each in found if math.isfinite(each[0].real)]
+
+
+def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Complex) -> Array:
+    """(N,) 1/s by how much eigenvalues (N,) are expected to be off since the films are means over few PLACES.
+
+    Over the place of the cells, which comes round after one cell, Z rises evenly by J and jumps back where a front
+    passes into the next cell. The mean over P places misses that by J (1/2 - x) / P, with x as likely anywhere from 0
+    to 1: in the square by J^2 / (12 P^2). Neighbours among the places differ by J / P, or by J (1 - 1 / P) across the
+    jump: the sum of their squares is J^2 (1 - 1 / P). Several fronts add up in the square."""
+    own, found = [film.own for film in films], np.zeros(len(values))
+    for number, s in enumerate(values.tolist()):
+        matrix, slope = machine.at(s, own)
+        left, _, right = np.linalg.svd(matrix)
+        balance, shape = left[:, -1].conj(), right[-1].conj()
+        moved = shape.copy()
+        moved[list(machine.turning)] /= s  # see Oscillator: of what turns, the shape has the speed
+        scale, square = balance @ slope @ shape, 0.0
+        for push, journal, film in zip(machine.pushes, machine.journals, films, strict=True):
+            for places in film.lying:
+                shifts = np.array([balance @ push @ part.at(s)[0] @ journal @ moved for part in places]) / scale
+                count = len(places)
+                square += float(np.sum(np.abs(shifts - np.roll(shifts, 1)) ** 2)) / (12.0 * count * max(count - 1, 1))
+        found[number] = SPREAD * math.sqrt(square)
+    return found
 
 
 def _iterated(

@@ -12,7 +12,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
-from frbcli.equilibrium.dynamic_films import DynamicFilm
+from frbcli.equilibrium.dynamic_films import DynamicFilm, place_errors
 from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
@@ -201,12 +201,14 @@ def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None 
 
 def with_errors(point: StabilityPoint, machine: MachineAtRest) -> StabilityPoint:
     """The point of a machine with the errors of its eigenvalues: the distance to the nearest ones on the other meshes,
-    times their shares, at least LEAST of it. Real and imaginary part have the same one, since either may agree by
-    chance."""
+    times their shares, at least LEAST of it, and in films that keep oil at least what the places of their cells leave.
+    Real and imaginary part have the same one, since either may agree by chance."""
     others = [(values, share) for values, share in other_eigenvalues(machine) if len(values)]
     if not others:
         return point
     apart = [share * np.abs(point.eigenvalues[:, None] - values).min(axis=1) for values, share in others]
+    if machine.dynamic:
+        apart.append(place_errors(machine.oscillator, machine.dynamic, point.eigenvalues))
     return replace(point, errors=np.max([LEAST * np.abs(point.eigenvalues), *apart], axis=0))
 
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.arrays import Complex
+from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST
@@ -20,8 +20,9 @@ from frbcli.scene.remedies import advised
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
-# The same with films that keep oil, whose eigenvalues scatter as fronts of the oil cross cells.
-SCATTERED_TOLERANCE, SCATTERED_AHEAD = 3e-4, 0.03
+# Eigenvalues on films that keep oil scatter from speed to speed, as fronts of the oil cross cells. There a threshold is
+# sought as closely as NEAR, relative to its speed, and is the zero of the line through FITTED ones within AROUND of it.
+NEAR, FITTED, AROUND = 0.03, 5, 0.04
 
 
 @dataclass(frozen=True)
@@ -114,13 +115,58 @@ def _crossing(
 
     try:
         with advised(case):
-            close = SCATTERED_TOLERANCE if machines.system.remembers else THRESHOLD_TOLERANCE
-            found = hopf.located(point, low, high, 0, close, guess)
+            scatters = machines.system.remembers
+            found = hopf.located(point, low, high, 0, NEAR if scatters else THRESHOLD_TOLERANCE, guess)
             near = next((each for each in known if each.omega == 2 * math.pi * found.speed_Hz), None)
+            if scatters:
+                return _fitted(machines, found, near), ""
             return threshold_at(machines, found.speed_Hz, near=near), ""
     except NotConverged as error:
         between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
         return None, f"A threshold lies between {between}, but was not found: {error}"
+
+
+@dataclass(frozen=True)
+class _Zero:
+    """Where the growth of a whirl is zero, by the straight line through its eigenvalues (N,) at several speeds in Hz:
+    speed in Hz and frequency in rad/s, and how uncertain the scatter of the eigenvalues about the line leaves both, as
+    two standard deviations."""
+
+    speed: float
+    frequency: float
+    speed_spread: float
+    frequency_spread: float
+
+    @classmethod
+    def of(cls, speeds: Array, values: Complex) -> _Zero:
+        """That of eigenvalues (N,) in 1/s at speeds (N,)."""
+        middle = float(speeds.mean())
+        line = np.stack([np.ones(len(speeds)), speeds - middle], axis=1)
+        here, slope = np.linalg.lstsq(line.astype(complex), values)[0].tolist()
+        off = -here.real / slope.real
+        square = float(np.sum(np.abs(values - line @ [here, slope]) ** 2)) / 2.0  # of growth or frequency alone
+        spread = 2.0 * math.sqrt(square / (len(speeds) - 2) / len(speeds)) / abs(slope.real)
+        return cls(middle + off, here.imag + slope.imag * off, spread, spread * abs(slope))
+
+
+def _fitted(machines: StaticMachines, here: StabilityPoint, near: MachineAtRest | None) -> Threshold:
+    """The threshold near a point in films that keep oil, sought from the machine near it: where the line through the
+    growth at several speeds is zero. Its error is the distance to that on the finer mesh alone, or what the scatter of
+    the eigenvalues leaves, where that is more. Raises NotConverged."""
+    speeds = here.speed_Hz * (1.0 + np.linspace(-AROUND, AROUND, FITTED))
+    own, finer = np.zeros((2, FITTED), dtype=complex)
+    for number, speed in enumerate(speeds.tolist()):
+        near = machines.at(2 * math.pi * speed, near, with_error=False)
+        ((others, _),) = other_eigenvalues(near)
+        for kept, values in ((own, point_at_rest(near, speed).eigenvalues), (finer, others)):
+            kept[number] = values[np.argmin(np.abs(values - here.critical))]
+    zero, other = _Zero.of(speeds, own), _Zero.of(speeds, finer)
+    return Threshold(
+        zero.speed,
+        zero.frequency / (2 * math.pi),
+        max(LEAST * zero.speed, abs(zero.speed - other.speed), zero.speed_spread),
+        max(LEAST * zero.frequency, abs(zero.frequency - other.frequency), zero.frequency_spread) / (2 * math.pi),
+    )
 
 
 def threshold_at(
@@ -138,14 +184,12 @@ def threshold_at(
             return critical_eigenvalue(values)
         return complex(values[np.argmin(np.abs(values - 2j * math.pi * frequency_Hz))])
 
-    same = near is not None and near.omega == 2 * math.pi * speed and bool(near.dynamic)  # whose errors are known
-    machine = near if near is not None and same else machines.at(2 * math.pi * speed, near)
+    machine = machines.at(2 * math.pi * speed, near)
     own = critical(point_at_rest(machine, speed).eigenvalues)
     frequency = own.imag / (2 * math.pi)
-    ahead = SCATTERED_AHEAD if machine.dynamic else AHEAD
-    beyond = point_at_rest(machines.at(2 * math.pi * speed * (1.0 + ahead), machine, with_error=False), speed)
-    slope = (critical(beyond.eigenvalues) - own) / (ahead * speed)
-    known = machine.static.case.films == () or bool(machine.others or machine.dynamic)
+    beyond = point_at_rest(machines.at(2 * math.pi * speed * (1.0 + AHEAD), machine, with_error=False), speed)
+    slope = (critical(beyond.eigenvalues) - own) / (AHEAD * speed)
+    known = machine.static.case.films == () or bool(machine.others)
     least = (LEAST if machine.static.case.films else THRESHOLD_TOLERANCE) if known else math.nan
     speeds, frequencies = [least * speed], [least * frequency]
     for others, share in other_eigenvalues(machine):

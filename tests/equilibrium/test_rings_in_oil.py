@@ -12,6 +12,9 @@ from marches import march, rigid_shaft, start
 
 import frbcli
 from frbcli.case.schema import Case
+from frbcli.cycles.shooting.period_map import period_map
+from frbcli.cycles.shooting.rest import settled
+from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium import dynamic_films, static_films
 from frbcli.equilibrium.dynamic_films import Oscillator
 from frbcli.equilibrium.resting import resting_position
@@ -161,6 +164,24 @@ def test_whirls_grow_as_in_the_time_loop(machine: str, monkeypatch: pytest.Monke
     assert point.growth > 10.0
     assert abs(found - point.critical) < 4e-3 * abs(point.critical)
     assert found.real == pytest.approx(point.growth, rel=0.03)
+
+
+@pytest.mark.nightly  # half a minute
+def test_every_slow_motion_decays_as_by_shooting(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whirl, journal of the outer film and speed of the ring, which decay with 3, 30 and 15 1/s: a run shows all of
+    them at once. By shooting on 48 x 6 cells, whose own error is 0.2 1/s of the whirl and 0.4 1/s of the journal."""
+    monkeypatch.undo()  # on all cells of stability
+    case = ring_case("2 bar", "two-phase")
+    (point,) = stability_points(case, [SPEED])[1]
+    rest = settled(Shooting(period_map(case, (48, 6)), OMEGA), OMEGA)
+    assert rest is not None
+    slow = np.flatnonzero((point.eigenvalues.real > -0.2 * OMEGA) & (point.eigenvalues.imag >= 0.0))
+    assert len(slow) == 3
+    for number in slow:
+        value, error = point.eigenvalues[number], point.errors[number]
+        assert np.abs(rest.eigenvalues - value).min() < error + (0.4 if value.imag else 0.0)
+    ring = point.eigenvalues[point.eigenvalues.imag == 0.0]
+    assert ring == pytest.approx([-15.2], rel=0.01)
 
 
 def tilting_shaft(law: str) -> Case:
