@@ -42,6 +42,9 @@ SPREAD = 2.0  # standard deviations of what the mean over the places leaves that
 PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
+# Relative distance to a pole of a projection within which a motion is one of the projection alone: to that of a film
+# with gas belong some that grow and move nothing, next to which the inverse iteration ends at once.
+POLE = 1e-8
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
 CENTRE = 1e-9  # m: off the centre by less, a journal takes no notice of both surfaces turning
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
@@ -187,6 +190,8 @@ def modes(
         if not math.isfinite(value.real) or value.real < -DAMPED * abs(omega) or value.imag < -EQUAL * abs(value):
             continue
         if any(abs(value - other) < EQUAL * abs(value) for other, _ in found):
+            continue
+        if any((np.abs(1.0 + value * film.delays) < POLE).any() for film in own):
             continue
         if all(_trusted(film, value) for film in films):
             found.append((value, vector))

@@ -16,10 +16,11 @@ from frbcli.cycles.shooting.period_map import period_map
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium import dynamic_films, static_films
-from frbcli.equilibrium.dynamic_films import Oscillator
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
+from frbcli.film.cells.dynamic_stiffness import DynamicStiffness, without_memory
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest
@@ -118,6 +119,21 @@ def test_a_forced_motion_is_that_of_machine_and_oil(speed: float, surfaces: tupl
     expected[-1] /= 1j * nu  # its angle, of its speed
     np.testing.assert_allclose(found, expected, rtol=1e-8)
     assert abs(found[-1]) > 0.0
+
+
+def test_poles_of_a_projection_that_move_nothing_are_no_motions_of_the_machine() -> None:
+    """A film of a spring, and a pair of poles that grow, whose share in the force is 1e-12 of it: the dense problem has
+    them as eigenvalues, and the machine two whirls."""
+    spring, pole = np.diag([4.0, 9.0]), 0.3 + 1.4j
+    poles = np.array([pole, pole.conjugate()])
+    tiny = np.full((2, 2), 1e-6 + 0.0j)
+    film = DynamicStiffness(spring, np.zeros((2, 2)), tiny, tiny, tiny, -1.0 / poles)
+    nothing = without_memory(*np.zeros((2, 2, 2)))
+    machine = Oscillator(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), np.eye(2)[None], np.eye(2)[None])
+    assert np.abs([value - pole for value, _ in machine.starts([film])]).min() < 1e-9
+    found = modes(machine, [DynamicFilm(film, film, film, nothing)], [film], 1.0)
+    assert sorted(value.imag for value, _ in found) == pytest.approx([2.0, 3.0])
+    assert [value.real for value, _ in found] == pytest.approx([0.0, 0.0], abs=1e-9)
 
 
 @pytest.mark.parametrize("factor", ["global", "local"])
