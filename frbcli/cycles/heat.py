@@ -20,11 +20,10 @@ from frbcli.cycles.method.balance import harmonics_of, packed, through
 from frbcli.cycles.method.continuation import Equations, Unreachable
 from frbcli.cycles.method.courses import EquationsOf, MachineCourse
 from frbcli.cycles.method.floquet import Multipliers
-from frbcli.cycles.parts.film_heat import FilmHeats, film_heats, heats_at
+from frbcli.cycles.parts.film_heat import Ends, FilmHeats, film_heats, heats_at
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.warm_machine import WarmMachines
-from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.rotor.order import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
@@ -63,7 +62,7 @@ class HeatOfMotions:
     base: Machine
     model: HeatModel
     made: Array
-    ends: tuple[EndFlow, ...]
+    ends: Ends
     concentric: Array | None
     start: Array
 
@@ -220,7 +219,8 @@ def warm_courses(
     top = WarmMachines(case, plan, system).at(fastest)
 
     def course(its: System) -> WarmSpeed:
-        base, ends = make_machine(its, fastest), its.films.end_flows
+        base = make_machine(its, fastest)
+        ends = its.films.smooth_ends(base.films)
         return WarmSpeed(HeatOfMotions(base, heat.model, made, ends, concentric, top.steady.temperatures))
 
     return course, top.resting

@@ -18,7 +18,12 @@ from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equations
+from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.errors import InputError
+from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.mean_flow import mean_end_flows
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -29,8 +34,16 @@ HEAT = ["thermal.model=lumped", "thermal.supply_temperature=70 degC"]
 GROOVES = [f"bearing.{film}.supply={{kind='circumferential-groove', pressure='2 bar'}}" for film in ("inner", "outer")]
 
 
+HOLES = 'bearing.supply={kind="bores", count=6, diameter="2 mm", pressure="2 bar", on="journal"}'
+TURNING = [OIL[0], *HEAT, HOLES, "accuracy.mesh=[4,24]"]
+
+
 def jeffcott(*settings: str) -> Case:
     return load_case("jeffcott", [*OIL, *settings])
+
+
+def turning(*settings: str) -> Case:
+    return load_case("jeffcott", [*TURNING, *settings])
 
 
 def course_at_rest(case: Case) -> tuple[WarmSpeed, np.ndarray]:
@@ -42,9 +55,49 @@ def course_at_rest(case: Case) -> tuple[WarmSpeed, np.ndarray]:
     return course, at_rest(course.top, position)
 
 
+def test_openings_that_turn_let_the_mean_over_their_angle_out() -> None:
+    """Of films on the same cells with the openings at twelve angles, at 1.7 times the viscosity of the table. Between
+    its eccentricities and angles the table is 0.4 % off."""
+    films = make_system(turning(), make_plan(turning())).films
+    (end,) = films.smooth_ends(films.smooth([0.0]))
+    (film,), omega, thicker = films.with_fields, 2.0 * math.pi * 80.0, 1.7
+    for x, y in ((0.35, -0.3), (0.02, 0.01)):
+        leaving = []
+        for angle in np.linspace(0.0, math.pi / 3.0, 12, endpoint=False):
+            c, s = math.cos(angle), math.sin(angle)
+            d = c * x + s * y, c * y - s * x
+            solution = FilmSolver(film).steady(Motion(d, (0.0, 0.0), thicker * omega))
+            leaving.append(outflow(film, d, film.pressure(solution.state)) / thicker)
+        motion = np.array([[x, y, 0.5 * omega * y, -0.5 * omega * x]])
+        found = films.clearances[0] * mean_end_flows(end, motion, np.array([omega]), thicker)  # type: ignore[arg-type]
+        assert found == pytest.approx(np.mean(leaving), rel=6e-3)
+
+
+@pytest.mark.nightly  # 2 s each: tables of fields
+@pytest.mark.parametrize(
+    "case",
+    [
+        turning("speed.from=90 Hz", "speed.to=100 Hz"),
+        load_case(
+            "floating-ring-heat",
+            ["film.cavitation=half-sommerfeld", "accuracy.mesh=[4,24]", "speed.from=50 Hz", "speed.to=100 Hz"],
+        ),
+    ],
+    ids=["holes in the journal", "holes in a ring"],
+)
+def test_a_machine_whose_openings_turn_is_as_warm_at_rest_as_with_its_openings_in_one_place(case: Case) -> None:
+    course, rest = course_at_rest(case)
+    plan, omega = make_plan(case), 2.0 * math.pi * 100.0
+    warm = course._heat.warm(rest[None].astype(complex), 0.0, omega)
+    steady = WarmMachines(case, plan, make_system(case, plan)).at(omega).steady
+    assert warm.temperatures == pytest.approx(steady.temperatures, abs=0.2)
+    assert steady.temperatures[0] > course._heat.model.supply[0] + 5.0
+
+
 @pytest.mark.parametrize(
     ("name", "settings"),
     [
+        pytest.param("jeffcott", TURNING, marks=pytest.mark.nightly),
         ("jeffcott", [*OIL, *HEAT, "thermal.housing=60 degC"]),
         ("floating-ring-heat", ["film.cavitation=half-sommerfeld", "thermal.clearance=fixed", *GROOVES]),
     ],

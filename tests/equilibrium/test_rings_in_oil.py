@@ -16,7 +16,7 @@ from frbcli.cycles.shooting.period_map import period_map
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium import dynamic_films, static_films
-from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator, modes
+from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
@@ -131,7 +131,7 @@ def test_poles_of_a_projection_that_move_nothing_are_no_motions_of_the_machine()
     nothing = without_memory(*np.zeros((2, 2, 2)))
     machine = Oscillator(np.eye(2), np.zeros((2, 2)), np.zeros((2, 2)), np.eye(2)[None], np.eye(2)[None])
     assert np.abs([value - pole for value, _ in machine.starts([film])]).min() < 1e-9
-    found = modes(machine, [DynamicFilm(film, film, film, nothing)], [film], 1.0)
+    found = dynamic_films.modes(machine, [DynamicFilm(film, film, film, nothing)], [film], 1.0)
     assert sorted(value.imag for value, _ in found) == pytest.approx([2.0, 3.0])
     assert [value.real for value, _ in found] == pytest.approx([0.0, 0.0], abs=1e-9)
 

@@ -18,6 +18,7 @@ from frbcli.equilibrium.linearised import first_order, linearised
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import ring_torques
 from frbcli.equilibrium.static_films import static_films
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.tilted.force import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
@@ -395,6 +396,45 @@ def test_small_motions_of_rings_that_tilt_grow_in_cycles_as_in_the_linearised_ma
     assert (slow.real > 0.0).any()
     for value in slow:
         assert np.abs(rest.eigenvalues - value).min() < 2e-3 * abs(value)
+
+
+@pytest.mark.parametrize("body", ["rings", "cartridge"])
+@pytest.mark.nightly  # a minute of CPU time each
+def test_rings_that_tilt_in_films_that_keep_oil_grow_as_in_the_time_loop(
+    body: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Two runs from beside rest, on either side, by the shape of the motion that grows the fastest in stability: how
+    what lies between them goes on."""
+    monkeypatch.undo()  # on all cells of stability
+    case, duration, steps, lag, count = grooved(body, "film.cavitation=elrod", "accuracy.mesh=[8,96]"), 0.04, 400, 8, 9
+    machine = StaticMachines(case, memory=True).at(OMEGA)
+    value, shape = max(machine.modes, key=lambda mode: mode[0].real)
+    assert value.real > 50.0
+    system = system_of(case)
+    rest, spins = resting_position(system, OMEGA), list(system.spins)
+    shape *= 1e-3 * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ shape).max()
+    q, v = shape.real.copy(), (value * shape).real
+    q[spins], v[spins] = 0.0, shape.real[spins]  # of rings, the shape has the speeds
+    profile, control = (
+        speed_profile((0.0, duration), (OMEGA, OMEGA)),
+        Control(1e-7, 24.0, *(duration / steps,) * 2, 0.9999, 0.0),
+    )
+    runs = []
+    for side in (1.0, -1.0):
+        begin = state_at(system, profile, rest.displacements + side * q, rest.velocities(system) + side * v)
+        after = march(system, profile, control, begin)
+        moved = [
+            np.einsum("fcn,tn->tfc", system.rotor.journals, each).reshape(steps + 1, -1) for each in (after.q, after.v)
+        ]
+        runs.append(np.hstack([*moved, after.v[:, spins]]))
+    apart = (runs[0] - runs[1])[steps // 4 :]
+    apart /= np.abs(apart).max(axis=0)
+    motions = apart @ np.linalg.svd(apart, full_matrices=False)[2][:count].T
+    step = np.linalg.lstsq(motions[:-lag], motions[lag:], rcond=None)[0]
+    seen = np.log(np.linalg.eigvals(step).astype(complex)) / (lag * duration / steps)
+    nearest = seen[np.argmin(np.abs(seen - value))]
+    assert nearest.real == pytest.approx(value.real, rel=0.01)
+    assert nearest.imag == pytest.approx(value.imag, rel=1e-3)
 
 
 # -------------------------------------------------------------------------------------------------------------- case

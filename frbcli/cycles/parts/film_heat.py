@@ -15,9 +15,11 @@ from frbcli.arrays import Array, Complex
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
 from frbcli.cycles.parts.machine import Loads, Machine, film_loads
+from frbcli.film.cells.mean_flow import MeanEndFlow, mean_end_flows
 from frbcli.film.kinds.samples import drag_factor
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow
 
+Ends = tuple[EndFlow | MeanEndFlow, ...]
 DIFFERENCE = 1e-6  # of displacements over the clearance, and of velocities over the largest one
 
 
@@ -64,7 +66,7 @@ class _Rate:
     by_scale: Array
 
 
-def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu: float, omega: float) -> FilmHeats:
+def film_heats(machine: Machine, ends: Ends, motion: Complex, nu: float, omega: float) -> FilmHeats:
     """Means over the period of a motion (H + 1, c) with the frequency nu, rotor speed omega, in rad/s. ends: the flows
     through the ends of the films. Raises OutOfGap."""
     loads, rate = loads_along(replace(machine, cones=()), motion, nu, omega)
@@ -78,7 +80,7 @@ def film_heats(machine: Machine, ends: tuple[EndFlow, ...], motion: Complex, nu:
     )
 
 
-def heats_at(machine: Machine, ends: tuple[EndFlow, ...], u: Array, v: Array, omega: float) -> FilmHeats:
+def heats_at(machine: Machine, ends: Ends, u: Array, v: Array, omega: float) -> FilmHeats:
     """Means over n moments of a motion that is given: u, v (n, c), see film_loads; no derivative by it, N = 0. Raises
     OutOfGap."""
     loads = film_loads(replace(machine, cones=()), u, v, omega)
@@ -100,7 +102,7 @@ def _means(powers: list[_Rate], flows: list[_Rate], loads_by_scale: Array) -> Fi
 
 
 def _rates(
-    machine: Machine, ends: tuple[EndFlow, ...], loads: Loads, motion: tuple[Array, Array], omega: float
+    machine: Machine, ends: Ends, loads: Loads, motion: tuple[Array, Array], omega: float
 ) -> tuple[list[_Rate], list[_Rate], Array]:
     """Power and flow of each film at n moments of a motion, u and its rate (n, c), and loads_by_scale of FilmHeats."""
     u, v = motion
@@ -168,7 +170,7 @@ def _power(machine: Machine, f: int, at: _Moments) -> _Rate:
     )
 
 
-def _flow(machine: Machine, f: int, end: EndFlow, at: _Moments) -> _Rate:
+def _flow(machine: Machine, f: int, end: EndFlow | MeanEndFlow, at: _Moments) -> _Rate:
     """Flow and its derivatives by central differences: the flow of a table has none of its own."""
     c, scale, half = machine.clearances[f], float(machine.scales[f]), 0.5 * at.total[:, None]
     across = np.column_stack([at.d[:, 1], -at.d[:, 0]])
@@ -177,6 +179,8 @@ def _flow(machine: Machine, f: int, end: EndFlow, at: _Moments) -> _Rate:
     motions, steps = np.hstack([at.d, w]), (DIFFERENCE, DIFFERENCE, pace, pace)
 
     def flows(moved: Array, thicker: float = 1.0) -> Array:
+        if isinstance(end, MeanEndFlow):
+            return np.asarray(c * mean_end_flows(end, moved, at.total, thicker * scale))
         return np.asarray(c * _end_flows(end, moved, thicker * scale))
 
     slopes = [

@@ -24,7 +24,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.parts.rotor_parts import Part, parts_of
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, drag_factor, film_samples
+from frbcli.film.kinds.samples import BY_D, BY_OMEGA, BY_V, FORCE, at_viscosity, drag_factor, film_samples
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.asperities import Asperities
 from frbcli.film.roughness.rub_slopes import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, ON_SHELL, VALUE, rub_slopes
@@ -221,7 +221,8 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
         own, scale = slice(2 * f, 2 * f + 2), float(machine.scales[f])
         shares = machine.turning[f, 0]
         rate = scale * np.ascontiguousarray(v[:, own])  # s times the viscosity has the force of s times the velocities
-        found = film_samples(film, np.ascontiguousarray(d[:, f]), rate, scale * (speeds @ shares))
+        thicker = at_viscosity(film, scale)
+        found = film_samples(thicker, np.ascontiguousarray(d[:, f]), rate, scale * (speeds @ shares))
         by_omega = scale * found[:, BY_OMEGA:]
         values[:, own] = found[:, FORCE:BY_D]
         by_u[:, own, own] = found[:, BY_D:BY_V].reshape(n, 2, 2)

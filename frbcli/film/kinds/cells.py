@@ -20,6 +20,7 @@ from frbcli.film.cells.film import VolumeFilm, VolumeSolution, refilled, supplie
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import linear_film, lying
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
+from frbcli.film.cells.mean_flow import MeanEndFlow, mean_end_flow
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
@@ -27,6 +28,8 @@ from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
+from frbcli.film.mean_fields.table import MeanFilm
+from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.rough_gap import stress_factor
@@ -276,6 +279,11 @@ class CellFilms(Films):
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
             found.append(mean_film(film, len(openings), drop))
         return tuple(found)
+
+    def smooth_ends(self, films: Sequence[FilmData]) -> tuple[EndFlow | MeanEndFlow, ...]:
+        tables = [film for film in films if isinstance(film, MeanFilm)]
+        pairs = enumerate(zip(self.own, tables, strict=True))
+        return tuple(mean_end_flow(own, fields, self.data, i) for i, (own, fields) in pairs)
 
 
 def no_wet(films: Sequence[VolumeFilm]) -> Array:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import LinearFilm
+from frbcli.film.cells.mean_flow import MeanEndFlow
 from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Array
 from frbcli.film.kinds.fields import FieldFilm
@@ -194,6 +195,10 @@ class Films(ABC):
         """The films as forces that follow smoothly from the motion alone. ring_shares: (films,) speed of the ring
         outside of each film over its total, 0 without one that turns."""
         raise NotImplementedError
+
+    def smooth_ends(self, films: Sequence[FilmData]) -> tuple[EndFlow | MeanEndFlow, ...]:
+        """The oil that leaves, as it follows smoothly from the motion alone. films: see smooth."""
+        return self.end_flows
 
     @property
     def fields(self) -> tuple[FieldFilm, ...]:

@@ -38,6 +38,12 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
     return found
 
 
+def at_viscosity(film: FilmData, scale: float) -> FilmData:
+    """The film of so many times the viscosity, as one that is asked for its force at so many times the velocities:
+    pressures at openings that turn fall with the speed as it is."""
+    return film._replace(drop=film.drop / scale**2) if isinstance(film, MeanFilm) else film
+
+
 def have_closed_forms(films: Sequence[FilmData]) -> bool:
     """Whether the force of every film is a formula, without lines of a table or of a mesh."""
     return all(isinstance(film, ShortFilm) for film in films)

@@ -49,12 +49,8 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
     """Cycles over the speed have temperatures that stay over a period, of films whose force follows from the motion."""
     if case.heat is None:
         return
-    problem = ""
     if by_shooting(case):
         problem = "settles over many periods, and a film on cells has its cycle by one period of a run."
-    elif form_of(case).by_cells:
-        problem = "changes the viscosity, and the mean over the angle of openings that turn is tabulated for one."
-    if problem:
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
     for key in ("clearance", "centrifugal_growth"):
         if getattr(case.heat, key) == "follows":
