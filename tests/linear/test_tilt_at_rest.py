@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from marches import DIAMETRAL, DISK, LENGTH, POLAR, RHO, SPAN, SPEED, WIDTH, D, rigid_shaft
+from marches import DIAMETRAL, DISK, LENGTH, POLAR, RHO, SPAN, SPEED, WIDTH, D, flat_films, rigid_shaft
 
 import frbcli
 from frbcli.case.reading.load import load_case
@@ -17,14 +17,20 @@ from frbcli.elements.housing import HousingElement
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import static_films as films_of
 from frbcli.errors import InputError
-from frbcli.film.cells.tilted.force import tilted_force
+from frbcli.film.cells.loads import loads
+from frbcli.film.cells.tilted.force import land_solution, tilted_force
 from frbcli.linear.columns import FILM, film_columns, point_columns
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.body import COORDINATES
 from frbcli.scene.forms.tilted import TiltedForm
+from frbcli.scene.gate.analysis import RUN, STILL
+from frbcli.scene.gate.gate import faults
 from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.warm import warm_case
+from frbcli.scene.planning.plan import make_plan
 
 FEW = ((24, 8), (16, 6))
 
@@ -148,6 +154,49 @@ def test_columns_of_films_that_tilt() -> None:
     assert not [key for key in document_of(flat) if "tilt" in key]
 
 
+WARM = (
+    "film.tilt=follows", "film.cavitation=half-sommerfeld", "accuracy.mesh=[4, 24]", "disk.0.position=12 mm",
+    "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}',
+    *(f'bearing.{i}.supply={{kind="circumferential-groove", pressure="2 bar"}}' for i in (0, 1)),
+)  # fmt: skip
+
+
+def test_power_and_flow_of_a_film_that_tilts() -> None:
+    """Without a tilt those of the film without on the same cells; with one the power is what the torque on the journal
+    needs beside a shell at rest, whose sum over the cells is another one."""
+    case, omega = rigid_shaft(*WARM), 2.0 * math.pi * SPEED
+    system = make_system(case, make_plan(case, STILL))
+    flat, place = flat_films(case, system), np.array([8e-6, -16e-6, 0.0, 0.0])
+    expected = flat.power_and_flow(0, place[:2], omega, omega, 0.0)
+    assert system.films.power_and_flow(0, place, omega, omega, 0.0) == pytest.approx(expected, rel=1e-9)
+    place[2:] = 1e-3, 4e-3
+    power, flow = system.films.power_and_flow(0, place, omega, omega, 0.0)
+    assert flow > 1.01 * expected[1]
+    torque = 0.0
+    for land in system.films.own[0].lands:  # type: ignore[attr-defined]
+        motion = land.motion(place, np.zeros(4), omega)
+        torque += loads(land.film, motion, land_solution(land.film, motion)).torque.journal
+    assert power == pytest.approx(-torque * omega, rel=2e-3)
+    assert power > 1.01 * expected[0]
+
+
+def test_heat_of_films_that_tilt_is_that_of_their_rest() -> None:
+    """Stability with heat is that of the machine without, at the viscosities that its balance has found."""
+    case = rigid_shaft(*WARM)
+    point = at_speed(case)
+    assert point.warm is not None
+    assert point.warm.balance < 1e-6
+    viscosities, clearances = (
+        np.array([getattr(film, name) for film in point.warm.films]) for name in ("viscosity", "clearance")
+    )
+    cold = at_speed(warm_case(case, viscosities, clearances))
+    assert np.sort_complex(point.eigenvalues) == pytest.approx(np.sort_complex(cold.eigenvalues), rel=1e-6)
+    (state, _) = frbcli.bearing_sheet(case, [SPEED]).points
+    assert state.power == pytest.approx(point.warm.films[0].power, rel=1e-2)
+    assert point.warm.films[0].temperature > 343.15 + 5.0
+    assert [fault.key for fault in faults(case, RUN)] == ["thermal.model"]
+
+
 def test_shells_of_a_housing_tilt_with_it() -> None:
     """No journal moves against its shell as shaft and housing move together."""
     case = load_case("turbocharger-car", [
@@ -168,14 +217,11 @@ def test_shells_of_a_housing_tilt_with_it() -> None:
     assert inner[:, 2:] == pytest.approx(0.0, abs=1e-12)
 
 
-SUPPLIED = "thermal.supply_temperature=60 degC"
 REFUSED = {
     "channels": ("turbocharger-car", ("bearing.0.channels=coupled",), "bearing.0.channels"),
     "a rotor in its plane": ("jeffcott", (), "rotor.kind"),
-    "gas": ("", ("film.cavitation=bubbly",), "film.cavitation"),
     "a law that follows": ("", ("film.cavitation=penalty",), "film.cavitation"),
     "a short film": ("", ("film.theory=short",), "film.theory"),
-    "heat": ("", ('oil.viscosity={grade = "SAE 10W-40"}', "thermal.model=lumped", SUPPLIED), "thermal.model"),
 }
 
 

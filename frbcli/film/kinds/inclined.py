@@ -32,6 +32,10 @@ class InclinedFilms(Films):
         by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (found.by_displacement, found.by_velocity))
         return FilmForce(found.force[PLANE], by_place, by_rate, found.field)
 
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        whole = np.concatenate([place, self.tilted.standing[i, 2:]])
+        return self.tilted.power_and_flow(i, whole, total, slip, drag)
+
     def ends(self, places: Array) -> Array:
         return self.tilted.ends(np.hstack([places, self.tilted.standing[:, 2:]]))
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
@@ -16,8 +17,10 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SHEARED, SIN
 from frbcli.film.cells.film import VolumeSolution
+from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import film_at
 from frbcli.film.cells.tilted.balances import tilted_outflow
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes, tilted_volumes
 from frbcli.film.cells.tilted.force import (
@@ -27,6 +30,7 @@ from frbcli.film.cells.tilted.force import (
     land_solution,
     settled_force,
     tilted_force,
+    unit_loads,
 )
 from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.compared import FINER
@@ -169,6 +173,20 @@ class TiltedFilms(Films):
     @property
     def _lands(self) -> list[tuple[int, TiltedLand]]:
         return [(i, land) for i, film in enumerate(self.own) for land in film.lands]
+
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        """See Films.power_and_flow: the moment that turns against half of the total is that of the pressures about the
+        middle of the shell, where each of them acts."""
+        couette, flow, load = 0.0, 0.0, np.zeros(COORDINATES)
+        for land in self.own[i].lands:
+            motion = land.motion(place, np.zeros(COORDINATES), total)
+            film, solution = film_at(land.film, math.hypot(*motion.d), total), land_solution(land.film, motion)
+            couette -= loads(film, motion, solution, slip).torque.couette
+            load += land.map.T @ (unit_loads(film) @ film.mean_pressure(solution.state).ravel())
+            flow += tilted_outflow(film, motion, solution)
+        x, y, tilt_x, tilt_y = place.tolist()
+        moment = x * load[1] - y * load[0] + tilt_x * load[3] - tilt_y * load[2]
+        return couette * slip + 0.5 * float(moment) * total, flow
 
     @property
     def compared_states(self) -> int:

@@ -12,20 +12,22 @@ from frbcli.errors import Fault
 from frbcli.scene.forms.form import SolveCounts
 from frbcli.scene.forms.tilted import (
     LOOPS,
+    MOVED,
     RUNS,
     TiltedForm,
     film_faults,
+    heat_faults,
     law_faults,
     misalignment_faults,
     run_faults,
 )
-from frbcli.scene.gate.analysis import FILMS, RANGE, SHEETS, SPEED_CYCLES, STABILITY, WHIRLS
+from frbcli.scene.gate.analysis import FILMS, HEAT, RANGE, SHEETS, SPEED_CYCLES, STABILITY, WHIRLS
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.keys import bearing_key
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.tilt import as_text, misaligned
 
-AT_REST = (FILMS, STABILITY, RANGE, *SHEETS, SPEED_CYCLES, WHIRLS)
+AT_REST = (FILMS, HEAT, STABILITY, RANGE, *SHEETS, SPEED_CYCLES, WHIRLS)
 WITHOUT = "Leave bearing.misalignment out."
 
 
@@ -55,6 +57,7 @@ class InclinedForm(TiltedForm):
         Rule(_shaft_faults, (*AT_REST, *RUNS)),
         Rule(_ring_faults, (*AT_REST, *RUNS)),
         Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
+        Rule(lambda case: heat_faults(case, WITHOUT), MOVED, moving=True),
         Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
         Rule(lambda case: run_faults(case, WITHOUT), LOOPS),
         Rule(misalignment_faults, (*AT_REST, *RUNS)),

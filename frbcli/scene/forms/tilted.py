@@ -21,6 +21,7 @@ from frbcli.scene.gate.analysis import (
     BEARING,
     COMPARISON,
     FILMS,
+    HEAT,
     LADDER,
     RANGE,
     RUN,
@@ -39,8 +40,9 @@ if TYPE_CHECKING:
 
 HALVES = 2
 KEY, ASKED = "film.tilt", "follows"
-FOLLOWED, RUNS = (FILMS, STABILITY, RANGE, BEARING, SPEED_CYCLES, WHIRLS), (RUN, COMPARISON, LADDER)
+FOLLOWED, RUNS = (FILMS, HEAT, STABILITY, RANGE, BEARING, SPEED_CYCLES, WHIRLS), (RUN, COMPARISON, LADDER)
 LOOPS = (RUN, SPEED_CYCLES, WHIRLS)
+MOVED = (*RUNS, SPEED_CYCLES, WHIRLS)
 OTHERS = tuple(each for each in ALL if each not in (*FOLLOWED, *RUNS))
 WITHOUT = f'Write {KEY} = "none".'
 
@@ -71,8 +73,12 @@ def film_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
     if case.contact.rough:
         problem = "is not modelled with films that tilt: its gap is the same along the axis."
         yield Fault("contact.model", "asperities", None, problem, f'Write contact.model = "spring". {without}')
+
+
+def heat_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
+    """Runs have the heat of films without a tilt. without: see film_faults."""
     if case.heat is not None:
-        problem = "computes temperatures only of films whose gap is the same along the axis."
+        problem = "is followed by sheets, stability and response of films that tilt, and by runs of those that do not."
         yield Fault("thermal.model", "lumped", None, problem, f'Write thermal.model = "none". {without}')
 
 
@@ -132,6 +138,7 @@ class TiltedForm(CellForm):
         Rule(_analysis_faults, OTHERS),
         Rule(_machine_faults, (*FOLLOWED, *RUNS)),
         Rule(film_faults, (*FOLLOWED, *RUNS)),
+        Rule(heat_faults, MOVED, moving=True),
         Rule(law_faults, FOLLOWED),
         Rule(run_faults, LOOPS),
         Rule(misalignment_faults, (*FOLLOWED, *RUNS)),
