@@ -21,9 +21,9 @@ from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equatio
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.mean_flow import mean_end_flows
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.mean_fields.outflow import mean_end_flows
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -77,7 +77,7 @@ def test_all_gas_is_accounted_for_in_every_step(shell: tuple[str, ...]) -> None:
     came, left, freed = np.diff(np.array(passed), axis=0).T
     np.testing.assert_allclose(np.diff(content), came - left + freed, rtol=0.0, atol=1e-10 * max(content))
     assert passed[-1][1] > 0.2 * content[-1]
-    assert np.all(state.wet[GAS, 0] >= 0.0)
+    assert state.wet[GAS, 0].min() >= -1e-5 * state.wet[GAS, 0].max()  # what iterations leave is carried on
     defect = oil_defect(system, state, profile.angle(profile.end))
     assert defect is not None
     assert defect < 1e-4

@@ -20,7 +20,6 @@ from frbcli.film.cells.film import VolumeFilm, VolumeSolution, refilled, supplie
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import linear_film, lying
 from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weights
-from frbcli.film.cells.mean_flow import MeanEndFlow, mean_end_flow
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
@@ -28,6 +27,7 @@ from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
 from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
+from frbcli.film.mean_fields.outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import LinearFilm
-from frbcli.film.cells.mean_flow import MeanEndFlow
 from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Array
 from frbcli.film.kinds.fields import FieldFilm
+from frbcli.film.mean_fields.outflow import MeanEndFlow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
