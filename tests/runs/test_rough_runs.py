@@ -229,7 +229,7 @@ def test_friction_heats_the_film(tmp_path: Path) -> None:
 @pytest.mark.nightly  # the same loop as above
 def test_friction_warms_a_run_to_the_temperature_of_rest(tmp_path: Path) -> None:
     heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
-    slow = "speed.from=1 Hz", "speed.to=1 Hz", "speed.duration=3 s", "output.step=1e-2 s", "rotor.gravity=100 m/s^2"
+    slow = "speed.from=1 Hz", "speed.to=1 Hz", "speed.duration=14 s", "output.step=5e-2 s", "rotor.gravity=100 m/s^2"
     case = rigid(*slow, *heat)
     run = runup(case, tmp_path / "run.h5")
     (film,) = warm_machine(case, 1.0).films
