@@ -93,7 +93,6 @@ def test_a_bearing_alone_has_a_chart_until_an_end_touches() -> None:
         ("jeffcott", [SHELL.format(4, 0)], STABILITY, "Write less than 3.5 mrad."),
         ("jeffcott", [SHELL.format(1, 0), "film.theory=short"], STABILITY, 'Write theory = "finite".'),
         ("jeffcott", [SHELL.format(1, 0), "film.cavitation=penalty"], STABILITY, "Take half-sommerfeld or reynolds."),
-        ("jeffcott", [SHELL.format(1, 0), "film.cavitation=bubbly"], STABILITY, "Take peeken"),
         ("turbocharger-car", [SHAFT], STABILITY, 'Write film.tilt = "follows"'),
     ],
 )
