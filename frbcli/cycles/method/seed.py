@@ -13,7 +13,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import packed, through
-from frbcli.cycles.method.continuation import Equations, Strides, Unreachable, follow, reached, unit_vector
+from frbcli.cycles.method.continuation import Equations, Place, Strides, Unreachable, follow, reached, unit_vector
 from frbcli.cycles.method.courses import Changing, EquationsOf
 from frbcli.cycles.method.equilibria import Equilibrium, HopfPoint, equations, equilibrium, hopf_points
 from frbcli.cycles.method.follower import FoldFollower, Follower
@@ -24,9 +24,13 @@ MOST = 50.0  # share up to which springs and dashpots are added
 
 
 class _WithoutMultipliers(FoldFollower):
-    """Follows cycles as closely as those of a diagram, without their multipliers."""
+    """Follows cycles as closely as those of a diagram, without their multipliers and past folds."""
 
-    tail, tail_of_folds = Follower.tail, Follower.tail_of_folds
+    tail = Follower.tail
+
+    def fold(self, _place: Place, _length: float) -> Place | None:
+        """None: folds on the way are not located."""
+        return None
 
 
 class _Stiffening(Changing):
