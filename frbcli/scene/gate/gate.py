@@ -69,7 +69,7 @@ RULES = (
     Rule(films.bath_faults, ALL),
     Rule(films.sealed_faults, ALL),
     Rule(films.published_faults, ALL),
-    Rule(lambda case: films.published_tilt_faults(case, tilts(case)), KINEMATIC),
+    Rule(lambda case: films.published_tilt_faults(case, bool(case.bearings) and tilts(case)), KINEMATIC),
     Rule(
         lambda case: films.published_tilt_faults(case, form_of(case).inclines),
         tuple(each for each in ALL if each not in KINEMATIC),
