@@ -301,7 +301,7 @@ def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
     expected = np.column_stack([np.interp(times, linear.history.time_s, each) for each in linear.history.force.T])
     assert full.loads is not None
     theta = full.loads.oil_fraction
-    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=1e-2 * largest)
+    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=2e-3 * largest)
     assert theta == pytest.approx(1.039, abs=1e-3)
 
 
