@@ -164,14 +164,13 @@ def test_a_ring_rests_as_it_turns_in_the_time_loop(factor: str) -> None:
 
 
 @pytest.mark.nightly  # a minute and a half each
-@pytest.mark.parametrize("machine", ["ring", "tilting shaft", "tilting shaft in bubbly oil"])
+@pytest.mark.parametrize("machine", ["ring", "tilting shaft in bubbly oil"])
 def test_whirls_grow_as_in_the_time_loop(machine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of two runs from beside rest, on either side: how what lies between them goes on, by its singular vectors. On
-    twice as coarse cells the growth of the ring is 14.3, on these 13.7 1/s; that of the shaft 71.0 and 69.9 1/s."""
+    twice as coarse cells the growth of the ring is 14.3, on these 13.7 1/s."""
     monkeypatch.undo()  # on all cells of stability
     case, speed, time = {
         "ring": (ring_case("2 bar", "two-phase", "accuracy.mesh=[12,96]"), 90.0, 0.15),
-        "tilting shaft": (tilting_shaft("elrod"), 300.0, 0.015),
         "tilting shaft in bubbly oil": (tilting_shaft("bubbly"), 300.0, 0.015),
     }[machine]
     (point,) = stability_points(case, [speed])[1]
@@ -180,6 +179,22 @@ def test_whirls_grow_as_in_the_time_loop(machine: str, monkeypatch: pytest.Monke
     assert point.growth > 10.0
     assert abs(found - point.critical) < 4e-3 * abs(point.critical)
     assert found.real == pytest.approx(point.growth, rel=0.03)
+
+
+@pytest.mark.nightly  # half a minute
+def test_a_tilting_shaft_grows_as_in_the_time_loop_on_ever_finer_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of first order: 74.0, 73.4 and 72.8 1/s on 96, 144 and 192 cells around. The disturbance is one that takes fronts
+    over several cells: with a tenth of it the loop has 64 to 82 1/s, by where its fronts stand in theirs."""
+    monkeypatch.undo()  # on all cells of stability
+    (point,) = stability_points(tilting_shaft("elrod"), [300.0])[1]
+    found = []
+    for mesh in ("[8,96]", "[16,192]"):
+        seen = seen_in_the_loop(tilting_shaft("elrod", mesh), 2.0 * math.pi * 300.0, 0.03, disturbance=3e-3)
+        found.append(seen[np.argmin(np.abs(seen - point.critical))])
+    coarse, fine = found
+    assert abs(fine - point.critical) < abs(coarse - point.critical) < 4e-3 * abs(point.critical)
+    assert abs(2.0 * fine - coarse - point.critical) < 2e-3 * abs(point.critical)
+    assert (2.0 * fine - coarse).real == pytest.approx(point.growth, rel=0.02)
 
 
 @pytest.mark.nightly  # half a minute
@@ -200,16 +215,16 @@ def test_every_slow_motion_decays_as_by_shooting(monkeypatch: pytest.MonkeyPatch
     assert ring == pytest.approx([-15.2], rel=0.01)
 
 
-def tilting_shaft(law: str) -> Case:
+def tilting_shaft(law: str, mesh: str = "[8,96]") -> Case:
     """A rigid shaft with its disk beside the bearings, at six times the weight."""
     supply = 'supply={kind="circumferential-groove", pressure="2 bar"}'
     films = [f"bearing.{i}.{each}" for i in (0, 1) for each in (supply, "ends=free-to-air")]
     disk = ("disk.0.position=0.012 m", "disk.0.unbalance=0 g*mm", "rotor.gravity=60 m/s^2")
-    return rigid_shaft("film.tilt=follows", f"film.cavitation={law}", *films, *disk, "accuracy.mesh=[8,96]")
+    return rigid_shaft("film.tilt=follows", f"film.cavitation={law}", *films, *disk, f"accuracy.mesh={mesh}")
 
 
-def seen_in_the_loop(case: Case, omega: float, time: float) -> np.ndarray:
-    """Eigenvalues in 1/s of what lies between two runs of 200 steps of output."""
+def seen_in_the_loop(case: Case, omega: float, time: float, disturbance: float = 1e-3) -> np.ndarray:
+    """Eigenvalues in 1/s of what lies between two runs of 200 steps of output. disturbance: over the clearance."""
     system, steps, lag, count = make_system(case, make_plan(case)), 200, 4, 7
     rest, spins = resting_position(system, omega), list(system.spins)
     profile, control = (
@@ -217,7 +232,7 @@ def seen_in_the_loop(case: Case, omega: float, time: float) -> np.ndarray:
         Control(1e-7, 24.0, *(time / steps,) * 2, 0.9999, 0.0),
     )
     q = np.random.default_rng(1).normal(size=system.rotor.size)
-    q *= 1e-3 * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ q).max()
+    q *= disturbance * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ q).max()
     q[spins] = 0.0
     runs = []
     for side in (1.0, -1.0):
