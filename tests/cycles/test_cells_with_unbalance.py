@@ -28,7 +28,7 @@ from frbcli.cycles.shooting.invariant_curve import (
 from frbcli.cycles.shooting.period_map import SAMPLES, Passage, PeriodMap, Wet, period_map, wet_at
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
-from frbcli.cycles.shooting.whirls import _locked, _run, whirls_of_branch
+from frbcli.cycles.shooting.whirls import _locking, whirls_of_branch
 
 OMEGA = 2.0 * math.pi * 120.0
 TURNS = 60
@@ -295,12 +295,20 @@ def test_a_curve_without_unbalance_is_the_cycle() -> None:
 
 
 @pytest.mark.nightly
-def test_a_whirl_that_locks_in_is_what_the_time_loop_ends_in_with_oil_that_films_keep() -> None:
-    fed = 'bearing.supply.pressure="2 bar"', "rotor.unbalance=10 g*mm"
-    free, shot = whirling("rigid-two-phase", 82.0, 300, *fed)
-    run = _run(free.with_all_unbalance, shot)
-    assert run is not None
-    found = _locked(free.with_all_unbalance, run)
+@pytest.mark.parametrize(
+    ("speed_Hz", "settings", "error"),
+    [
+        (82.0, ('bearing.supply.pressure="2 bar"', "rotor.unbalance=10 g*mm"), 1e-6),
+        # It settles slowly, after 900 turns, and enlarges as much what Newton's method leaves.
+        (171.5, ("film.cavitation=elrod", *HEAVY), 1e-4),
+    ],
+)
+def test_a_whirl_that_locks_in_is_what_the_time_loop_ends_in_with_oil_that_films_keep(
+    speed_Hz: float, settings: tuple[str, ...], error: float
+) -> None:
+    free, shot = whirling("rigid-two-phase", speed_Hz, 300, *settings)
+    omega = 2.0 * math.pi * speed_Hz
+    _, found = _locking(free.with_all_unbalance, shot.wet, omega)
     assert found is not None
-    _, orbit = after(free.with_all_unbalance, found.wet, 2.0 * math.pi * 82.0, 150, 2)
-    np.testing.assert_allclose(largest(orbit), found.eccentricity_max, atol=1e-6)
+    _, orbit = after(free.with_all_unbalance, found.wet, omega, 150, 2)
+    np.testing.assert_allclose(largest(orbit), found.eccentricity_max, atol=error)

@@ -23,7 +23,8 @@ Observer = Callable[[int, float, float], None]
 
 SMALLEST = 0.25  # share of the unbalance in a step, where one does not lead to all of it
 APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
-SETTLING = 150  # pairs of periods of the rotor after which a whirl that locks in nearly repeats
+SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl that locks in nearly repeats
+RUNS = 5  # each of as many periods, as long as the whirl nearly repeats
 LAST, PER_PERIOD = 100, 32  # of them, in which a whirl is watched, and its moments in each
 REPEATS = 0.02  # change of the state in one or two periods above which a motion does not nearly repeat
 
@@ -40,8 +41,8 @@ def whirls_of_branch(
             continue
         point, shot = branch.points[place], shots[place - 1]
         half = nearly_half(point.frequency_Hz, point.speed_Hz)
-        run = _run(driven, shot) if half else None
-        locked = None if run is None else _locked(driven, run)
+        omega = driven.unit * math.exp(shot.p[1])
+        run, locked = _locking(driven, shot.wet, omega) if half else (None, None)
         found = _curve(shooting, shot, before) if locked is None else None
         if locked is not None:
             whirls.append(_locked_whirl(driven, locked))
@@ -49,7 +50,7 @@ def whirls_of_branch(
             before = found
             whirls.append(_free_whirl(driven, found))
         else:
-            missing.append(MissingWhirl(point.speed_Hz, _why(run if half else _run(driven, shot))))
+            missing.append(MissingWhirl(point.speed_Hz, _why(run if half else _run(driven, shot.wet, omega))))
             continue
         if observe is not None:
             observe(len(whirls), point.speed_Hz, float(whirls[-1].eccentricity_max.max()))
@@ -69,9 +70,9 @@ class HeldRun:
     frequency: float
 
 
-def _run(driven: Shooting, shot: Shot) -> HeldRun | None:
-    """What a cycle becomes in the time loop; None if that ends before."""
-    flow, omega, wet = driven.flow, driven.unit * math.exp(shot.p[1]), shot.wet
+def _run(driven: Shooting, wet: Wet, omega: float) -> HeldRun | None:
+    """What a motion becomes in the time loop; None if that ends before."""
+    flow = driven.flow
     try:
         for _ in range(SETTLING - LAST // 2):
             wet = flow.passage(wet, 4.0 * math.pi / omega, omega, 2 * STEPS_PER_REVOLUTION, 1).end
@@ -125,6 +126,18 @@ def _curve(shooting: Shooting, shot: Shot, before: InvariantCurve | None) -> Inv
             return None
         start, share = (found.wets, found.rho), share + step
     return found
+
+
+def _locking(driven: Shooting, wet: Wet, omega: float) -> tuple[HeldRun | None, Shot | None]:
+    """A run of a motion, and the motion of two periods of the rotor that it ends in. It goes on where it nearly repeats
+    after two periods, and not after one, without being close enough: a whirl that just locks in settles slowly."""
+    for _ in range(RUNS):
+        run = _run(driven, wet, omega)
+        locked = None if run is None else _locked(driven, run)
+        if run is None or locked is not None or run.moved[0] < REPEATS or run.moved[1] > REPEATS:
+            break
+        wet = run.wet
+    return run, locked
 
 
 def _locked(driven: Shooting, run: HeldRun) -> Shot | None:
