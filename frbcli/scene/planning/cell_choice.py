@@ -93,8 +93,8 @@ BORES_OIL = CellError(3.5e-3, 2.0, {4: 1.4e-2, 5: 6e-3, 6: 3e-3, 8: 1.4e-3, 10: 
 # Pockets and slots: their edges lie between cells. 23 films of laws that keep no oil: 0.7e-3 to 1.2e-2 on 40 x 5 cells,
 # where 10 with feed holes had 0.6e-3 to 3.4e-3; on 56 x 8 cells a half of it, not a third. 20 films of laws that keep
 # oil on 48 x 6 cells: 0.5e-3 to 1.1e-2, two of them, nearly unstable, 3e-2 and 7e-2.
-RECESSES = CellError(4.5e-3, 1.5, BORES.along, least=40, coarser=OF_HOLES)
-RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40, coarser=OF_HOLES)
+RECESSES = CellError(4.5e-3, 1.5, BORES.along, least=40)
+RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40)
 
 
 @dataclass(frozen=True)
