@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from films import ROUGH
-from marches import march, rigid_shaft, start
+from marches import march, rigid_shaft, seen_between, start
 
 import frbcli
 from frbcli.case.schema import Case
@@ -225,26 +225,12 @@ def tilting_shaft(law: str, mesh: str = "[8,96]") -> Case:
 
 def seen_in_the_loop(case: Case, omega: float, time: float, disturbance: float = 1e-3) -> np.ndarray:
     """Eigenvalues in 1/s of what lies between two runs of 200 steps of output. disturbance: over the clearance."""
-    system, steps, lag, count = make_system(case, make_plan(case)), 200, 4, 7
+    system = make_system(case, make_plan(case))
     rest, spins = resting_position(system, omega), list(system.spins)
-    profile, control = (
-        speed_profile((0.0, time), (omega, omega)),
-        Control(1e-7, 24.0, *(time / steps,) * 2, 0.9999, 0.0),
-    )
     q = np.random.default_rng(1).normal(size=system.rotor.size)
     q *= disturbance * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ q).max()
     q[spins] = 0.0
-    runs = []
-    for side in (1.0, -1.0):
-        v = rest.velocities(system)
-        v[spins] *= 1.0 + 3e-3 * side
-        after = march(system, profile, control, start(system, profile, rest.displacements + side * q, v))
-        moved = [
-            np.einsum("fcn,tn->tfc", system.rotor.journals, each).reshape(steps + 1, -1) for each in (after.q, after.v)
-        ]
-        runs.append(np.hstack([*moved, after.v[:, spins]]))
-    apart = (runs[0] - runs[1])[steps // 8 :]
-    apart /= np.abs(apart).max(axis=0)
-    motions = apart @ np.linalg.svd(apart, full_matrices=False)[2][:count].T
-    step = np.linalg.lstsq(motions[:-lag], motions[lag:], rcond=None)[0]
-    return np.asarray(np.log(np.linalg.eigvals(step).astype(complex)) / (lag * time / steps))
+    middle = rest.displacements, rest.velocities(system)
+    v = np.zeros_like(q)
+    v[spins] = 3e-3 * middle[1][spins]
+    return seen_between(system, omega, middle, (q, v), time, steps=200, lag=4, count=7, settled=25)

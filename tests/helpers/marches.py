@@ -21,7 +21,7 @@ from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output
@@ -130,6 +130,29 @@ def march(
     assert written == int(state.numbers[OUTPUTS])
     times = np.arange(written) * limits.output_step
     return Result(times, output.q[:written], output.v[:written], status, state.numbers)
+
+
+def seen_between(
+    system: System, omega: float, middle: tuple[Array, Array], apart: tuple[Array, Array], time: float, steps: int,
+    lag: int, count: int, settled: int,
+) -> NDArray[np.complex128]:  # fmt: skip
+    """Eigenvalues in 1/s of what lies between two runs at a steady speed, by its `count` largest singular vectors and
+    how they go on over `lag` steps of output. middle: displacements and velocities that the runs begin beside; apart:
+    by how much of each; settled: steps after which they are watched."""
+    profile = speed_profile((0.0, time), (omega, omega))
+    limits, spins, runs = Control(1e-7, 24.0, *(time / steps,) * 2, 0.9999, 0.0), list(system.spins), []
+    for side in (1.0, -1.0):
+        q, v = (each + side * off for each, off in zip(middle, apart, strict=True))
+        after = march(system, profile, limits, start(system, profile, q, v))
+        moved = [
+            np.einsum("fcn,tn->tfc", system.rotor.journals, each).reshape(steps + 1, -1) for each in (after.q, after.v)
+        ]
+        runs.append(np.hstack([*moved, after.v[:, spins]]))
+    between = (runs[0] - runs[1])[settled:]
+    between /= np.abs(between).max(axis=0)
+    motions = between @ np.linalg.svd(between, full_matrices=False)[2][:count].T
+    step = np.linalg.lstsq(motions[:-lag], motions[lag:], rcond=None)[0]
+    return np.asarray(np.log(np.linalg.eigvals(step).astype(complex)) / (lag * time / steps))
 
 
 def even_steps(h: float, output: float) -> Control:

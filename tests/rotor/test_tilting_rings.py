@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_shaft
+from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_shaft, seen_between
 
 import frbcli
 from frbcli.case.schema import Case
@@ -415,23 +415,8 @@ def test_rings_that_tilt_in_films_that_keep_oil_grow_as_in_the_time_loop(
     shape *= 1e-3 * system.clearances[0] / np.abs(system.rotor.journals[:, :2] @ shape).max()
     q, v = shape.real.copy(), (value * shape).real
     q[spins], v[spins] = 0.0, shape.real[spins]  # of rings, the shape has the speeds
-    profile, control = (
-        speed_profile((0.0, duration), (OMEGA, OMEGA)),
-        Control(1e-7, 24.0, *(duration / steps,) * 2, 0.9999, 0.0),
-    )
-    runs = []
-    for side in (1.0, -1.0):
-        begin = state_at(system, profile, rest.displacements + side * q, rest.velocities(system) + side * v)
-        after = march(system, profile, control, begin)
-        moved = [
-            np.einsum("fcn,tn->tfc", system.rotor.journals, each).reshape(steps + 1, -1) for each in (after.q, after.v)
-        ]
-        runs.append(np.hstack([*moved, after.v[:, spins]]))
-    apart = (runs[0] - runs[1])[steps // 4 :]
-    apart /= np.abs(apart).max(axis=0)
-    motions = apart @ np.linalg.svd(apart, full_matrices=False)[2][:count].T
-    step = np.linalg.lstsq(motions[:-lag], motions[lag:], rcond=None)[0]
-    seen = np.log(np.linalg.eigvals(step).astype(complex)) / (lag * duration / steps)
+    middle = rest.displacements, rest.velocities(system)
+    seen = seen_between(system, OMEGA, middle, (q, v), duration, steps, lag, count, settled=steps // 4)
     nearest = seen[np.argmin(np.abs(seen - value))]
     assert nearest.real == pytest.approx(value.real, rel=0.01)
     assert nearest.imag == pytest.approx(value.imag, rel=1e-3)

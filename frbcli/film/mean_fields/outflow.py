@@ -15,7 +15,7 @@ from frbcli.film.cells.data import Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.hermite import hermite
-from frbcli.film.mean_fields.table import MeanFilm
+from frbcli.film.mean_fields.table import MeanFilm, fields_at
 from frbcli.film.rectangles.film_force import NEAR_CENTRE
 from frbcli.film.rectangles.table import DEPTH_STEP
 
@@ -62,9 +62,7 @@ def mean_end_flows(flow: MeanEndFlow, motions: Array, omega: Array, scale: float
             for line in range(k):
                 low, high = table[cell, j, line], table[cell + 1, j, line]
                 for i in range(m):
-                    r = h0 * low[0, i] + h1 * high[0, i] + h2 * low[3, i] + h3 * high[3, i]
-                    t = h0 * low[1, i] + h1 * high[1, i] + h2 * low[4, i] + h3 * high[4, i]
-                    g = h0 * low[2, i] + h1 * high[2, i] + h2 * low[5, i] + h3 * high[5, i]
+                    r, t, g = fields_at(low, high, i, h0, h1, h2, h3)
                     line_of[i] = w_r * r + w_t * t + given * g
                 for i in range(m):  # straight lines between the cells have these means over them
                     around = line_of[i - 1 if i > 0 else m - 1] + line_of[i + 1 if i + 1 < m else 0]

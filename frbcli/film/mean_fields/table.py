@@ -32,6 +32,19 @@ class MeanFilm(NamedTuple):
     weights: Array
 
 
+@compiled(inline=True)
+def fields_at(
+    low: Array, high: Array, i: int, h0: float, h1: float, h2: float, h3: float
+) -> tuple[float, float, float]:
+    """The fields of w_r, of w_t and of the given pressures in cell i, between two eccentricities of a table: low, high
+    (2 FIELDS, m); h0 to h3: see hermite."""
+    return (
+        h0 * low[0, i] + h1 * high[0, i] + h2 * low[3, i] + h3 * high[3, i],
+        h0 * low[1, i] + h1 * high[1, i] + h2 * low[4, i] + h3 * high[4, i],
+        h0 * low[2, i] + h1 * high[2, i] + h2 * low[5, i] + h3 * high[5, i],
+    )
+
+
 @compiled(makes_arrays=True)
 def mean_force(
     film: MeanFilm, eccentricity: float, w_r: float, w_t: float, omega: float,
@@ -56,9 +69,7 @@ def mean_force(
         for line in range(k):
             low, high = table[cell, j, line], table[cell + 1, j, line]
             for i in range(m):
-                r = h0 * low[0, i] + h1 * high[0, i] + h2 * low[3, i] + h3 * high[3, i]
-                t = h0 * low[1, i] + h1 * high[1, i] + h2 * low[4, i] + h3 * high[4, i]
-                g = h0 * low[2, i] + h1 * high[2, i] + h2 * low[5, i] + h3 * high[5, i]
+                r, t, g = fields_at(low, high, i, h0, h1, h2, h3)
                 r_x = s1 * (high[0, i] - low[0, i]) + s2 * low[3, i] + s3 * high[3, i]
                 t_x = s1 * (high[1, i] - low[1, i]) + s2 * low[4, i] + s3 * high[4, i]
                 g_x = s1 * (high[2, i] - low[2, i]) + s2 * low[5, i] + s3 * high[5, i]

@@ -77,7 +77,7 @@ def summary_figure(run: Run) -> Figure:
             bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
                                   extend="both", aspect=40)  # fmt: skip
             label = level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal")
-            bar.set_label(f"{label}; {reading(found)}")
+            bar.set_label(f"{label}; {reading(found)}".replace(": ", ":\n"))  # a line of both is wider than the picture
             bar.outline.set_visible(False)
         _draw_speed(below, run)
         for axes in (above, middle):

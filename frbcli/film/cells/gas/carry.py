@@ -91,6 +91,23 @@ def outside(flow: float, i: int, j: int, paths: Array) -> None:
         paths[GIVEN, i, j] -= flow
 
 
+@compiled(inline=True)
+def pass_around(pressed: float, drawn: float, cells: Array, i: int, n: int, j: int, paths: Array) -> None:
+    """Oil that pressure and walls take from cell (i, j) to the next one around, (n, j); what openings between them give
+    or take comes from outside."""
+    share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
+    leaves = shared = pressed + share * drawn
+    if share != 1.0 or share_n != 1.0:
+        enters = pressed + share_n * drawn
+        shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
+        outside(leaves - shared, i, j, paths)
+        outside(shared - enters, n, j, paths)
+    onward, backward = max(shared, 0.0), max(-shared, 0.0)
+    paths[ONWARD, i, j], paths[BACKWARD, i, j] = onward, backward
+    paths[OUT, i, j] += onward
+    paths[OUT, n, j] += backward
+
+
 @compiled()
 def _around(
     film: np.record, ring: Array, width: Array, cells: Array, states: Array, motion: GridMotion, paths: Array
@@ -123,19 +140,17 @@ def _around(
             swept = 0.5 * omega * width[0, j] * h + extra * width[0, j]
             drawn = swept * (upstream + more + 0.5 * (over + over_n))
             pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
-            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
-            leaves = shared = pressed + share * drawn
-            if share != 1.0 or share_n != 1.0:
-                enters = pressed + share_n * drawn
-                shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
-                outside(leaves - shared, i, j, paths)
-                outside(shared - enters, n, j, paths)
-            onward, backward = max(shared, 0.0), max(-shared, 0.0)
-            paths[ONWARD, i, j], paths[BACKWARD, i, j] = onward, backward
-            paths[OUT, i, j] += onward
-            paths[OUT, n, j] += backward
+            pass_around(pressed, drawn, cells, i, n, j, paths)
             if cells[EXCESS, i, j] != 0.0:
                 outside(cells[EXCESS, i, j] * 0.5 * omega * (h - h_b) * t, i, j, paths)
+
+
+@compiled(inline=True)
+def pass_along(flow: float, i: int, j: int, paths: Array) -> None:
+    """Oil that pressure drives from cell (i, j) to the next one along, (i, j + 1)."""
+    paths[UPWARD, i, j], paths[DOWNWARD, i, j] = max(flow, 0.0), max(-flow, 0.0)
+    paths[OUT, i, j] += paths[UPWARD, i, j]
+    paths[OUT, i, j + 1] += paths[DOWNWARD, i, j]
 
 
 @compiled()
@@ -148,9 +163,7 @@ def _along(
         cube, _ = flowing_cube(h, film.roughness)
         for j in range(k - 1):
             flow = cube * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
-            paths[UPWARD, i, j], paths[DOWNWARD, i, j] = max(flow, 0.0), max(-flow, 0.0)
-            paths[OUT, i, j] += paths[UPWARD, i, j]
-            paths[OUT, i, j + 1] += paths[DOWNWARD, i, j]
+            pass_along(flow, i, j, paths)
 
 
 @compiled(makes_arrays=True)

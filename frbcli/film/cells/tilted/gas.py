@@ -5,8 +5,6 @@ The flows are those of kernel.py, one after the other, by where their oil begins
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from frbcli.compiled import Array, compiled
@@ -31,22 +29,19 @@ from frbcli.film.cells.data import (
     FREE,
     GAP,
     LENGTH,
-    SHARE,
     SIN,
     UNKNOWN,
 )
 from frbcli.film.cells.gas.carry import (
-    BACKWARD,
-    DOWNWARD,
     FACTOR,
     GAS_PAST,
     GIVEN,
     HEIGHT,
-    ONWARD,
     OUT,
-    UPWARD,
     bring_gas,
     outside,
+    pass_along,
+    pass_around,
 )
 from frbcli.film.cells.tilted.data import EDGES, MIDDLES, WIDTHS
 from frbcli.film.cells.tilted.kernel import EndsMotion, gap_at_ends
@@ -80,17 +75,7 @@ def _around(
             beyond, _, _ = limited_at(upstream - states[BEFORE_UPSTREAM, i, j], downstream - upstream)
             drawn = half * places[WIDTHS, j] * h * (upstream + beyond + 0.5 * (over + over_n))
             pressed = through * (states[PRESSURE, i, j] - states[PRESSURE, n, j])
-            share, share_n = cells[SHARE, i, j], cells[SHARE, n, j]
-            leaves = shared = pressed + share * drawn
-            if share != 1.0 or share_n != 1.0:
-                enters = pressed + share_n * drawn
-                shared = math.copysign(min(abs(leaves), abs(enters)), leaves) if leaves * enters > 0.0 else 0.0
-                outside(leaves - shared, i, j, paths)
-                outside(shared - enters, n, j, paths)
-            onward, backward = max(shared, 0.0), max(-shared, 0.0)
-            paths[ONWARD, i, j], paths[BACKWARD, i, j] = onward, backward
-            paths[OUT, i, j] += onward
-            paths[OUT, n, j] += backward
+            pass_around(pressed, drawn, cells, i, n, j, paths)
             if cells[EXCESS, i, j] != 0.0:
                 outside(cells[EXCESS, i, j] * half * (h - near_b - z * rise_b) * t, i, j, paths)
 
@@ -103,9 +88,7 @@ def _along(ring: Array, cells: Array, places: Array, states: Array, motion: Ends
         for j in range(k - 1):
             h = near + places[EDGES, j + 1] * rise
             flow = h * h * h * cells[ALONG, i, j] * (states[PRESSURE, i, j] - states[PRESSURE, i, j + 1])
-            paths[UPWARD, i, j], paths[DOWNWARD, i, j] = max(flow, 0.0), max(-flow, 0.0)
-            paths[OUT, i, j] += paths[UPWARD, i, j]
-            paths[OUT, i, j + 1] += paths[DOWNWARD, i, j]
+            pass_along(flow, i, j, paths)
 
 
 @compiled(makes_arrays=True)
