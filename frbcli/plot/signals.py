@@ -105,8 +105,9 @@ def model(run: Run) -> str:
     if isinstance(theory, str) and theory not in THEORIES and _MODEL.fullmatch(theory):
         return bearing_label(theory)
     words = [label_of(cavitation)]
-    two_phase = film.get("two-phase")
-    if cavitation == "two-phase" and isinstance(two_phase, dict) and two_phase.get("form") == "published":
+    given = film.get("cavitation")
+    own = (given if isinstance(given, dict) else film).get(cavitation)  # the law's numbers are a table of its name
+    if isinstance(own, dict) and own.get("form") == "published":
         words.append("published form")
     if theory in ("short", "finite"):
         words.append(f"{theory} bearing")

@@ -139,6 +139,15 @@ def test_labels_fall_back_to_files(run: Run) -> None:
     assert model(replace(run, case_text='[film]\ncavitation = { two-phase = { steepness = 0.9 } }')) == "two-phase"
 
 
+@pytest.mark.parametrize("text", ['cavitation = "two-phase"\ntwo-phase = {}', "cavitation = {{ two-phase = {} }}"])
+def test_the_published_form_is_told_from_the_conservative_one(run: Run, text: str) -> None:
+    told = [
+        model(replace(run, case_text="[film]\n" + text.format(f'{{ form = "{form}" }}')))
+        for form in ("published", "conservative")
+    ]
+    assert told == ["two-phase, published form", "two-phase"]
+
+
 def test_bearings_have_a_curve_each() -> None:
     columns = signals(Rotor(duration_s=1.0))
     columns["eccentricity_left"] = columns.pop("eccentricity")
