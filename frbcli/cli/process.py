@@ -38,11 +38,13 @@ class Interruption:
     """The handler of the signals. asked: the one that came, 0 if none did.
 
     An import is not interrupted, at least not for WITHIN_s of work or WAITS_s of waiting: libraries drop what is raised
-    there, or show it and raise something else.
+    there, or show it and raise something else. What is raised is kept to the end, and with it the frames that it came
+    through: the compiler's objects in them may belong to two owners at that moment, and do not survive to be destroyed.
     """
 
     def __init__(self) -> None:
         self.asked = 0
+        self._raised: list[KeyboardInterrupt] = []
         self._until = 0.0, 0.0
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
@@ -52,7 +54,8 @@ class Interruption:
         if _imports(frame) and process_time() < self._until[0] and monotonic() < self._until[1]:
             self._again()
             return
-        raise KeyboardInterrupt
+        self._raised.append(KeyboardInterrupt())
+        raise self._raised[-1]
 
     def _again(self) -> None:
         again = Timer(AGAIN_s, _send, [self.asked])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import gc
 import json
 import os
 import resource
@@ -10,7 +11,9 @@ import signal
 import subprocess
 import sys
 import time
+import weakref
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -300,6 +303,24 @@ def test_an_interruption_while_kernels_compile_is_quiet(number: signal.Signals, 
         out, err = one.communicate(timeout=120.0)
     lines = [line for line in err.splitlines() if line and not line.startswith("Compiling the kernels, once: ")]
     assert (one.returncode, out, lines) == (130, "", ["interrupted"])
+
+
+def test_what_an_interruption_came_through_is_kept() -> None:
+    """A module of LLVM that was about to be handed over was destroyed twice when its frames were: one in sixty ended
+    with a segmentation fault after its last word."""
+    held, handlers = list[weakref.ref[Any]](), [cli_process.Interruption()]
+
+    def hand_over() -> None:
+        module = cli_process.Interruption()
+        held.append(weakref.ref(module))
+        handlers[0](signal.SIGTERM, None)
+
+    with suppress(KeyboardInterrupt):
+        hand_over()
+    assert held[0]() is not None
+    handlers.clear()  # these have kept it, nothing else
+    gc.collect()
+    assert held[0]() is None
 
 
 @pytest.mark.parametrize("after_s", [0.0, 0.15, 0.4])
