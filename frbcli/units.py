@@ -21,7 +21,9 @@ ANGULAR_RATE = "rad/s"
 TEMPERATURE_DIFFERENCE = "delta_degC"
 NUMBER = "1"
 
-_SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "min^-1": 1 / 60, "rad/s": 1 / (2 * math.pi)}
+_SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "krpm": 1e3 / 60, "rad/s": 1 / (2 * math.pi)}
+_PER_MINUTE = ("rpm", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "cpm")  # one unit
+_SPEED_SPELLINGS = dict.fromkeys(_PER_MINUTE, "rpm") | {"rev/s": "Hz", "rps": "Hz"}
 _ANGLE_UNITS = {"rad": 1.0, "mrad": 1e-3, "deg": math.pi / 180, "°": math.pi / 180}
 _ANGULAR_RATE_UNITS = {f"{name}/s": one for name, one in _ANGLE_UNITS.items()}
 _NUMBER_UNITS = {"": 1.0, "1": 1.0, "%": 0.01}
@@ -29,7 +31,8 @@ _TABLES = {SPEED: _SPEED_UNITS, ANGLE: _ANGLE_UNITS, ANGULAR_RATE: _ANGULAR_RATE
 # The units that cases are written in, so that most need no registry of units, which takes a second to load. A test
 # holds every factor to the registry; any other unit goes there.
 _COMMON: dict[str, dict[str, float]] = {
-    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "nm": 1e-9},
+    "m": {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "µm": 1e-6, "micron": 1e-6, "microns": 1e-6, "nm": 1e-9,
+          "in": 25.4e-3, "inch": 25.4e-3, "mil": 25.4e-6, "mils": 25.4e-6},
     "kg": {"kg": 1.0, "g": 1e-3, "t": 1e3},
     "kg*m": {"kg*m": 1.0, "g*mm": 1e-6, "g*m": 1e-3, "kg*mm": 1e-3},
     "kg*m^2": {"kg*m^2": 1.0, "kg*mm^2": 1e-6, "g*mm^2": 1e-9},
@@ -39,7 +42,7 @@ _COMMON: dict[str, dict[str, float]] = {
     "N*s/m": {"N*s/m": 1.0, "N*s/mm": 1e3, "kN*s/m": 1e3},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm^2": 1e6},
     "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "cP": 1e-3},
-    "s": {"s": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
+    "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
     "m/s": {"m/s": 1.0, "mm/s": 1e-3},
     "m/s^2": {"m/s^2": 1.0},
     "m^3/s": {"m^3/s": 1.0, "l/min": 1e-3 / 60.0, "cm^3/s": 1e-6},
@@ -54,6 +57,14 @@ _CELSIUS = {"degC": 273.15, "°C": 273.15}  # K
 _COLD = 100.0  # K, below which nobody writes degC
 
 _TEXT = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)(.*)", re.DOTALL)
+_DECIMAL_COMMA = re.compile(r"([+-]?\d+),(\d+)(.*)", re.DOTALL)
+_THOUSANDS = re.compile(r"\d{1,3}\.\d{3}")  # of a speed in rpm: 150.000 is 150 to some and 150 000 to others
+_MOST_OF_A_GROUP = 3  # digits behind a mark of thousands
+_ABSOLUTE = re.compile(r"(\w+?)\s*(?:a|\(a\)|abs\.?|absolute)")
+_GAUGE = re.compile(r"(bar|mbar|psi|kPa|MPa|Pa)\s*(?:g|\(g\)|gauge|gage)", re.IGNORECASE)
+_ATMOSPHERE = 101325.0  # Pa
+_HYPHEN = re.compile(r"(?<=[A-Za-z])-(?=[A-Za-z])")  # of g-mm
+_PEAK_TO_PEAK = re.compile(r"(\S+)\s+(?:pp|p-p|pk-pk|pkpk)")
 LONGEST_UNIT = 100  # characters; longer ones are not searched
 LONGEST_SHOWN = 40  # characters of a unit in a fault
 # A product of names with one-digit powers, perhaps over one in brackets: all that a case needs, and nothing that pint
@@ -110,7 +121,15 @@ def quantity(given: object, unit: str, example: str = "") -> float:
     parts = _TEXT.fullmatch(given.strip())
     if parts is None:
         raise ValueFault("is not a number with a unit.", remedy)
+    if comma := _DECIMAL_COMMA.fullmatch(given.strip()):
+        raise _with_comma(*comma.groups())
     number, unit_text = parts[1], " ".join(parts[2].translate(_SPELLING).split())
+    if unit == SPEED and unit_text in _PER_MINUTE and _THOUSANDS.fullmatch(number):
+        plain = f"{float(number):g} {unit_text}"
+        raise ValueFault(
+            f"can be {plain} or {number.replace('.', '')} {unit_text}.",
+            f'Write "{plain}" or "{number.replace(".", "")} {unit_text}".',
+        )
     value = _finite(number, remedy)
     si = _finite(_to_si(value, unit_text, unit, remedy), remedy)
     if si == 0.0 and re.search("[1-9]", re.split("[eE]", number)[0]):
@@ -138,10 +157,30 @@ def _finite(number: object, remedy: str) -> float:
     return value
 
 
+def _with_comma(whole: str, decimals: str, unit: str) -> ValueFault:
+    """The fault of a number with a comma, which is a decimal one to some and a mark of thousands to others."""
+    plain = f"{whole}.{decimals}{unit}"
+    if len(decimals) != _MOST_OF_A_GROUP or not whole.strip("+-0"):
+        return ValueFault("has a decimal comma.", f'Write "{plain}".')
+    return ValueFault("has a comma, for decimals or for thousands.", f'Write "{plain}" or "{whole}{decimals}{unit}".')
+
+
+def _pressure_unit(number: float, unit_text: str) -> str:
+    """The unit of an absolute pressure without a word that says so. Raises ValueFault for a gauge pressure."""
+    if gauge := _GAUGE.fullmatch(unit_text):
+        one = gauge[1] if gauge[1] in ("mbar", "Pa", "kPa", "MPa") else gauge[1].lower()
+        absolute = number + _ATMOSPHERE / _to_si(1.0, one, "Pa", "")
+        remedy = f'Write "{absolute:.3g} {one}", with the ambient pressure.'
+        raise ValueFault("is a gauge pressure; pressures are absolute here.", remedy)
+    absolute_unit = _ABSOLUTE.fullmatch(unit_text)
+    return absolute_unit[1] if absolute_unit and absolute_unit[1] in ("bar", "mbar", "psi", "kPa", "MPa") else unit_text
+
+
 def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
     if unit in _TABLES:
         factors = _TABLES[unit]
         key = re.sub(r"\s+", "", unit_text)
+        key = _SPEED_SPELLINGS.get(key, key) if unit == SPEED else key
         if key in factors:
             return number if factors[key] == 1.0 else _round(number * factors[key])
         if key == "":
@@ -152,6 +191,11 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         raise ValueFault("has no unit.", remedy)
     if unit_text == readable(unit):
         return number
+    if unit == "Pa":
+        unit_text = _pressure_unit(number, unit_text)
+    elif unit == "m" and (peaks := _PEAK_TO_PEAK.fullmatch(unit_text)):
+        unit_text = peaks[1]
+    unit_text = _HYPHEN.sub("*", unit_text)
     if unit == "K" and unit_text in _CELSIUS:
         return _round(number + _CELSIUS[unit_text])
     factor = _COMMON.get(unit, {}).get(unit_text)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,11 +10,12 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.revolutions import tacho_speed
+from frbcli.analysis.orders.tacho import tacho_speed
+from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
 from frbcli.arrays import Array
 from frbcli.nearest import did_you_mean
-from frbcli.results.measured.columns import Columns, wrong_file
+from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
 from frbcli.results.records import LARGEST, SMALLEST, wrong_values
 from frbcli.results.signals import Signal
@@ -24,15 +24,13 @@ from frbcli.units import SPEED, ValueFault, quantity
 
 MEASURED = "measured"  # the command of such a run
 USUAL = {"--unit": 1e-6, "--time-unit": 1.0, "--speed-unit": 1.0}  # SI, of columns without a unit
-SPELLINGS = {"mil": "thou", "mils": "thou", "u/min": "rpm", "upm": "rpm"}  # of units, in measured files
+SPELLINGS = {"u/min": "rpm", "upm": "rpm", "seconds": "s", "second": "s"}  # of units, in measured files
+RATE_OF_TIME = ("m/s", "m/s^2")  # SI units of what a sensor of motion may give in place of a displacement
 MOST_NUMBERS = 8  # of a file, in a remedy
 EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 rpm"'}
 SAME = 1e-6  # relative difference of two units that are one
-
-UNEVEN = 1e-3  # of the step, by which times may be off it; beyond this the signals are interpolated to even steps
-# A step may differ from the median one by this share of it. What is further apart has lost samples between: what moves
-# there is not known, and what was sampled slower than elsewhere would show with wrong frequencies.
-JITTER = 0.5
+NAMES = {"--unit": "um", "--time-unit": "s", "--speed-unit": "Hz"}  # of the units in USUAL
+SLOWEST = 1.0  # samples per second: a smaller number is an interval
 
 
 @dataclass(frozen=True)
@@ -60,13 +58,15 @@ class Measurement:
     pulses : int
         Pulses of `tacho` per revolution.
     unit_m, time_unit_s, speed_unit_Hz : float, optional
-        What 1 in the columns of displacements, times and speeds is, in m, s and Hz. None: the unit that the file
-        tells, or else 1 um, 1 s and 1 Hz.
+        What 1 in the columns of displacements, times and speeds is, in m, s and Hz. None: the unit of the file, or of
+        the name of the column, or else 1 um, 1 s and 1 Hz. `Run.remarks` states the units that were used.
+    speed_time : str, optional
+        Column of the times of `speed`, where it was sampled at others than the displacements.
 
     Examples
     --------
     >>> from frbcli import Measurement
-    >>> given = Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=None)
+    >>> given = Measurement("x", clearance=35e-6, y="y", time="t", speed="n")
     >>> given.pulses
     1
     """
@@ -80,17 +80,18 @@ class Measurement:
     speed_Hz: float | None = None
     tacho: str | None = None
     pulses: int = 1
-    unit_m: float | None = 1.0
-    time_unit_s: float | None = 1.0
-    speed_unit_Hz: float | None = 1.0
+    unit_m: float | None = None
+    time_unit_s: float | None = None
+    speed_unit_Hz: float | None = None
+    speed_time: str | None = None
 
 
-def measured_run(path: Path, given: Measurement) -> Run:
+def measured_run(path: str | Path, given: Measurement) -> Run:
     """Read a measured motion as a run, with the events that are found in it.
 
     Parameters
     ----------
-    path : Path
+    path : str or Path
         A CSV, WAV, MAT or UFF file.
     given : Measurement
         The columns of the motion and their units.
@@ -99,7 +100,8 @@ def measured_run(path: Path, given: Measurement) -> Run:
     -------
     Run
         The signals time_s, speed_Hz, journal_x_m, journal_y_m, in SI, x and y less their means: the zero of a sensor is
-        not the centre of a bearing. Without a column for y that is zero, and no events are sought.
+        not the centre of a bearing. Without a column for y that is zero, and no events are sought. `remarks` state the
+        units, and pulses that were missing or double.
 
     Raises
     ------
@@ -113,12 +115,13 @@ def measured_run(path: Path, given: Measurement) -> Run:
     >>> given = frbcli.Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=1e-6)
     >>> run = frbcli.measured_run("measured.csv", given)  # doctest: +SKIP
     """
-    columns = read_columns(Path(path))
+    path = Path(path)
+    columns = read_columns(path)
     if given.clearance is not None and not SMALLEST <= given.clearance <= LARGEST:
         raise wrong_file(
             path, f"cannot refer to a clearance of {given.clearance:g} m.", 'Give e.g. --clearance "35 um".'
         )
-    signals = _signals(columns, given)
+    signals, remarks = _signals(columns, given)
     run = Run(
         path=path,
         title=f"{path.stem}, {MEASURED}",
@@ -134,6 +137,7 @@ def measured_run(path: Path, given: Measurement) -> Run:
         error={},
         references={} if given.clearance is None else {"clearance_m": given.clearance},
         checkpoint=None,
+        remarks=remarks,
     )
     if given.y is not None and given.clearance is not None:
         run.events.extend(asdict(event) for event in find_events(run))
@@ -154,41 +158,69 @@ def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
     return [asdict(replace(event, point=seen)) for event in find_events(alone)]
 
 
-def _signals(columns: Columns, given: Measurement) -> dict[str, Signal]:
-    """The signals of a run at even steps."""
-    used = [name for name in (given.x, given.y, given.time, given.speed, given.tacho) if name is not None]
-    if len({len(columns[name]) for name in used}) > 1:
+def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], tuple[str, ...]]:
+    """(the signals of a run at even steps, what is to be said of them)."""
+    units = _Units(columns)
+    x = units.column(given.x, given.unit_m, "m", "--unit")
+    y = np.zeros_like(x) if given.y is None else units.column(given.y, given.unit_m, "m", "--unit")
+    time = _times(units, given, len(x))
+    if len({len(x), len(y), len(time)}) > 1:
         raise wrong_file(columns.path, "has columns of unequal length.", "Give columns that were measured together.")
-    x = _column(columns, given.x, given.unit_m, "m", "--unit")
-    y = np.zeros_like(x) if given.y is None else _column(columns, given.y, given.unit_m, "m", "--unit")
-    time = _times(columns, given, len(x))
-    speed = _speeds(columns, given, time)
+    speed, tacho = _speeds(units, given, time)
     _check_sampling(columns, given, time, speed)
     values = even_steps(time, {"speed_Hz": speed, "journal_x_m": x - x.mean(), "journal_y_m": y - y.mean()})
-    units = {"time_s": "s", "speed_Hz": "Hz"}
-    signals = {name: Signal(values[name], units.get(name, "m")) for name in values}
+    signals = {name: Signal(values[name], {"time_s": "s", "speed_Hz": "Hz"}.get(name, "m")) for name in values}
     wrong = wrong_values(signals)
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
-    return signals
+    return signals, (units.sentence(), *([tacho] if tacho else []))
 
 
-def _column(columns: Columns, name: str, one: float | None, unit: str, option: str) -> Array:
-    """A column in SI; one: what 1 in it is, None for what the file says or else the usual unit. Raises InputError if
-    the file says that it is something else."""
-    values, stated = columns[name], columns.unit(name)
-    found = None if stated is None else _in_si(stated, unit)
-    if one is None and stated is not None and found is None:
-        problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
-        raise wrong_file(columns.path, problem, f"Say by {option} what 1 {stated} stands for, e.g. {EXAMPLES[option]}.")
-    one = (found or USUAL[option]) if one is None else one
-    if found is not None and not math.isclose(found, one, rel_tol=SAME):
-        problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
-        raise wrong_file(columns.path, problem, f'Give {option} "1 {stated}".')
-    if not float(np.max(np.abs(values))) <= LARGEST / one:
-        problem = f'has values of up to {np.max(np.abs(values)):.3g} in "{name}", and {option} is {one:g} {unit}.'
-        raise wrong_file(columns.path, problem, f"Check {option}.")
-    return np.asarray(values * one)
+class _Units:
+    """The columns of a file in SI, with a record of the units that were taken."""
+
+    def __init__(self, columns: Columns) -> None:
+        self.columns = columns
+        self._used: dict[str, str] = {}
+
+    def sentence(self) -> str:
+        """The units of the columns that were read."""
+        return f"Units: {', '.join(f'{name} in {unit}' for name, unit in self._used.items())}."
+
+    def column(self, name: str, one: float | None, unit: str, option: str, gaps: bool = False) -> Array:
+        """A column in SI, with NaN at gaps if these are wanted.
+
+        one: what 1 in it is, None for what the file says or else the usual unit. Raises InputError if the file says
+        that it is something else.
+        """
+        columns = self.columns
+        values, stated = columns.values[columns.named(name)] if gaps else columns[name], columns.unit(name)
+        one = self._one(name, stated, one, unit, option)
+        largest = float(np.nanmax(np.abs(values), initial=0.0))
+        if not largest <= LARGEST / one:
+            problem = f'has values of up to {largest:.3g} in "{name}", and {option} is {one:g} {unit}.'
+            raise wrong_file(columns.path, problem, f"Check {option}.")
+        return np.asarray(values * one)
+
+    def _one(self, name: str, stated: str | None, one: float | None, unit: str, option: str) -> float:
+        """What 1 in a column is in SI."""
+        found = None if stated is None else _in_si(stated, unit)
+        path = self.columns.path
+        if stated is not None and unit == "m" and any(_in_si(stated, other) for other in RATE_OF_TIME):
+            problem = f'has "{name}" in {stated}, which is no displacement.'
+            raise wrong_file(path, problem, "Integrate it over time first.")
+        if one is None and stated is not None and found is None:
+            problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
+            raise wrong_file(path, problem, f"Say by {option} what 1 {stated} stands for, e.g. {EXAMPLES[option]}.")
+        if one is None:
+            assumed = f"{NAMES[option]} (no unit in the file; {option} changes it)"
+            self._used[name] = assumed if stated is None else stated
+            return found or USUAL[option]
+        if found is not None and not math.isclose(found, one, rel_tol=SAME):
+            problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
+            raise wrong_file(path, problem, f'Give {option} "1 {stated}".')
+        self._used[name] = stated if found is not None and stated else f"{one:g} {unit}"
+        return one
 
 
 def _in_si(stated: str, unit: str) -> float | None:
@@ -201,9 +233,13 @@ def _in_si(stated: str, unit: str) -> float | None:
     return None
 
 
-def _times(columns: Columns, given: Measurement, count: int) -> Array:
+def _times(units: _Units, given: Measurement, count: int) -> Array:
+    columns = units.columns
+    own = columns.own_times.get(columns.named(given.x))
+    if own is not None:
+        return require_rising(columns, "time", own)
     if given.time is not None:
-        return times(columns, given.time, _column(columns, given.time, given.time_unit_s, "s", "--time-unit"))
+        return require_rising(columns, given.time, units.column(given.time, given.time_unit_s, "s", "--time-unit"))
     rate = columns.rate if given.rate is None else given.rate
     if rate is None:
         numbers = ", ".join(f"{name} = {value:g}" for name, value in list(columns.numbers.items())[:MOST_NUMBERS])
@@ -214,30 +250,43 @@ def _times(columns: Columns, given: Measurement, count: int) -> Array:
         rate = _number(columns, rate)
     if not SMALLEST <= rate <= LARGEST:
         raise wrong_file(columns.path, f"cannot have {rate:g} samples per second.", "Give --rate.")
+    if rate < SLOWEST:
+        problem = f"cannot have {rate:g} samples per second, which looks like the time between two samples."
+        raise wrong_file(columns.path, problem, f"Give --rate {1.0 / rate:.9g}.")
     return np.arange(count) / rate
 
 
 def _number(columns: Columns, name: str) -> float:
-    """A single number of the file."""
+    """A single number of the file as samples per second."""
     if name in columns.numbers:
-        return columns.numbers[name]
+        value = columns.numbers[name]
+        return 1.0 / value if is_interval(name) and 0.0 < value < SLOWEST else value
     remedy = f"Give --rate in samples per second. {did_you_mean(name, columns.numbers)}".strip()
     raise wrong_file(columns.path, f'has no single number "{name}".', remedy)
 
 
-def _speeds(columns: Columns, given: Measurement, time: Array) -> Array:
+def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str]:
+    """(the rotor speed (n,) in Hz at the times (n,) in s, what is to be said of its pulses)."""
+    columns = units.columns
     if given.speed is not None:
-        return _column(columns, given.speed, given.speed_unit_Hz, SPEED, "--speed-unit")
+        speed = units.column(given.speed, given.speed_unit_Hz, SPEED, "--speed-unit", gaps=True)
+        own = columns.own_times.get(columns.named(given.speed))
+        if given.speed_time is not None:
+            own = units.column(given.speed_time, given.time_unit_s, "s", "--time-unit", gaps=True)
+        return sampled_at(time, columns, given.speed, time if own is None else own, speed), ""
     if given.speed_Hz is not None:
-        return np.full(len(time), given.speed_Hz)
+        return np.full(len(time), given.speed_Hz), ""
     if given.tacho is None:
         remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
         raise wrong_file(columns.path, "does not tell the rotor speed.", remedy)
     pulses = columns[given.tacho]
     try:
-        return tacho_speed(time, pulses, given.pulses)
+        if len(pulses) != len(time):
+            raise ValueError("has another length than the displacements.")
+        found = tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
+    return found.speed_Hz, found.remark(given.tacho)
 
 
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:
@@ -251,36 +300,3 @@ def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Ar
         speeds_by = "--speed-unit" if given.speed else "--speed-at" if given.tacho is None else "--pulses"
         remedy = f"Check {times_by} and {speeds_by}; more than two samples per revolution are needed."
         raise wrong_file(columns.path, problem, remedy)
-
-
-def times(columns: Columns, name: str, time: Array) -> Array:
-    """The times (n,) in s of a column. Raises InputError if they do not rise, or have gaps."""
-    steps = np.diff(time)
-    if not np.all(steps > 0.0):
-        place = int(np.argmin(steps > 0.0)) + 1
-        problem = f'has times in "{name}" that do not rise at {columns.row(place)}.'
-        raise wrong_file(columns.path, problem, "Sort the rows by time, or give --rate in place of --time.")
-    usual = float(np.median(steps))
-    off = np.abs(steps - usual)
-    place = int(np.argmax(off))
-    if off[place] > JITTER * usual:
-        found = f"has a step of {steps[place]:.4g} s"
-        problem = f'{found} in "{name}" before {columns.row(place + 1)}, and else of {usual:.4g} s.'
-        raise wrong_file(
-            columns.path, problem, "Cut the file there; if no sample is missing, give --rate in place of --time."
-        )
-    return time
-
-
-def even_steps(time: Array, signals: Mapping[str, Array]) -> dict[str, Array]:
-    """Times (m,) at even steps and signals (m,) at them. Where the times (n,) are uneven, the steps are as short as the
-    shortest one, so that nothing is sampled coarser than before, and signals are interpolated by cubic splines."""
-    step = (time[-1] - time[0]) / (len(time) - 1)
-    even = time[0] + step * np.arange(len(time))
-    if np.max(np.abs(even - time)) < UNEVEN * step:
-        return {"time_s": even, **signals}
-    from scipy.interpolate import CubicSpline
-
-    count = int(np.ceil((time[-1] - time[0]) / float(np.min(np.diff(time))))) + 1
-    even = np.linspace(time[0], time[-1], count)
-    return {"time_s": even, **{name: CubicSpline(time, values)(even) for name, values in signals.items()}}

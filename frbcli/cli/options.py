@@ -44,7 +44,7 @@ class UnitOption(QuantityOption):
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """The size of the unit in `unit`: 1e-6 for "um" in m."""
         text = str(value).strip()
-        return super().convert(f"1 {text}" if text[:1].isalpha() else value, param, ctx)
+        return super().convert(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else value, param, ctx)
 
 
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")

@@ -77,7 +77,7 @@ class Run:
 
     Of a run that was read from a file they are read when they are asked for, and a long run is better read in pieces:
     `run.read("eccentricity", 0, 1000)`. checkpoint: the state from which the run can go on, or None;
-    checkpoint_samples: how many samples there were then.
+    checkpoint_samples: how many samples there were then; remarks: what a reader has to know of it.
     """
 
     path: Path
@@ -95,6 +95,7 @@ class Run:
     references: dict[str, float]
     checkpoint: Mapping[str, NDArray[Any]] | None
     checkpoint_samples: int = 0
+    remarks: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> Array:
         """All values (n,) of a signal. Raises RunFileError if there is no such signal, or its file has changed."""
@@ -125,6 +126,7 @@ class Run:
         return (
             f"Run {self.path}: {self.title}\n{self.command}, {self.status} at {self.t_end_s:.4g} s; "
             f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*told, *more]) or 'none'}"
+            + "".join(f"\n{remark}" for remark in self.remarks)
         )
 
     def _repr_html_(self) -> str:

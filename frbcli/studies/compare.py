@@ -25,7 +25,7 @@ from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER
 from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
-from frbcli.runs.run import runup
+from frbcli.runs.run import rundown, runup
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.analysis import COMPARISON
 from frbcli.scene.gate.gate import require
@@ -36,7 +36,7 @@ from frbcli.studies.comparison_columns import VARIANT
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-TESTS = ("runup",)
+COMMANDS = {"runup": runup, "rundown": rundown}
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
 FINISHED, INTERRUPTED = "finished", "interrupted"
@@ -190,13 +190,13 @@ def compare(
     status, message = FINISHED, ""
     with _directory(keep) as folder:
         paths = [folder / f"{variant.name.replace(' ', '-')}.h5" for variant in variants]
-        begun = [_is_begun(its_case, path) for its_case, path in zip(cases, paths, strict=True)]
+        begun = [_is_begun(test, its_case, path) for its_case, path in zip(cases, paths, strict=True)]
         try:
             for number, (variant, its_case, path, resume) in enumerate(
                 zip(variants, cases, paths, begun, strict=True), start=1
             ):
                 tell = None if observe is None else functools.partial(observe, variant, number, len(variants))
-                runs.append(runup(its_case, path, resume, tell))
+                runs.append(COMMANDS[test](its_case, path, resume, tell))
                 if runs[-1].status == INTERRUPTED:
                     raise KeyboardInterrupt
         except (KeyboardInterrupt, NotConverged, InputError) as end:
@@ -217,13 +217,13 @@ def _planned(case: Case, variant: Variant) -> Case:
     return its_case
 
 
-def _is_begun(case: Case, path: Path) -> bool:
+def _is_begun(test: str, case: Case, path: Path) -> bool:
     """Whether the run of a variant was interrupted before and goes on. Raises InputError if its file cannot be written,
     or holds a run of another case."""
     check_output(path)
     if is_interrupted(path):
-        return earlier_run("runup", case, path) is not None
-    standing_run("runup", case, path)
+        return earlier_run(test, case, path) is not None
+    standing_run(test, case, path)
     return False
 
 
@@ -290,11 +290,11 @@ def _rms(values: Array) -> float:
 
 
 def _check_test(test: str) -> None:
-    if test in TESTS:
+    if test in COMMANDS:
         return
     kinematic = test in KINEMATIC_TESTS
     problem = f"is a function of its own: frbcli.{test}(case, cavitations)." if kinematic else "is not a test."
-    raise input_error("comparison", "--test", test, problem, f"There is: {', '.join(TESTS)}.")
+    raise input_error("comparison", "--test", test, problem, f"There is: {', '.join(COMMANDS)}.")
 
 
 def _unknown(option: str, names: Sequence[str], known: Sequence[str]) -> list[Fault]:

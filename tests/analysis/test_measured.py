@@ -13,7 +13,7 @@ from scipy.io import savemat, wavfile
 from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.orders.revolutions import tacho_speed
+from frbcli.analysis.orders.tacho import tacho_speed
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
@@ -77,7 +77,7 @@ def test_the_speed_follows_from_a_pulse(tmp_path: Path, table: pd.DataFrame) -> 
 
 def test_pulses_of_a_constant_speed_give_it_exactly() -> None:
     time = np.arange(20_000) * 1e-4
-    assert tacho_speed(time, np.sin(2.0 * np.pi * 4.0 * 37.0 * time), 4) == pytest.approx(37.0, rel=1e-4)
+    assert tacho_speed(time, np.sin(2.0 * np.pi * 4.0 * 37.0 * time), 4).speed_Hz == pytest.approx(37.0, rel=1e-4)
 
 
 def test_uneven_times_are_made_even(tmp_path: Path, table: pd.DataFrame) -> None:
@@ -213,7 +213,11 @@ def test_a_file_that_is_no_measurement_is_refused(name: str, content: bytes, sai
         (["waterfall", "m.csv", "--x", "x", "--clearance", "-1 um"], "not greater than 0"),
     ],
 )
-def test_options_that_do_not_fit_are_said(words: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_options_that_do_not_fit_are_said(
+    words: list[str], said: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path(words[1]).write_text("t,x\n0,1\n1,2\n", encoding="utf-8")
     assert frb(words) == 2
     assert said in capsys.readouterr().err
 

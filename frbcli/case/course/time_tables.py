@@ -99,7 +99,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
     Refused."""
     import numpy as np
 
-    from frbcli.analysis.orders.revolutions import tacho_speed
+    from frbcli.analysis.orders.tacho import tacho_speed
     from frbcli.results.measured.reading import read_columns
 
     if not isinstance(pulses, int) or pulses < 1:
@@ -112,7 +112,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
         raise Refused(fault.problem, fault.remedy) from None
     _check_times(columns, time, [signal])
     try:
-        speed = tacho_speed(time, signal, pulses)
+        speed = tacho_speed(time, signal, pulses).speed_Hz
     except ValueError as error:
         raise Refused(f'has a column "{name}" that {error}', "Give a signal with pulses as tacho.") from None
     turned = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])

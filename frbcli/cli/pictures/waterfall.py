@@ -94,7 +94,7 @@ def command(
     target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_outputs(picture=target)
     with display(terminal, READING):
-        run = run_of(run_file, measurement, relative=orders is None and not view.linear)
+        run = run_of(run_file, measurement, terminal, relative=orders is None and not view.linear)
     axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
         told = _spectra(terminal, run, signal, axis, view, target)

@@ -51,7 +51,7 @@ class Models:
 @coupling_option
 @thermal_option
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
-              help="The scene: runup, rotation, squeeze, whirl.")  # fmt: skip
+              help="The scene: runup, rundown, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
               help="A measured run-up to set beside RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
@@ -156,7 +156,7 @@ def beside_measured(
 
     places = outputs.check(beside(run_file, "-measured.png"))
     with display(terminal):
-        found = against_measured(read_run(run_file), run_of(file, measurement), signal)
+        found = against_measured(read_run(run_file), run_of(file, measurement, terminal), signal)
     _tell(terminal, found)
     terminal.emit(
         {

@@ -60,7 +60,7 @@ def command(
     places = outputs.check(here(case.name, "-fit.png"), (save, NEW))
     limits = _bounds(case, bounds)
     with display(terminal, READING):
-        measured = run_of(file, measurement)
+        measured = run_of(file, measurement, terminal)
     units = {value.key: value.unit for value in listed(case)}
     with computing(terminal, case) as shown:
 

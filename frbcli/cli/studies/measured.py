@@ -46,6 +46,7 @@ def measured_options(function: Function) -> Function:
         "time": ({"metavar": "COLUMN"}, "Column of the times."),
         "rate": ({"type": Rate()}, "Samples per second, without a column of times; or a number of the file, as fs."),
         "speed": ({"metavar": "COLUMN"}, "Column of the rotor speed."),
+        "speed-time": ({"metavar": "COLUMN"}, "Column of the times of the rotor speed, where it has its own."),
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
         "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
@@ -63,12 +64,12 @@ def measured_options(function: Function) -> Function:
 
 
 def show_columns(path: Path, terminal: Terminal) -> None:
-    """A table of what a measured file holds."""
+    """A table of what a measured file holds, a row for each column, with its unit, or what it is if it is none."""
     from frbcli.results.measured.reading import read_columns
 
     listed = read_columns(path).listed()
-    rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "", row["kind"]) for row in listed]
-    terminal.table(str(path), ("name", "shape", "unit", ""), rows)
+    rows = [(row["name"], " x ".join(map(str, row["shape"])), row["unit"] or "-", row["kind"]) for row in listed]
+    terminal.table(str(path), ("name", "shape", "unit", "kind"), rows)
     terminal.emit({"command": "waterfall", "run": path, "columns": listed})
 
 
@@ -99,14 +100,17 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
         unit_m=given["unit"],
         time_unit_s=given["time_unit"],
         speed_unit_Hz=given["speed_unit"],
+        speed_time=given["speed_time"],
     )
 
 
-def run_of(path: Path, measurement: Measurement | None, relative: bool = True) -> Run:
-    """The run in a file: a computed one, or a measurement. relative: whether amplitudes refer to a clearance. Raises as
-    read_run and measured_run do."""
-    from frbcli.results.measured.reading import READERS
+def run_of(path: Path, measurement: Measurement | None, terminal: Terminal, relative: bool = True) -> Run:
+    """The run in a file: a computed one, or a measurement, whose units are remarked. relative: whether amplitudes refer
+    to a clearance. Raises as read_run and measured_run do."""
+    from frbcli.results.measured.reading import READERS, read_columns
 
+    if not path.exists():
+        read_columns(path)  # which raises: a file that is not there is said before its options are
     if path.suffix.lower() in READERS:
         if measurement is None:
             columns = f"`frb waterfall {path} --list` lists its columns."
@@ -116,7 +120,10 @@ def run_of(path: Path, measurement: Measurement | None, relative: bool = True) -
             raise click.UsageError(words)
         from frbcli.analysis.measured import measured_run
 
-        return measured_run(path, measurement)
+        run = measured_run(path, measurement)
+        for remark in run.remarks:
+            terminal.remark(remark)
+        return run
     if measurement is not None:
         raise click.UsageError(f"{path} is a run, which needs no --x.")
     from frbcli.results.store import read_run

@@ -17,7 +17,11 @@ from frbcli.results.measured.delimited import without_unit
 from frbcli.results.records import LARGEST
 
 LARGEST_FILE = 1024**3  # bytes
-EXPORTED = re.compile(r"time_(s)|speed_(Hz)|(?:journal|disk)(?:_\w+)?_[xy]_(m)")  # of `frb export`
+# Units at the end of a name, such as time_ms, speed_rpm, journal_x_m; one letter counts behind an underscore alone
+_LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|micron|microns"
+SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
+ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm")  # names that are a unit
+INTERVAL = re.compile(r"(?:dt|ts|t_?s|.*(?:increment|interval|delta[_ ]?[tx]|step|period).*)", re.IGNORECASE)
 
 
 @dataclass(frozen=True)
@@ -27,7 +31,7 @@ class Columns:
     rate: samples per second where the file has it, as WAV does; numbers: single numbers beside the columns, such as a
     sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
     doubtful: what is wrong with columns that cannot be used; shapes: of variables as they stand in the file, where
-    that has shapes.
+    that has shapes; own_times: times in s (m,) of columns (m,) that were sampled at others than the rest.
     """
 
     path: Path
@@ -38,6 +42,7 @@ class Columns:
     doubtful: Mapping[str, str] = field(default_factory=dict)
     numbers: Mapping[str, float] = field(default_factory=dict)
     shapes: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    own_times: Mapping[str, Array] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> Array:
         """A column. Raises InputError if there is none of this name, or its values are not finite."""
@@ -55,11 +60,13 @@ class Columns:
     def named(self, name: str) -> str:
         """The name of a column in the file; `name` may leave out the unit at its end. Raises InputError if there is no
         such column, or it cannot be used."""
-        for known in (name, name.rpartition(".")[0]):  # columns of a matrix are called after it
-            if known in self.doubtful:
-                raise wrong_file(self.path, f'"{known}" {self.doubtful[known]}.', "Name a column of real numbers.")
         if name in self.values:
             return name
+        for known in (name, name.rpartition(".")[0]):  # columns of a matrix are called after it
+            if known in self.doubtful:
+                parts = [f'"{part}"' for part in self.values if part.rpartition(".")[0] == known]
+                remedy = f"Write {' or '.join(parts[:FEW])}." if parts else "Name a column of real numbers."
+                raise wrong_file(self.path, f'"{known}" {self.doubtful[known]}.', remedy)
         alike = [known for known in self.values if without_unit(known) == name]
         if len(alike) == 1:
             return alike[0]
@@ -74,8 +81,7 @@ class Columns:
         return self._unit(self.named(name))
 
     def _unit(self, name: str) -> str | None:
-        own = EXPORTED.fullmatch(name)
-        return self.units.get(name) or (None if own is None else next(filter(None, own.groups())))
+        return self.units.get(name) or unit_in(name)
 
     def row(self, place: int) -> str:
         """The name of a row, counted from 0 here and from 1 in the name."""
@@ -99,6 +105,20 @@ class Columns:
         if len(names) <= FEW:
             return f"It has: {', '.join(names)}."
         return f"It has {len(names)} columns: `frb waterfall {self.path.name} --list` lists them."
+
+
+def unit_in(name: str) -> str | None:
+    """The unit that a name ends with or is, None if there is none."""
+    plain = without_unit(name).strip()
+    if ITSELF.fullmatch(plain):
+        return plain
+    found = SUFFIX.fullmatch(plain)
+    return None if found is None else found.group(1) or found.group(2)
+
+
+def is_interval(name: str) -> bool:
+    """Whether the name of a number says that it is the time from sample to sample."""
+    return INTERVAL.fullmatch(name.strip()) is not None
 
 
 def wrong_file(path: Path, problem: str, remedy: str) -> InputError:

@@ -1,7 +1,8 @@
-"""Tables of numbers in text, as measuring instruments write them: names, perhaps units, and rows of numbers.
+"""Tables of numbers in text, as measuring instruments write them: a head, names, perhaps units, and rows of numbers.
 
-What stands above the names (model, date, settings) is skipped. The names are the last line without a number above the
-first whole row of numbers; a line of units may follow them.
+The rows begin at the first whole row: one that has a number, or a word for a missing one, wherever most rows have a
+number. Names and units are sought above it; what else the head holds is left out, except single numbers beside a word,
+such as a sampling interval.
 """
 
 from __future__ import annotations
@@ -10,9 +11,11 @@ import csv
 import io
 import re
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
+
+from frbcli.results.measured.time_stamps import STAMP
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,12 +24,20 @@ COMMENT = "#"
 DELIMITERS = ("\t", ";", ",", " ")  # a comma after the others, for it may be a decimal one; any number of blanks
 MOST_COLUMNS = 1000
 LOOKED_AT = 1000  # lines from which delimiter and decimal mark are found
+FEW_ROWS = 2  # whole rows that may stand above the names, such as numbers of channels
 UNITS = {  # that distinguish a line of units from a line of names
-    "", "-", "1", "%", "s", "sec", "second", "seconds", "ms", "us", "µs", "min",
-    "m", "mm", "cm", "um", "µm", "nm", "mil", "mils", "in", "inch", "m/s", "mm/s", "m/s^2", "g",
-    "hz", "khz", "rpm", "1/min", "min^-1", "u/min", "rad/s", "deg", "°", "v", "mv", "volt", "volts", "a", "ma",
+    "", "-", "1", "%", "s", "sec", "second", "seconds", "ms", "us", "µs", "min", "sequence", "samples",
+    "m", "mm", "cm", "um", "µm", "nm", "micron", "microns", "mil", "mils", "in", "inch", "m/s", "mm/s", "m/s^2", "g",
+    "hz", "khz", "rpm", "krpm", "1/min", "min^-1", "min-1", "u/min", "r/min", "rev/min", "cpm", "rad/s",
+    "deg", "°", "v", "mv", "volt", "volts", "a", "ma",
     "°c", "degc", "k", "bar", "pa", "n", "counts", "mm/v", "v/mm",
 }  # fmt: skip
+GAPS = {  # words of instruments where a number is missing or out of range
+    "", "-", "--", "---", "*", "***", "****", "?", "∞", "-∞", "+∞", "na", "n/a", "#n/a", "nan", "null", "none",
+    "ol", "ovl", "over", "overload", "overflow", "overrange", "clip", "clipped", "invalid", "missing", "no data",
+}  # fmt: skip
+LEFT_OUT = "comment"  # a last name without a column, as of LVM files
+FEWEST_UNITS = 0.5  # share of a line of units that are known ones
 
 UNEVEN = "Give every row as many fields as there are names."
 DECIMAL_COMMA = "If its numbers have a decimal comma, put semicolons between them, or write decimal points."
@@ -35,6 +46,7 @@ _DIGITS = r"[+-]?(?:\d+{0}?\d*|{0}\d+)(?:[eE][+-]?\d+)?|[+-]?(?:nan|inf|infinity
 _POINT, _COMMA = (re.compile(_DIGITS.format(mark), re.IGNORECASE) for mark in (r"\.", ","))
 _BRACKETS = re.compile(r"[\[(](.*)[\])]")
 _IN_NAME = re.compile(r".*\S\s*[\[(]([^\[\]()]+)[\])]")
+_PEAKS = re.compile(r"\s*(?:pp|p-p|pk-pk|pkpk|pk|peak|rms)$")  # how an instrument measures, after the unit
 
 
 class NoTable(ValueError):
@@ -47,34 +59,87 @@ class NoTable(ValueError):
 
 @dataclass(frozen=True)
 class DelimitedTable:
-    """names (k,) and units (k,), "" where there is none; values: columns 0 to k - 1, text where they hold some; lines:
-    number of the line of each row."""
+    """names (k,), those of blank ones are numbers from 1, and units (k,), "" where there is none; values: columns 0 to
+    k - 1, text where they hold some; lines: number of the line of each row; numbers: of the head, by their words; mark:
+    the decimal mark."""
 
     names: tuple[str, ...]
     units: tuple[str, ...]
     values: pd.DataFrame
     lines: tuple[int, ...]
+    numbers: Mapping[str, float]
+    mark: str
+
+
+@dataclass(frozen=True)
+class _Layout:
+    """How the fields of a row are written: delimiter, decimal mark, count of fields, and the places of those that are
+    numbers or time stamps in most rows."""
+
+    delimiter: str
+    mark: str
+    width: int
+    numbers: frozenset[int]
+    stamps: frozenset[int]
+
+    @property
+    def least(self) -> int:
+        """The number of fields up to the last one that is a number or a time stamp."""
+        return max(self.numbers | self.stamps) + 1
+
+    def split(self, line: str) -> list[str]:
+        return fields(line, self.delimiter)
+
+    def is_number(self, field: str) -> bool:
+        return _number(field, self.mark)
+
+    def has_numbers(self, row: Sequence[str]) -> bool:
+        return any(map(self.is_number, row))
+
+    def is_whole(self, row: Sequence[str]) -> bool:
+        """Whether a row has a number, or a gap, in all places in which most rows have one, and a number in some."""
+        if len(row) < self.width or any(row[self.width :]):
+            return False
+        found = [self.is_number(row[at]) for at in self.numbers]
+        gaps = (row[at].lower() in GAPS for at in self.numbers)
+        stamped = all(STAMP.fullmatch(row[at]) for at in self.stamps)
+        return stamped and any(found) and all(map(max, found, gaps))
+
+    def is_labelled(self, row: Sequence[str]) -> bool:
+        """Whether a row has a word in the first place where others have a number or a time stamp."""
+        first = min(self.numbers | self.stamps)
+        words = row[first] if first < len(row) else ""
+        return not (self.is_number(words) or words.lower() in GAPS or STAMP.fullmatch(words))
+
+
+@dataclass(frozen=True)
+class _Head:
+    """What stands above the rows. begin: the first row; names and units: (k,); numbers: by their words."""
+
+    begin: int
+    names: tuple[str, ...]
+    units: tuple[str, ...]
+    numbers: Mapping[str, float]
 
 
 def read_table(content: bytes) -> DelimitedTable:
     """The table in a file of text. Raises ValueError if there is none, or its rows are ragged."""
-    numbered = [(number, line) for number, line in _lines(content) if not line.lstrip().startswith(COMMENT)]
+    lines = list(_lines(content))
+    numbered = [(number, line) for number, line in lines if not line.lstrip().startswith(COMMENT)]
     if not numbered:
         raise ValueError("it is empty")
     ending = [line for _, line in numbered[len(numbered) // 2 :]]  # which holds few lines from above the rows
-    ending = ending[:: max(1, len(ending) // LOOKED_AT)]
-    delimiter = _delimiter(ending)
-    mark = _decimal_mark(delimiter, [fields(line, delimiter) for line in ending])
-    last = numbered[-2:][0][1]  # but one, for the last may be cut off
-    begin, names, units = _head(numbered, delimiter, mark, fields(last, delimiter))
-    lines, rows = zip(*_even_rows(numbered[begin:], delimiter, len(names)), strict=True)
+    layout = _layout(ending[:: max(1, len(ending) // LOOKED_AT)], numbered[-2:][0][1])
+    comments = [line.lstrip().lstrip(COMMENT) for number, line in lines if line.lstrip().startswith(COMMENT)]
+    head = _head([layout.split(line) for _, line in numbered], layout, comments)
+    found, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
     import pandas as pd
 
     values = pd.read_csv(
-        io.StringIO("\n".join(rows)), sep=r"\s+" if delimiter == " " else delimiter, header=None, decimal=mark,
-        names=range(len(names)), skipinitialspace=True, low_memory=False,
+        io.StringIO("\n".join(rows)), sep=r"\s+" if layout.delimiter == " " else layout.delimiter, header=None,
+        decimal=layout.mark, names=range(len(head.names)), skipinitialspace=True, low_memory=False,
     )  # fmt: skip
-    return DelimitedTable(names, units, values, lines)
+    return DelimitedTable(head.names, head.units, values, found, head.numbers, layout.mark)
 
 
 def fields(line: str, delimiter: str) -> list[str]:
@@ -101,6 +166,25 @@ def _lines(content: bytes) -> Iterator[tuple[int, str]]:
     return ((number, line) for number, line in enumerate(lines, start=1) if line.strip())
 
 
+def _layout(ending: Sequence[str], last: str) -> _Layout:
+    """The layout of the rows; last: the last whole line but one, for the last may be cut off. Raises ValueError if no
+    field of most rows is a number."""
+    delimiter = _delimiter(ending)
+    rows = [fields(line, delimiter) for line in ending]
+    mark = _decimal_mark(delimiter, rows)
+    width = Counter(map(len, rows)).most_common(1)[0][0]
+    even = [row for row in rows if len(row) == width]
+
+    def mostly(at: int, fits: re.Pattern[str]) -> bool:
+        return 2 * sum(fits.fullmatch(row[at]) is not None for row in even) > len(even)
+
+    number = _POINT if mark == "." else _COMMA
+    numbers = frozenset(at for at in range(width) if mostly(at, number))
+    if not any(_number(field, mark) for field in fields(last, delimiter)) or not numbers:
+        raise ValueError("it holds no rows of numbers")
+    return _Layout(delimiter, mark, width, numbers, frozenset(at for at in range(width) if mostly(at, STAMP)))
+
+
 def _delimiter(lines: Sequence[str]) -> str:
     """The first delimiter that gives most lines the same number of fields, which is more than one."""
     for delimiter in DELIMITERS:
@@ -125,38 +209,105 @@ def _number(field: str, mark: str) -> bool:
     return (_POINT if mark == "." else _COMMA).fullmatch(field) is not None
 
 
-def _head(
-    numbered: Sequence[tuple[int, str]], delimiter: str, mark: str, row: Sequence[str]
-) -> tuple[int, tuple[str, ...], tuple[str, ...]]:
-    """Where the rows begin, names and units; row: fields of one of the rows."""
-    holds = {place for place, field in enumerate(row) if _number(field, mark)}
-    if not holds:
+def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str]) -> _Head:
+    """The head of a table of rows, all lines of the file. Raises ValueError if no row is whole."""
+    whole = [place for place, row in enumerate(rows[: LOOKED_AT * FEW_ROWS]) if layout.is_whole(row)]
+    if not whole:
         raise ValueError("it holds no rows of numbers")
-    last: int | None = None
-    for place, (_, line) in enumerate(numbered):
-        found = fields(line, delimiter)
-        numbers = {at for at, field in enumerate(found) if _number(field, mark)}
-        if numbers >= holds and len(found) == len(row):
+    first = whole[0]
+    for place in range(first + 1, min(first + FEW_ROWS + 1, len(rows))):
+        if _are_words(rows[place], layout) and len(_without_end(rows[place])) >= layout.least:
+            first = next((later for later in whole if later > place), first)  # numbers of channels above their names
             break
-        if not numbers and any(found):
-            last = place
-    if last is None:
-        raise NoTable("there is no line of names above its numbers", "Write a line of names above them, e.g. t,x,y.")
-    names, units = _without_end(fields(numbered[last][1], delimiter)), []
-    if last > 0 and len(names) > 1 and all(_unit(name).lower() in UNITS for name in names):
-        above = _without_end(fields(numbered[last - 1][1], delimiter))
-        if len(above) == len(names) and all(above):
-            names, units = above, [_unit(name) for name in names]
-    if len(names) > MOST_COLUMNS:
-        raise ValueError(f"it has {len(names)} columns, more than {MOST_COLUMNS}")
-    return last + 1, tuple(names), tuple(units or map(_unit_in, names))
+    names_at, units_at = _names_at(rows[:first], layout), None
+    if names_at is None:
+        found = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
+                      and len(words) == layout.width), [""] * layout.width)  # fmt: skip
+        head = _Head(first, tuple(found), tuple(map(_unit_in, found)), {})
+    else:
+        units_at = _units_at(rows[:first], names_at, layout)
+        begin = next(at for at in range(max(names_at, units_at or 0) + 1, first + 1)
+                     if at == first or not (layout.is_labelled(rows[at]) or _are_words(rows[at], layout)))  # fmt: skip
+        names = tuple(_without_end(rows[names_at]))
+        if len(names) == layout.width + 1 and names[-1].lower() == LEFT_OUT:
+            names = names[:-1]
+        units, numbers = _units_of(rows, units_at, names, layout)
+        head = _Head(begin, names, units, numbers)
+    if len(head.names) > MOST_COLUMNS:
+        raise ValueError(f"it has {len(head.names)} columns, more than {MOST_COLUMNS}")
+    named = tuple(name or str(number) for number, name in enumerate(head.names, start=1))
+    return replace(head, names=named, numbers=_numbers_of(rows[: head.begin], layout) | dict(head.numbers))
 
 
-def _without_end(found: list[str]) -> list[str]:
-    """The fields up to the last one that is not empty."""
-    while len(found) > 1 and not found[-1]:
-        found = found[:-1]
+def _are_words(row: Sequence[str], layout: _Layout) -> bool:
+    return any(row) and not layout.has_numbers(row)
+
+
+def _names_at(head: Sequence[Sequence[str]], layout: _Layout) -> int | None:
+    """Where the names are: right above a line of units, or else the last line of words."""
+    for place in range(len(head) - 1, 0, -1):
+        above = _without_end(head[place - 1])
+        fits = len(above) >= layout.least and len(above) == len(_without_end(head[place])) and all(above)
+        fits = fits and not _is_called_units(head[place])
+        if fits and _are_units(head[place], layout) and not _are_units(above, layout):
+            return place - 1
+    words = [place for place, row in enumerate(head) if _are_words(row, layout)]
+    wide = [place for place in words if len(_without_end(head[place])) >= layout.least]
+    return wide[-1] if wide else words[-1] if words else None
+
+
+def _units_at(head: Sequence[Sequence[str]], names_at: int, layout: _Layout) -> int | None:
+    """Where the units are: right below the names, or above them in a line that calls itself so."""
+    if names_at + 1 < len(head) and _are_units(head[names_at + 1], layout):
+        return names_at + 1
+    called = (place for place, row in enumerate(head[:names_at]) if _is_called_units(row))
+    wide = (place for place in called if len(_without_end(head[place])) >= layout.least)
+    return next((place for place in wide if _are_units(head[place][1:], layout)), None)
+
+
+def _is_called_units(row: Sequence[str]) -> bool:
+    return "unit" in row[0].lower()
+
+
+def _units_of(
+    rows: Sequence[Sequence[str]], units_at: int | None, names: tuple[str, ...], layout: _Layout
+) -> tuple[tuple[str, ...], dict[str, float]]:
+    """The units of columns, and the numbers that stand among them in columns without any number."""
+    if units_at is None:
+        return tuple(map(_unit_in, names)), {}
+    row = rows[units_at]
+    found = [*([""] if _is_called_units(row) else row[:1]), *row[1:], *[""] * len(names)][: len(names)]
+    numbers = {
+        name: float(field.replace(layout.mark, "."))
+        for at, (name, field) in enumerate(zip(names, found, strict=True))
+        if at not in layout.numbers and layout.is_number(field)
+    }
+    units = (_unit(field) for field in found)
+    named = zip(names, units, strict=True)
+    return tuple("" if name in numbers else unit or _unit_in(name) for name, unit in named), numbers
+
+
+def _are_units(row: Sequence[str], layout: _Layout) -> bool:
+    """Whether most words of a line are units."""
+    words = [_unit(field).lower() for field in row if field and not layout.is_number(field)]
+    known = sum(_PEAKS.sub("", word) in UNITS for word in words)
+    return known > 0 and known >= FEWEST_UNITS * len(words)
+
+
+def _numbers_of(head: Sequence[Sequence[str]], layout: _Layout) -> dict[str, float]:
+    """The numbers of lines of a word and a number, or of the same one for each channel."""
+    found: dict[str, float] = {}
+    for row in head:
+        values = {field for field in row[1:] if layout.is_number(field)}
+        if row[0] and not layout.is_number(row[0]) and len(values) == 1 and layout.is_number(row[1]):
+            found[row[0].rstrip(":= ")] = float(values.pop().replace(layout.mark, "."))
     return found
+
+
+def _without_end(found: Sequence[str]) -> list[str]:
+    """The fields up to the last one that is not empty."""
+    filled = [place for place, field in enumerate(found) if field]
+    return list(found[: max(filled, default=0) + 1])
 
 
 def _unit(text: str) -> str:

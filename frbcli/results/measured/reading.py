@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections import Counter
 from importlib.util import find_spec
@@ -12,18 +13,23 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
-from frbcli.results.measured.columns import LARGEST_FILE, Columns, wrong_file
+from frbcli.results.measured.columns import LARGEST_FILE, Columns, is_interval, wrong_file
 from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
 from frbcli.results.measured.mat import read_mat
+from frbcli.results.measured.time_stamps import seconds
 from frbcli.results.records import MOST_SAMPLES
 
 TOLD = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read
 NO_TABLE = "Write CSV with one line of names, and numbers below."
+OTHERS = {".tdms": "TDMS", ".xlsx": "Excel", ".xls": "Excel", ".mdf": "MDF", ".mf4": "MDF", ".dxd": "Dewesoft"}
 
 FUNCTION, TIME_RESPONSE = 58, 1  # data set "function at nodal DOF", and its functions of time
 DIRECTIONS = {0: "", 1: "+X", -1: "-X", 2: "+Y", -2: "-Y", 3: "+Z", -3: "-Z",
               4: "+RX", -4: "-RX", 5: "+RY", -5: "-RY", 6: "+RZ", -6: "-RZ"}  # fmt: skip
 NO_UNIT = ("", "NONE", "UNKNOWN")
+UNITS = 164  # data set "units"
+LENGTHS = {1.0: "m", 1000.0: "mm", 100.0: "cm", 1e6: "um", 39.37008: "in", 3.28084: "ft"}  # by their factor from m
+RATES = {8: "", 11: "/s", 12: "/s^2"}  # data types: displacement, velocity, acceleration
 TIME = "time"
 SAME = 1e-6  # of a step of time
 
@@ -31,17 +37,22 @@ SAME = 1e-6  # of a step of time
 def read_columns(path: Path) -> Columns:
     """The columns of a file.
 
-    CSV (or txt): a line of names, perhaps one of units, then numbers, separated by comma, semicolon, tab or blanks;
-    lines above the names, and those that begin with #, are left out; with a semicolon, tab or blanks, numbers may have
-    a decimal comma. WAV: the channels, named 1, 2 and so on, from -1 to 1 where they are whole numbers. MAT: `read_mat`
-    of mat.py. UFF (or unv): see `read_uff`. Raises InputError for what is none of these.
+    Text: names, perhaps units, then numbers or time stamps, separated by comma, semicolon, tab or blanks; lines above
+    the names, and those that begin with #, are left out; with a semicolon, tab or blanks, numbers may have a decimal
+    comma; without names the columns are called 1, 2 and so on. WAV: the channels, named 1, 2 and so on, from -1 to 1
+    where they are whole numbers. MAT: `read_mat` of mat.py. UFF (or unv): see `read_uff`. Raises InputError for what is
+    none of these.
     """
     if not path.is_file():
         problem = "is no file." if path.exists() else "does not exist."
         raise wrong_file(path, problem, "Give the file of a measurement.")
     reader = READERS.get(path.suffix.lower())
     if reader is None:
-        raise wrong_file(path, "is of no known kind.", f"Known are {', '.join(READERS)}.")
+        other = OTHERS.get(path.suffix.lower())
+        what, remedy = ("is of no known kind.", f"Known are {', '.join(READERS)}.")
+        if other:
+            what, remedy = f"is a file of {other}, which is not read.", "Export its channels as CSV or MAT."
+        raise wrong_file(path, what, remedy)
     if path.stat().st_size > LARGEST_FILE:
         raise wrong_file(path, f"has more than {LARGEST_FILE // 1024**2} MB.", "Cut it into several files.")
     try:
@@ -61,22 +72,41 @@ def read_columns(path: Path) -> Columns:
 
 
 def _csv(path: Path) -> Columns:
+    """Columns by their names; of several with one name they are NAME.1, NAME.2 and so on. A column without a name is
+    called by its number, and one without a name and without numbers is none."""
     table = read_table(path.read_bytes())
-    units = {name: unit for name, unit in zip(table.names, table.units, strict=True) if unit}
     named = Counter(table.names)
     doubtful = {name: f"is the name of {count} columns" for name, count in named.items() if count > 1}
-    values = {name: _numbers(table, place) for place, name in enumerate(table.names) if name and named[name] == 1}
-    return Columns(path, values, None, units, table.lines, doubtful)
+    values: dict[str, Array] = {}
+    units: dict[str, str] = {}
+    seen = Counter[str]()
+    for place, (name, unit) in enumerate(zip(table.names, table.units, strict=True)):
+        seen[name] += 1
+        one = f"{name}.{seen[name]}" if named[name] > 1 else name
+        column, stamped = _numbers(table, place)
+        if np.all(np.isnan(column)) and (name == str(place + 1) or name in table.numbers):
+            continue
+        values[one] = column
+        if stamped or unit:
+            units[one] = "s" if stamped else unit
+    rates = {1.0 / value for name, value in table.numbers.items() if is_interval(name) and value > 0.0}
+    rate = rates.pop() if len(rates) == 1 else None
+    return Columns(path, values, rate, units, table.lines, doubtful, table.numbers)
 
 
-def _numbers(table: DelimitedTable, place: int) -> Array:
-    """A column, NaN where it holds no number."""
+def _numbers(table: DelimitedTable, place: int) -> tuple[Array, bool]:
+    """(a column, NaN where it holds no number; whether it holds time stamps, which become seconds)."""
     import pandas as pd
 
     column = table.values[place]
     if column.dtype == bool:
-        return np.full(len(column), np.nan)
-    return np.asarray(pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64))
+        return np.full(len(column), np.nan), False
+    if not pd.api.types.is_numeric_dtype(column):
+        stamps = seconds(column)
+        if stamps is not None:
+            return stamps, True
+        column = column.astype(str).str.replace(table.mark, ".", regex=False)  # a word among decimal commas
+    return np.asarray(pd.to_numeric(column, errors="coerce").to_numpy(dtype=np.float64)), False
 
 
 def _wav(path: Path) -> Columns:
@@ -103,7 +133,8 @@ def _wav(path: Path) -> Columns:
 
 def read_uff(path: Path) -> Columns:
     """The times as `time`, and the responses over time, named by node and direction as "12:+X"; of several with one
-    name the second one as "12:+X.2", and so on.
+    name the second one as "12:+X.2", and so on. Units follow from the data type of a response (displacement, velocity,
+    acceleration) and the lengths of data set 164, where its own label is none.
 
     Raises InputError where pyuff is not installed, ValueError if there is no response over time.
     """
@@ -115,28 +146,47 @@ def read_uff(path: Path) -> Columns:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of data sets of other kinds
         file = pyuff.UFF(str(path))
-        places = [place for place, kind in enumerate(file.get_set_types()) if kind == FUNCTION]
-        found = [file.read_sets(place) for place in places]
+        kinds = [int(kind) for kind in file.get_set_types()]
+        found = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == FUNCTION]
+        lengths = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == UNITS]
     responses = [one for one in found if one.get("func_type") == TIME_RESPONSE]
     if not responses:
-        kinds = sorted({int(kind) for kind in file.get_set_types()})
-        raise ValueError(f"it has no response over time (data set 58, function 1), but the data sets {kinds}")
+        listed = sorted(set(kinds))
+        raise ValueError(f"it has no response over time (data set 58, function 1), but the data sets {listed}")
+    length = _length(float(lengths[0]["length"])) if lengths else None
     times = np.asarray(responses[0]["x"], dtype=np.float64)
     values: dict[str, Array] = {TIME: times}
-    units: dict[str, str] = {}
+    units: dict[str, str] = {TIME: "s"}
     doubtful: dict[str, str] = {}
+    own_times: dict[str, Array] = {}
     for response in responses:
         name = _name(response, values.keys() | doubtful.keys())
+        moments = np.asarray(response["x"], dtype=np.float64)
         if np.iscomplexobj(response["data"]):
             doubtful[name] = "holds complex numbers"
-        elif not _same(times, np.asarray(response["x"], dtype=np.float64)):
-            doubtful[name] = "has other times than the first response of the file"
         else:
             values[name] = np.asarray(response["data"], dtype=np.float64)
+            if not _same(times, moments):
+                own_times[name] = moments
         unit = str(response.get("ordinate_axis_units_lab", "")).strip()
-        if unit.upper() not in NO_UNIT:
+        if unit.upper() in NO_UNIT:
+            unit = _unit_of_kind(int(response.get("ordinate_spec_data_type", 0)), length)
+        if unit:
             units[name] = unit
-    return Columns(path, values, None, units, None, doubtful)
+    return Columns(path, values, None, units, None, doubtful, own_times=own_times)
+
+
+def _length(factor: float) -> str | None:
+    """The unit of length of which a metre has so many, None if it has no name."""
+    return next((name for each, name in LENGTHS.items() if math.isclose(each, factor, rel_tol=1e-4)), None)
+
+
+def _unit_of_kind(kind: int, length: str | None) -> str:
+    """The unit of a data type, "" where it is not known; without data set 164 that of something else than a length."""
+    per = RATES.get(kind)
+    if per is None:
+        return ""
+    return f"{length or 'm'}{per}" if per or length else ""
 
 
 def _name(response: dict[str, Any], taken: set[str]) -> str:
@@ -151,4 +201,5 @@ def _same(times: Array, others: Array) -> bool:
     return bool(np.max(np.abs(times - others)) <= SAME * abs(times[1] - times[0]))
 
 
-READERS = {".csv": _csv, ".txt": _csv, ".wav": _wav, ".mat": read_mat, ".uff": read_uff, ".unv": read_uff}
+TEXT = (".csv", ".txt", ".dat", ".asc", ".lvm", ".tsv", ".prn")
+READERS = dict.fromkeys(TEXT, _csv) | {".wav": _wav, ".mat": read_mat, ".uff": read_uff, ".unv": read_uff}
