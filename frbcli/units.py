@@ -20,6 +20,7 @@ ANGLE = "rad"
 ANGULAR_RATE = "rad/s"
 TEMPERATURE_DIFFERENCE = "delta_degC"
 NUMBER = "1"
+KINEMATIC = "m^2/s"  # of a viscosity
 
 _SPEED_UNITS = {"Hz": 1.0, "kHz": 1e3, "rpm": 1 / 60, "1/min": 1 / 60, "krpm": 1e3 / 60, "rad/s": 1 / (2 * math.pi)}
 _PER_MINUTE = ("rpm", "1/min", "min^-1", "min-1", "r/min", "rev/min", "U/min", "cpm")  # one unit
@@ -42,6 +43,7 @@ _COMMON: dict[str, dict[str, float]] = {
     "N*s/m": {"N*s/m": 1.0, "N*s/mm": 1e3, "kN*s/m": 1e3},
     "Pa": {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "mbar": 1e2, "bar": 1e5, "N/mm^2": 1e6},
     "Pa*s": {"Pa*s": 1.0, "mPa*s": 1e-3, "cP": 1e-3},
+    KINEMATIC: {"m^2/s": 1.0, "mm^2/s": 1e-6, "cSt": 1e-6},
     "s": {"s": 1.0, "sec": 1.0, "ms": 1e-3, "us": 1e-6, "µs": 1e-6, "min": 60.0},
     "m/s": {"m/s": 1.0, "mm/s": 1e-3},
     "m/s^2": {"m/s^2": 1.0},
@@ -137,6 +139,15 @@ def quantity(given: object, unit: str, example: str = "") -> float:
     return si
 
 
+def is_kinematic(given: object) -> bool:
+    """Whether `given` is text of a kinematic viscosity, such as "12 cSt"."""
+    parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
+    if parts is None:
+        return False
+    unit_text = " ".join(parts[2].translate(_SPELLING).split())
+    return unit_text in _COMMON[KINEMATIC]
+
+
 def display(value: float, unit: str) -> str:
     """An SI value as engineers write it: display(35e-6, "m") is "35 um", display(343.15, "K") is "70 degC"."""
     if unit == "K" and value >= _COLD:
@@ -191,6 +202,8 @@ def _to_si(number: float, unit_text: str, unit: str, remedy: str) -> float:
         raise ValueFault("has no unit.", remedy)
     if unit_text == readable(unit):
         return number
+    if unit == "Pa*s" and unit_text in _COMMON[KINEMATIC]:
+        raise ValueFault("is a kinematic viscosity, which needs the density of the oil.", "Give density in [oil].")
     if unit == "Pa":
         unit_text = _pressure_unit(number, unit_text)
     elif unit == "m" and (peaks := _PEAK_TO_PEAK.fullmatch(unit_text)):

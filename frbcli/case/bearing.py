@@ -17,10 +17,10 @@ from frbcli.case.quantities import (
     Expansion,
     Identifier,
     Length,
-    Mass,
     Play,
     Position,
     RingInertia,
+    RingMass,
     SpecificHeat,
     Stiffness,
     ThermalConductivity,
@@ -88,7 +88,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
 class Ring(Model):
     """The floating ring itself, or the body of a cartridge."""
 
-    given_mass: Mass | None = Field(
+    given_mass: RingMass | None = Field(
         default=None, alias="mass",
         description="of one ring; from its material, which is then given, width and diameters if not given",
     )

@@ -11,21 +11,24 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import (
     Density,
+    KinematicViscosity,
     Quantity,
     SpecificHeat,
     Temperature,
     TemperatureDifference,
     ThermalConductivity,
     Viscosity,
+    VogelOffset,
 )
 from frbcli.case.surroundings.over_time import is_over_time
 from frbcli.materials.oils import OILS, OilGrade, conductivity, density, heat_capacity
-from frbcli.materials.viscosity import VogelLaw
-from frbcli.units import NUMBER, ValueFault, quantity
+from frbcli.materials.viscosity import VogelLaw, through_three, walther
+from frbcli.units import KINEMATIC, NUMBER, ValueFault, is_kinematic, quantity
 
 ATMOSPHERE = 1e5
 USUAL_TEMPERATURE = 353.15  # K: 80 degC, of the density of a grade where no temperature is given
 USUAL_DENSITY = 850.0
+THIRD = 5.0 / 6.0  # of the distance of two temperatures: from 40 and 100 degC on to 150 degC
 
 GradeName: Any = Literal[tuple(OILS)]
 
@@ -49,7 +52,7 @@ class Vogel(Model):
 
     eta_0: Viscosity = Field(description="of (3.12)")
     A: TemperatureDifference = Field(description="of (3.12)")
-    C: TemperatureDifference = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
+    C: VogelOffset = Field(description="about -180 K; for a fit in Celsius, its C less 273.15 K")
 
     @property
     def law(self) -> VogelLaw:
@@ -63,9 +66,36 @@ class Grade(Model):
     grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and where they are from")
 
 
+class ViscosityPoints(Model):
+    """The kinematic viscosity at two temperatures, as a data sheet has it; between and beyond them by Walther's rule
+    (ASTM D341)."""
+
+    points: tuple[tuple[Temperature, KinematicViscosity], tuple[Temperature, KinematicViscosity]] = Field(
+        description='of a data sheet, such as [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]], with oil.density'
+    )
+
+    def law(self, density_15: float) -> VogelLaw:
+        """Vogel's law through both viscosities and a third one by Walther's rule; density in kg/m^3 at 15 degC."""
+        first, second = sorted(self.points)
+        third = second[0] + THIRD * (second[0] - first[0])
+        beyond = walther(third, *((kelvin, 1e6 * nu) for kelvin, nu in (first, second)))
+        known = (first, second, (third, 1e-6 * beyond))
+        return through_three([t for t, _ in known], [nu * density(density_15, t) for t, nu in known])
+
+
+def _kind_of_viscosity(given: object) -> str:
+    if isinstance(given, dict):
+        return "(points)" if "points" in given else "(grade)"
+    if isinstance(given, ViscosityPoints):
+        return "(points)"
+    return "(grade)" if isinstance(given, Grade) else "(viscosity)"
+
+
 AnyViscosity = Annotated[
-    Annotated[Viscosity, Tag("(viscosity)")] | Annotated[Grade, Tag("(grade)")],
-    Discriminator(lambda given: "(grade)" if isinstance(given, dict | Grade) else "(viscosity)"),
+    Annotated[Viscosity, Tag("(viscosity)")]
+    | Annotated[Grade, Tag("(grade)")]
+    | Annotated[ViscosityPoints, Tag("(points)")],
+    Discriminator(_kind_of_viscosity),
 ]
 
 
@@ -73,7 +103,9 @@ class Oil(Model):
     """The lubricant: a viscosity, or Vogel's coefficients or a grade, and a temperature."""
 
     given_viscosity: AnyViscosity | None = Field(
-        default=None, alias="viscosity", description="dynamic viscosity, warm; or `{ grade = \"SAE 10W-40\" }`"
+        default=None, alias="viscosity",
+        description="warm: dynamic, or kinematic (`\"12 cSt\"`) with `density`; or `{ grade = \"SAE 10W-40\" }`, "
+        "or `{ points = ... }` of a data sheet",
     )
     vogel: Vogel | None = Field(default=None, description="viscosity over temperature, in place of `viscosity`")
     temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law or a grade")
@@ -111,6 +143,18 @@ class Oil(Model):
             return data
         return {**data, "density": density(OILS[name].density_15, _readable(data.get("temperature")))}
 
+    @model_validator(mode="before")
+    @classmethod
+    def _dynamic(cls, data: object) -> object:
+        """`data` with the dynamic viscosity, where it gives a kinematic one and a density that can be read."""
+        if not isinstance(data, dict) or "density" not in data or not is_kinematic(data.get("viscosity")):
+            return data
+        try:
+            rho = quantity(data["density"], "kg/m^3")
+        except ValueFault:
+            return data
+        return {**data, "viscosity": quantity(data["viscosity"], KINEMATIC) * rho}
+
     @property
     def grade(self) -> OilGrade | None:
         """The oil of the library, None for any other."""
@@ -119,13 +163,16 @@ class Oil(Model):
     @property
     def law(self) -> VogelLaw | None:
         """Viscosity over temperature, with the factor for shear; None for a given viscosity."""
-        law = self.grade.law if self.grade is not None else None if self.vogel is None else self.vogel.law
+        given = self.given_viscosity
+        points = given.law(self._density_15) if isinstance(given, ViscosityPoints) else None
+        grade = None if self.grade is None else self.grade.law
+        law = points or grade or (None if self.vogel is None else self.vogel.law)
         return None if law is None else law.times(self.shear_factor)
 
     @property
     def viscosity(self) -> float:
         """The dynamic viscosity [Pa s], given or by the law at the temperature."""
-        if self.given_viscosity is not None and not isinstance(self.given_viscosity, Grade):
+        if self.given_viscosity is not None and not isinstance(self.given_viscosity, Model):
             return self.given_viscosity
         if self.law is None or self.temperature is None:  # the checks of a case file do not let this pass
             return math.nan

@@ -17,6 +17,7 @@ from pydantic_core import CoreSchema, core_schema
 from frbcli.units import (
     ANGLE,
     ANGULAR_RATE,
+    KINEMATIC,
     NUMBER,
     SPEED,
     TEMPERATURE_DIFFERENCE,
@@ -164,6 +165,7 @@ Position = Annotated[float, Quantity("m", "80 mm")]
 InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0)]
 Mass = Annotated[float, Quantity("kg", "6 kg", above=0)]
 ShellMass = Annotated[float, Quantity("kg", "2 kg", least=0)]
+RingMass = Annotated[float, Quantity("kg", "30 g", above=0)]
 JournalMass = Annotated[float, Quantity("kg", "100 g", above=0)]
 Inertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", least=0)]
 RingInertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", above=0)]
@@ -174,9 +176,11 @@ Acceleration = Annotated[float, Quantity("m/s^2", "9.81 m/s^2", least=0)]
 Force = Annotated[float, Quantity("N", "29.9 N", above=0)]
 Modulus = Annotated[float, Quantity("Pa", "210 GPa", above=0)]
 Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0)]
+KinematicViscosity = Annotated[float, Quantity(KINEMATIC, "46 cSt", above=0)]
 Flow = Annotated[float, Quantity("m^3/s", "0.2 l/min", above=0)]
 Density = Annotated[float, Quantity("kg/m^3", "850 kg/m^3", above=0)]
 Temperature = Annotated[float, Quantity("K", "100 degC", above=0)]
+VogelOffset = Annotated[float, Quantity(TEMPERATURE_DIFFERENCE, "-180 K")]
 TemperatureDifference = Annotated[float, Quantity(TEMPERATURE_DIFFERENCE, "900 K")]
 HeatCapacity = Annotated[float, Quantity("J/K", "100 J/K", above=0)]
 Conductance = Annotated[float, Quantity("W/K", "5 W/K", least=0)]

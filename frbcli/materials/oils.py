@@ -87,6 +87,8 @@ _ROSS = "lubricants of the package ROSS, its density taken as that at 15 degC"
 _GRADES = (
     _three("SAE 10W-40", 870.0, 81.5, 11.7, 4.65, f"{_MULTIGRADE}; {_PQIA}"),
     _three("SAE 5W-30", 860.0, 55.2, 9.2, 3.85, f"{_MULTIGRADE}; within SAE J300 at 100 degC"),
+    _two("SAE 0W-20", 850.0, 37.0, 6.6, f"{_MULTIGRADE}; within SAE J300 at 100 degC"),
+    _two("SAE 0W-30", 850.0, 52.0, 8.7, f"{_MULTIGRADE}; within SAE J300 at 100 degC"),
     _seireg("SAE 10", 0.0158, 1157.5),
     _seireg("SAE 20", 0.0136, 1271.6),
     _seireg("SAE 30", 0.0141, 1360.0),

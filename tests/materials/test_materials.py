@@ -46,7 +46,8 @@ def test_every_oil_passes_through_its_figures_and_has_a_source(grade) -> None:  
 def test_single_grades_lie_within_sae_j300() -> None:
     """Kinematic viscosity at 100 degC, SAE J300 of 2015. The fit has SAE 40 2 % below the least of its grade."""
     limits = {"SAE 20": (6.9, 9.3), "SAE 30": (9.3, 12.5), "SAE 40": (0.975 * 12.5, 16.3), "SAE 50": (16.3, 21.9),
-              "SAE 60": (21.9, 26.1), "SAE 10W-40": (12.5, 16.3), "SAE 5W-30": (9.3, 12.5)}  # fmt: skip
+              "SAE 60": (21.9, 26.1), "SAE 10W-40": (12.5, 16.3), "SAE 5W-30": (9.3, 12.5),
+              "SAE 0W-20": (6.9, 9.3), "SAE 0W-30": (9.3, 12.5)}  # fmt: skip
     for name, (least, most) in limits.items():
         assert least <= kinematic_viscosity(name, KELVIN[1]) < most, name
 

@@ -80,6 +80,7 @@ TABLES = {
     "[oil]": "Oil",
     "[oil.vogel]": "Vogel",
     "viscosity = { grade = ... }": "Grade",
+    "viscosity = { points = ... }": "ViscosityPoints",
     "[thermal]": "Thermal",
     "shaft, housing = { ... }": "WallNode",
     "[film]": "FilmModel",

@@ -22,10 +22,11 @@ from frbcli.case.reading.tables import at
 from frbcli.case.reading.text import as_tables
 from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
-from frbcli.case.rules.faults import objections, with_nearest_kinds
+from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_kinds
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.machine_table import machine_breaches
 from frbcli.errors import Fault, InputError
+from frbcli.results.files.kinds import RUN_BEGINS
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
 
@@ -233,6 +234,9 @@ def _read(path: Path) -> str | None:
             return None
         with path.open("rb") as file:
             content = file.read(LARGEST_FILE + 1)
+        if content.startswith(RUN_BEGINS):
+            problem = "is a run file: `frb plot`, `frb waterfall` and `frb report` show it."
+            raise _unreadable(path, problem, "Name a case.")
         if len(content) > LARGEST_FILE:
             raise _unreadable(path, f"is larger than {LARGEST_FILE // 1024} KiB.", "Name a case file.")
         return content.decode("utf-8-sig")
@@ -278,11 +282,12 @@ def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, An
 def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     """The case in `data`, None if the models reject it, and all faults."""
     case, guess = None, data
+    guessed: list[lines.Path] = []
     found: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
     try:
         case = Case.model_validate(data)
     except ValidationError as error:
-        guess = with_nearest_kinds(error, data)
+        guess, guessed = with_nearest_kinds(error, data)
         found |= {breach.path: breach for breach in objections(error, data)}
     if guess != data:
         try:
@@ -290,7 +295,16 @@ def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
         except ValidationError as error:
             found = {breach.path: breach for breach in objections(error, guess)} | found
     found = {breach.path: breach for breach in breaches(guess)} | found
-    return case, list(found.values())
+    return case, [breach for breach in found.values() if not _follows(breach, found.values(), guessed)]
+
+
+def _follows(breach: Breach, found: Iterable[Breach], guessed: Sequence[lines.Path]) -> bool:
+    """Whether a fault is of the form of a table whose kind was guessed, and whose other keys belong to another kind."""
+    for path in guessed:
+        of_form = [each for each in found if each.path[: len(path)] == path and each.path[len(path) :] != ("kind",)]
+        if breach in of_form and breach.problem in (UNKNOWN, MISSING):
+            return any(each.problem == UNKNOWN and len(each.path) == len(path) + 1 for each in of_form)
+    return False
 
 
 def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:

@@ -72,8 +72,14 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
     if "viscosity" not in oil and "vogel" not in oil:
         yield Breach(("oil", "viscosity"), "is missing.", 'Add e.g. viscosity = "12 mPa*s" to [oil].')
     elif not constant and "temperature" not in oil and "thermal" not in data:
-        needs = "Vogel's law needs it" if "vogel" in oil else "the viscosity of a grade needs it"
+        needs = "Vogel's law needs it" if "vogel" in oil else "the viscosity of a grade or of points needs it"
         yield Breach(("oil", "temperature"), f"is missing; {needs}.", 'Add e.g. temperature = "100 degC".')
+    points = table(oil, "viscosity").get("points")
+    if "density" not in oil and points is not None:
+        problem = "is missing; a kinematic viscosity needs it."
+        yield Breach(("oil", "density"), problem, 'Add e.g. density = "850 kg/m^3".')
+    if isinstance(points, list) and len({str(point[:1]) for point in points if isinstance(point, list)}) < len(points):
+        yield Breach(("oil", "viscosity", "points"), "has one temperature twice.", "Give two temperatures.")
     for key in ("temperature", "shear_factor"):
         if key in oil and constant:
             problem = "has no effect: the viscosity is constant."

@@ -17,7 +17,7 @@ from frbcli.case.reading.tables import at
 from frbcli.case.rules.checks import Breach
 from frbcli.case.schema import Case
 from frbcli.nearest import did_you_mean, nearest
-from frbcli.units import ValueFault
+from frbcli.units import ValueFault, display, quantity
 
 _FORMS = {
     "string_type": ("is not text.", "Write it in quotes."),
@@ -32,6 +32,26 @@ _FORMS = {
 
 # Keys that take names which are added from Python, and the functions that add them.
 OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
+
+# Names that engineers know and a case does not have: a part of the name, and what takes its place
+KINDS_ELSEWHERE = {
+    "semi": 'A ring that may not turn is kind = "floating-ring" with [bearing.pin], or with ring.spin = "blocked"; '
+            'one ring over both journals is kind = "cartridge".',
+    **dict.fromkeys(
+        ("pad", "foil", "ball", "roll", "magnet"),
+        'It is not modelled: kind = "coefficients" takes its stiffness and damping.',
+    ),
+}  # fmt: skip
+KEYS_ELSEWHERE = {
+    "diametral_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
+    "diametrical_clearance": "Clearances are radial: write clearance, half of the diametral one{half}.",
+    "radial_clearance": "Clearances are radial: write clearance.",
+    "length": "Write width.",
+    "rpm": 'Write the unit with the number, e.g. to = "18000 rpm".',
+    "dynamic_viscosity": 'Write viscosity = "12 mPa*s".',
+    "kinematic_viscosity": 'Write viscosity = "12 cSt", and density.',
+}
+UNKNOWN, MISSING = "is not known here.", "is missing."
 
 BY_PLACE: tuple[Path, ...] = (("masses",), ("at",))  # tables by places, which are lists in the case
 
@@ -53,18 +73,20 @@ def objections(error: ValidationError, data: dict[str, Any]) -> Iterator[Breach]
         yield _breach(path, detail["loc"], detail["type"], {"input": detail["input"], **detail.get("ctx", {})})
 
 
-def with_nearest_kinds(error: ValidationError, data: dict[str, Any]) -> dict[str, Any]:
-    """`data` with each misspelt `kind` replaced by the nearest known, so that the rest of its table is read, too."""
-    guess = copy.deepcopy(data)
+def with_nearest_kinds(error: ValidationError, data: dict[str, Any]) -> tuple[dict[str, Any], list[Path]]:
+    """(`data` with each misspelt `kind` replaced by the nearest known, so that the rest of its table is read, too; the
+    paths of these tables)."""
+    guess, guessed = copy.deepcopy(data), list[Path]()
     for detail in error.errors(include_url=False):
         if detail["type"] != "union_tag_invalid":
             continue
         table: Any = guess
-        for element in _path(detail["loc"], data):
+        guessed.append(_path(detail["loc"], data))
+        for element in guessed[-1]:
             table = table[element]
         close = _close(str(detail["ctx"]["tag"]), _kinds(detail["loc"]))
         table["kind"] = close or table["kind"]
-    return guess
+    return guess, guessed
 
 
 def _path(loc: Sequence[str | int], data: Any) -> Path:
@@ -99,17 +121,20 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
     if isinstance(cause, ValueFault):
         return Breach(path, cause.problem, cause.remedy)
     if kind == "missing":
-        return Breach(path, "is missing.", _how_to_add(path, _place(loc).field))
+        return Breach(path, MISSING, _how_to_add(path, _place(loc).field))
     if kind == "extra_forbidden":
-        return Breach(path, "is not known here.", _nearest(str(loc[-1]), _place(loc[:-1]).models))
+        return Breach(path, UNKNOWN, _nearest(str(loc[-1]), _place(loc[:-1]).models, context["input"]))
     if kind in ("union_tag_invalid", "union_tag_not_found"):
-        problem = "is missing." if kind == "union_tag_not_found" else "is not known here."
-        return Breach((*path, "kind"), problem, _one_of(str(context.get("tag", "")), _kinds(loc)))
+        problem = MISSING if kind == "union_tag_not_found" else UNKNOWN
+        tag = str(context.get("tag", ""))
+        known = KINDS_ELSEWHERE if path[:1] == ("bearing",) else {}
+        elsewhere = next((words for part, words in known.items() if part in tag.lower()), "")
+        return Breach((*path, "kind"), problem, elsewhere or _one_of(tag, _kinds(loc)))
     if kind == "literal_error":
         remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
         if path in OWN:
             remedy += f" One of your own is added in this process before the case is read: {OWN[path]}."
-        return Breach(path, "is not known here.", remedy)
+        return Breach(path, UNKNOWN, remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
         kind = "model_type"
@@ -122,7 +147,7 @@ def _place(loc: Sequence[str | int]) -> _Place:
     for element in loc:
         if isinstance(element, int) or element.startswith("("):
             continue
-        if len(models) > 1:  # a table of several kinds, and this is its kind
+        if len(models) > 1 and all("kind" in model.model_fields for model in models):  # and this is its kind
             models = tuple(model for model in models if element in _choices(model.model_fields.get("kind")))
             continue
         fields = {key: field for model in models for key, field in _fields(model).items()}
@@ -178,9 +203,19 @@ def _how_to_add(path: Path, field: FieldInfo | None) -> str:
     return f"Add the table [{header}]."
 
 
-def _nearest(key: str, models: Sequence[type[Model]]) -> str:
+def _nearest(key: str, models: Sequence[type[Model]], value: object) -> str:
     known = [name for model in models for name in _fields(model)]
+    if key in KEYS_ELSEWHERE and key not in known:
+        return KEYS_ELSEWHERE[key].format(half=_half(value))
     return did_you_mean(key, known, f"Known are: {', '.join(known)}.")
+
+
+def _half(value: object) -> str:
+    """Half of a length in words, nothing if it cannot be read."""
+    try:
+        return f": {display(0.5 * quantity(value, 'm'), 'm')}"
+    except ValueFault:
+        return ""
 
 
 def _one_of(found: str, choices: Sequence[str]) -> str:

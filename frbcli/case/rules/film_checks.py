@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import ValidationError
 
 from frbcli.case.film_geometry import ColdClearance
-from frbcli.case.oil import ATMOSPHERE, Grade, Vogel
+from frbcli.case.oil import ATMOSPHERE, Grade, Oil, Vogel
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
 from frbcli.case.supplies.table import supply_named
@@ -94,8 +94,9 @@ def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) 
         problem = f"makes the viscosity {viscosity:.3g} Pa*s by Vogel's law."
         yield Breach(path, problem, "Check eta_0, A and C; the temperature T in eta_0 exp(A / (T + C)) is in kelvin.")
     else:
-        problem = f"makes the viscosity of the grade {viscosity:.3g} Pa*s."
-        yield Breach(path, problem, "The figures of a grade are of 40 to 150 degC.")
+        given = "points" if "points" in oil["viscosity"] else "grade"
+        problem = f"makes the viscosity of the {given} {viscosity:.3g} Pa*s."
+        yield Breach(path, problem, "The figures of a grade are of 40 to 150 degC, those of points near them.")
 
 
 def viscosity_law(oil: Mapping[str, Any]) -> VogelLaw | None:
@@ -103,7 +104,10 @@ def viscosity_law(oil: Mapping[str, Any]) -> VogelLaw | None:
     try:
         if "vogel" in oil:
             return Vogel.model_validate(oil["vogel"]).law
-        return OILS[Grade.model_validate(oil.get("viscosity")).grade].law
+        given = oil.get("viscosity")
+        if isinstance(given, dict) and "points" in given:
+            return Oil.model_validate(oil).law
+        return OILS[Grade.model_validate(given).grade].law
     except ValidationError:
         return None
 

@@ -38,7 +38,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.case.reading.listing import values
     from frbcli.scene.costs.limits import require_affordable
     from frbcli.scene.costs.preparation import compile_B
-    from frbcli.scene.machine.findings import findings
+    from frbcli.scene.machine.findings import findings, remarks
     from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
     from frbcli.scene.planning.coarser_plan import cost_of_run
     from frbcli.scene.planning.expected_error import expected_error
@@ -53,6 +53,9 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         return
     found = findings(case)
     _show_findings(case, found, terminal)
+    doubts = remarks(case)
+    for doubt in doubts:
+        terminal.sentence(f"Note: {doubt}")
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
     bare = _tell_bare(listed, terminal)
@@ -89,7 +92,8 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
         _document(case, listed, bare, decisions)
-        | {"findings": _told_findings(found), "films": documents(FILM_OPERATION, films), "expected": expected}
+        | {"findings": _told_findings(found), "remarks": doubts}
+        | {"films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
         | ({} if kinematic or case.axial is None else {"axial": _axial(case)})
     )

@@ -24,6 +24,8 @@ REMEDY = "Free some space and continue with --resume, or choose another place wi
 USER_BLOCK = 512  # bytes; the smallest that HDF5 allows
 SIGNATURE = b"\x89HDF\r\n\x1a\n"  # that every HDF5 file begins with
 LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has about half of it
+SUFFIXES = (".h5", ".hdf5")
+OTHERS = (".png", ".pdf", ".svg", ".html", ".csv", ".json", ".toml", ".mat", ".parquet", ".xlsx", ".gif", ".mp4")
 PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 
@@ -58,7 +60,10 @@ def open_whole(path: Path) -> BufferedReader:
     """
     try:
         if not path.is_file():
-            raise refuse(path, "is not a file." if path.exists() else "does not exist.", "Name a run of frb runup.")
+            problem = "is not a file." if path.exists() else "does not exist."
+            made = "`frb runup CASE -o RUN.h5` makes one of a case."
+            remedy = "Name a run of frb runup." if path.suffix in SUFFIXES else f"Name a run; {made}"
+            raise refuse(path, problem, remedy)
         file = path.open("rb")
     except (OSError, ValueError) as error:
         raise refuse(path, f"cannot be read: {error}.") from error
@@ -117,5 +122,7 @@ def check_output(path: Path) -> None:
     """
     if wrong := wrong_place(path, RUN):
         raise refuse(path, *wrong)
+    if path.suffix.lower() in OTHERS:
+        raise refuse(path, f"ends with {path.suffix}, and a run is an HDF5 file.", f"Write -o {path.stem}.h5.")
     if path.exists() and not path.is_file():  # runs are written again and again
         raise refuse(path, "is not a file.", "Give -o the name of a file.")

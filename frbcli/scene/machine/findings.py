@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,10 @@ from frbcli.scene.machine.operating import operating_points
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.shaft_tilt import FilmTilt, film_tilts
 from frbcli.scene.shafts.table import shaft_of
+from frbcli.units import display
+
+NEXT = 1e-6  # m: a bearing where two sections meet lies on both
+ALIKE = 0.1  # of the diameter of the shaft, by which that of a journal may differ
 
 
 @dataclass(frozen=True)
@@ -83,3 +88,46 @@ def static_loads(case: Case) -> tuple[float, ...]:
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
     number = sommerfeld_number(load, film.width, 0.5 * film.diameter, film.clearance, case.viscosity(film), omega)
     return FilmLoad(name, load, load / (film.width * film.diameter), number, film.supply.words)
+
+
+def remarks(case: Case) -> tuple[str, ...]:
+    """What a case has that contradicts itself or is probably not meant, a sentence each."""
+    if case.given_rotor is None:
+        return ()
+    found: list[str] = []
+    unbalances = [getattr(case.given_rotor, "unbalance", 0.0), *(disk.unbalance for disk in case.disks)]
+    if not any(unbalances) and not case.forces and not case.bases:
+        found.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
+    return (*found, *_journals_off_the_shaft(case), *_names_off_their_place(case))
+
+
+def _journals_off_the_shaft(case: Case) -> Iterator[str]:
+    """Journals whose diameter is not that of the shaft there."""
+    ends = np.cumsum([section.length for section in case.shaft])
+    for bearing in case.bearings:
+        film, position = bearing.films[0], bearing.position
+        if position is None or not case.shaft or not 0.0 <= position <= ends[-1]:
+            continue
+        nearby = {int(np.searchsorted(ends, place)) for place in (position - NEXT, position + NEXT)}
+        diameters = [case.shaft[min(max(at, 0), len(case.shaft) - 1)].diameter for at in nearby]
+        if all(abs(film.diameter / diameter - 1.0) > ALIKE for diameter in diameters):
+            shaft = display(diameters[0], "m")
+            yield (
+                f"The journal of {bearing.name or 'the bearing'} has {display(film.diameter, 'm')}, "
+                f"the shaft at its position {shaft}."
+            )
+
+
+def _names_off_their_place(case: Case) -> Iterator[str]:
+    """Bearings that are called after a disk, and stand nearer to another one."""
+    for bearing in case.bearings:
+        position = bearing.position
+        called = [disk for disk in case.disks if disk.name and disk.name.lower() in bearing.name.lower()]
+        if position is None or len(called) != 1:
+            continue
+        (own,) = called
+        rivals = [disk for disk in case.disks if disk is not own and disk.name and disk.name not in bearing.name]
+        near = [disk.name for disk in rivals if abs(disk.position - position) < abs(own.position - position)]
+        mixed = [name for name in near if any(name.lower() in other.name.lower() for other in case.bearings)]
+        if mixed:
+            yield f"The bearing {bearing.name} stands nearer to {mixed[0]} than to {own.name}."
