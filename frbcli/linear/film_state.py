@@ -29,6 +29,7 @@ from frbcli.scene.section import film_section
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them
 SLOW = 0.6  # share of the angle that an iteration leaves, above which the next one follows from the last two
+NO_FLOW = 1e-9  # of the flow that the surfaces draw along
 SAMPLES = 720  # angles at which the smallest gap is looked for
 
 
@@ -272,6 +273,9 @@ def _with_fields(
         torque, power = torque + state.mixed.torque, power + state.mixed.power
         power_error += state.mixed.power_error
     friction = friction_coefficient(torque, math.hypot(*state.load), radius)
+    drawn = 0.5 * radius * sum(map(abs, speeds)) * state.clearance * volume.own.section.width
+    if abs(flow) < NO_FLOW * drawn:  # of a journal in the middle of its shell: what is left is round-off
+        flow = 0.0
     return replace(
         state,
         torque=torque,

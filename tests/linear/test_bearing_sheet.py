@@ -383,3 +383,24 @@ def test_a_point_without_a_state_has_no_error() -> None:
     """Its row of the table is asked for all the same."""
     point = FilmState("inner", 20.0, 20.0, 0.0, np.array([0.0, -1.0]), np.zeros(2), problem="has no place of rest")
     assert math.isnan(point.largest_error)
+
+
+@pytest.mark.parametrize("theory", ["short", "finite"])
+def test_a_journal_in_the_middle_of_its_shell_has_a_sheet(theory: str) -> None:
+    """Without gravity no oil leaves, and there is no temperature rise of it; half of the damping times the speed is the
+    cross-coupled stiffness, and the loss is Petroff's."""
+    rotor = 'kind = "rigid"\nmass = "100 kg"\ngravity = "0 m/s^2"'
+    bearing = 'kind = "single-film"\nwidth = "30 mm"\ndiameter = "100 mm"\nclearance = "100 um"\nends = "oil-bath"'
+    oil = 'viscosity = "30 mPa*s"\ndensity = "850 kg/m^3"'
+    text = f"[rotor]\n{rotor}\n[bearing]\n{bearing}\nsupply = {NO_SUPPLY}\n[oil]\n{oil}\n"
+    speed = '[speed]\nfrom = "0 Hz"\nto = "100 Hz"\nduration = "5 s"\n'
+    (point,) = bearing_sheet(load_case_text(f'{text}[film]\ntheory = "{theory}"\n{speed}'), [50.0]).points
+    omega = 2.0 * math.pi * 50.0
+    assert point.side_flow == 0.0
+    assert math.isnan(point.temperature_rise)
+    assert point.largest_error < 0.1
+    assert point.power == pytest.approx(2.0 * math.pi * 0.03 * 0.05**3 * 0.03 / 100e-6 * omega**2, rel=1e-3)
+    k, c = point.stiffness, point.damping
+    assert k[0, 1] == pytest.approx(-k[1, 0], rel=1e-5)
+    assert k[0, 1] == pytest.approx(0.5 * omega * c[0, 0], rel=1e-3)
+    assert abs(k[0, 0]) < 1e-4 * k[0, 1]

@@ -21,11 +21,13 @@ from frbcli.case.reading.toml import TomlFault, parse
 
 MOST_SPEEDS = 2000
 SPEED = "speed_Hz"
+SPEEDS = {SPEED: 1.0, "speed_rpm": 1.0 / 60.0, "speed_rad_s": 0.5 / math.pi}  # columns, in Hz
+OVER = ("frequency", "speed")  # of a file of ROSS: rad/s; its version 3 calls them speed
 UNITS = {"k": "N/m", "c": "N*s/m", "m": "kg"}
 REQUIRED = tuple(f"{letter}{axes}" for letter in "kc" for axes in AXES)
 MASSES = tuple(f"m{axes}" for axes in AXES)
 BEARINGS = ("BearingElement", "SealElement")
-COLUMNS = f"Give the columns {SPEED}, {', '.join(REQUIRED)}, and perhaps {', '.join(MASSES)}."
+COLUMNS = f"Give the columns {SPEED} (or speed_rpm, speed_rad_s), {', '.join(REQUIRED)}, perhaps {', '.join(MASSES)}."
 WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or as .csv."
 
 
@@ -58,6 +60,11 @@ def _read(path: Path) -> Columns:
     if path.suffix.lower() != ".csv":
         return _of_ross(text, path.suffix.lower() == ".json")
     columns = number_table(text, COLUMNS)
+    over = [name for name in columns if name in SPEEDS]
+    if len(over) > 1:
+        raise Refused(f"has the columns {' and '.join(over)}.", "Keep one of them.")
+    columns = {SPEED if name in SPEEDS else name: [SPEEDS.get(name, 1.0) * value for value in values]
+               for name, values in columns.items()}  # fmt: skip
     unknown = [name for name in columns if name not in (SPEED, *REQUIRED, *MASSES)]
     if unknown:
         raise Refused(f'has the column "{unknown[0]}", which is not known here.', COLUMNS)
@@ -78,7 +85,10 @@ def _of_ross(text: str, is_json: bool) -> Columns:
         told = "no bearing" if not elements else f"{len(elements)} bearings"
         raise Refused(f"holds {told}, not one.", WRITE)
     name, element = elements[0]
-    given = element.get("frequency")
+    over = [key for key in OVER if element.get(key) is not None]
+    if len(over) > 1:
+        raise Refused(f'has both frequency and speed in "{name}".', "Keep one of them.")
+    given = element[over[0]] if over else None
     columns: Columns = {}
     for key in (*REQUIRED, *MASSES):
         if element.get(key) is not None:
@@ -86,9 +96,9 @@ def _of_ross(text: str, is_json: bool) -> Columns:
     if given is None and all(len(values) == 1 for values in columns.values()):
         columns[SPEED] = [0.0]  # constant
     elif given is None:
-        raise Refused(f'lacks "frequency" in "{name}".', WRITE)
+        raise Refused(f'lacks "frequency", or "speed", in "{name}".', WRITE)
     else:
-        columns[SPEED] = [value / (2.0 * math.pi) for value in _numbers(given, "frequency")]
+        columns[SPEED] = [value / (2.0 * math.pi) for value in _numbers(given, over[0])]
     return columns
 
 

@@ -2,12 +2,14 @@
 
 Such a file is a table of elements, named by class and tag: a shaft element carries its node `n`, length, outer and
 inner diameters at both ends and its material, a disk its node, mass and inertias, all in SI. Bearings and seals of the
-file are left out: frb has its own. A ROSS shaft element may be a cone; it becomes a few cylinders.
+file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP.
+What an element specifies beside that is refused by its name, unless it has no effect.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -18,12 +20,21 @@ from frbcli.case.files.ross_file import REMEDY, WRITE, RossElement, ross_element
 from frbcli.case.reading.tables import Breach, table, tables
 from frbcli.case.rotor import OF_SECTIONS
 
-CYLINDERS = 4  # that stand for a cone
+STEP, MOST_CYLINDERS = 0.025, 80  # of a cone: relative change of the diameter from one cylinder to the next
 DISK = ("DiskElement", "DiskElement6DoF")
 HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
 MASS = "PointMass"  # that bearings stand on
-UNMODELLED = ("axial_force", "torque")
+TAKEN = ("L", "idl", "odl", "idr", "odr", "material", "n")
+LABELS = ("tag", "color", "scale_factor", "kwargs")
+ALWAYS = {"shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper"}
+OF_DISK = ("n", "m", "Id", "Ip")
+OF_MATERIAL = ("name", "rho", "E", "G_s", "Poisson", "color", "specific_heat", "thermal_conductivity")
 MOST_POISSON = 0.5 + 1e-6  # of an incompressible material
+
+ALWAYS_WORDS = {
+    "shear_effects": "the shear of a shaft", "rotary_inertia": "its rotary inertia",
+    "gyroscopic": "its gyroscopic moments", "shear_method_calc": "shear with Cowper's coefficient",
+}  # fmt: skip
 
 KEY = ("rotor", "file")
 UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
@@ -91,19 +102,18 @@ def _with_units(found: dict[str, Any]) -> dict[str, Any]:
 
 def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
     """Tables of [[shaft]] for a shaft element."""
-    for key in UNMODELLED:
-        if element.number(key, 0.0) != 0.0:
-            raise Refused(f'has a {key} in "{element.name}", which frb does not model.', "Set it to 0 in ROSS.")
+    _refuse_others(element, TAKEN)
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
     if inner >= outer or inner + growth[1] >= outer + growth[0]:
         raise Refused(f'has no thickness in "{element.name}": the inner diameter is not below the outer one.', REMEDY)
     material = RossElement(f"{element.name}.material", "", table(element.values, "material"))
     modulus = material.number("E")
+    _refuse_others(material, OF_MATERIAL)
     poisson = modulus / (2 * material.number("G_s")) - 1
     if not 0.0 <= poisson <= MOST_POISSON:
         raise Refused(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
-    parts = CYLINDERS if any(growth) else 1
+    parts = _cylinders_of(outer, *growth)
     for part in range(parts):
         middle = (part + 0.5) / parts
         yield {
@@ -114,6 +124,28 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
             "youngs_modulus": modulus,
             "poisson_ratio": poisson,
         }
+
+
+def _refuse_others(element: RossElement, taken: Sequence[str]) -> None:
+    """Raises Refused for a value beside those that are taken, unless it is what frb models or none at all."""
+    for key, value in element.values.items():
+        if key in taken or key in LABELS:
+            continue
+        if key in ALWAYS:
+            if value != ALWAYS[key]:
+                shown = f'{key} = {str(value).lower()} in "{element.name}"'
+                problem = f"has {shown}; frb always models {ALWAYS_WORDS[key]}."
+                raise Refused(problem, f"Set it to {str(ALWAYS[key]).lower()} in ROSS.")
+        elif value not in (None, 0, "", [], {}):
+            shown = f'{key} = {value} in "{element.name}"'
+            raise Refused(f"has {shown}, which frb does not model.", "Set it to 0 in ROSS.")
+
+
+def _cylinders_of(outer: float, growth: float, inner_growth: float) -> int:
+    """How many cylinders stand for a cone; outer: diameter at its left end, growth: of the outer and inner diameters."""
+    least = min(outer, outer + growth)
+    change = max(abs(growth), abs(inner_growth)) / least
+    return min(max(1, math.ceil(change / STEP)), MOST_CYLINDERS)
 
 
 def _runs(cylinders: list[dict[str, Any]]) -> Iterator[list[dict[str, Any]]]:
@@ -130,6 +162,7 @@ def _disk(element: RossElement, positions: list[float]) -> dict[str, Any]:
     node = element.node
     if node not in range(len(positions)):
         raise Refused(f'has "{element.name}" beyond the shaft.', WRITE)
+    _refuse_others(element, OF_DISK)
     tag = element.values.get("tag") or element.name
     polar, diametral = element.number("Ip"), element.number("Id")
     if polar > 2 * diametral * (1 + 1e-9):

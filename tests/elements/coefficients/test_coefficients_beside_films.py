@@ -156,6 +156,28 @@ def test_a_csv_is_linear_between_its_speeds_and_constant_beyond(tmp_path: Path) 
     assert load_case_text(case.source_text, name="rigid") == case
 
 
+@pytest.mark.parametrize(
+    ("column", "one"), [("speed_Hz", 1.0), ("speed_rpm", 60.0), ("speed_rad_s", TURN)]
+)
+def test_a_table_states_the_unit_of_its_speeds(column: str, one: float, tmp_path: Path) -> None:
+    (tmp_path / "seal.csv").write_text(CSV.replace("speed_Hz", column).replace("50,1e6", f"{50 * one!r},1e6")
+                                       .replace("100,1.5e6", f"{100 * one!r},1.5e6"))  # fmt: skip
+    here = make_rotor(with_file(tmp_path, "seal.csv")).at(TURN * 75.0)
+    np.testing.assert_allclose(here.stiffness, 2.0 * np.array([[1.25e6, 1.5e5], [-1.5e5, 1.25e6]]), rtol=1e-9)
+
+
+@pytest.mark.parametrize("key", ["frequency", "speed"])
+def test_a_table_of_ross_2_and_3_is_read(key: str, tmp_path: Path) -> None:
+    """Their speeds are in rad/s."""
+    lists = {"kxx": [1e6, 1.5e6], "kyy": [1e6, 1.5e6], "kxy": [1e5, 2e5], "kyx": [-1e5, -2e5],
+             "cxx": [300.0, 250.0], "cyy": [300.0, 250.0], "cxy": [0.0, 0.0], "cyx": [0.0, 0.0],
+             key: [50.0 * TURN, 100.0 * TURN]}  # fmt: skip
+    rows = "".join(f"{name} = {values}\n" for name, values in lists.items())
+    (tmp_path / "bearing.toml").write_text(f'["BearingElement_Bearing 0"]\nn = 0\n{rows}tag = "Bearing 0"\n')
+    here = make_rotor(with_file(tmp_path, "bearing.toml")).at(TURN * 75.0)
+    np.testing.assert_allclose(here.stiffness, 2.0 * np.array([[1.25e6, 1.5e5], [-1.5e5, 1.25e6]]), rtol=1e-9)
+
+
 def test_the_file_of_a_bearing_sheet_and_a_csv_give_the_same(tmp_path: Path) -> None:
     from frbcli.linear.bearing_sheet import bearing_sheet
     from frbcli.results.export import write_ross
