@@ -252,6 +252,7 @@ def _iterated(
     """The eigenvalue that the inverse iteration leads to from s, with its shape; NaN if it leads nowhere."""
     real = abs(s.imag) < EQUAL * abs(s)
     vector: Complex = np.asarray(shape / np.linalg.norm(shape))
+    before = math.inf
     for _ in range(ITERATIONS):
         matrix, slope = machine.at(s, films)
         try:
@@ -263,8 +264,10 @@ def _iterated(
         if real:
             s = complex(s.real)
         vector = np.asarray(following / np.linalg.norm(following))
-        if abs(step) < CLOSE * abs(s):
-            return (complex(s.real) if abs(s.imag) < CLOSE * abs(s) else s), vector
+        # round-off may leave more than CLOSE of a slow motion; its steps then no longer fall
+        if abs(step) < CLOSE * abs(s) or before <= 2.0 * abs(step) < EQUAL * abs(s):
+            return (complex(s.real) if abs(s.imag) < EQUAL * abs(s) else s), vector
+        before = abs(step)
     return complex(math.nan, math.nan), vector
 
 
