@@ -5,6 +5,8 @@ from __future__ import annotations
 import gc
 import os
 import signal
+from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
@@ -20,6 +22,14 @@ if signal.getsignal(signal.SIGHUP) is signal.SIG_IGN:
 if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from round_off import round_off
+
+round_off.install()
+
+# Where last digits decide the most: tests with perturbed round-off, with all of them by --round-off-everywhere.
+TESTS = Path(__file__).parent
+ROUND_OFF = ("linear", "equilibrium", "cycles", "rotor", "film")
+
 # Objects between two searches for garbage, as in the program: kernels that are compiled make many that stay.
 YOUNG = 300_000
 
@@ -31,6 +41,22 @@ LONGEST = (
     "test_interruptions", "test_two_frequencies", "test_pressed_contact", "test_own_bearing", "test_cosimulation",
     "test_bearing_sheet",
 )  # fmt: skip
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--round-off", type=int, default=1, metavar="SEED", help="seed of it; 0: none")
+    parser.addoption("--round-off-everywhere", action="store_true", help="perturb it in all tests")
+
+
+@pytest.fixture(autouse=True)
+def perturbed_round_off(request: pytest.FixtureRequest) -> Iterator[None]:
+    """Matrices are off by 1e-15 of their size, see round_off.py."""
+    seed, folder = request.config.getoption("--round-off"), request.path.relative_to(TESTS).parts[0]
+    if not seed or not (folder in ROUND_OFF or request.config.getoption("--round-off-everywhere")):
+        yield
+        return
+    with round_off.on(request.node.nodeid, seed):
+        yield
 
 
 def pytest_configure(config: pytest.Config) -> None:

@@ -45,10 +45,17 @@ TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond whic
 # Relative distance to a pole of a projection within which a motion is one of the projection alone: to that of a film
 # with gas belong some that grow and move nothing, next to which the inverse iteration ends at once.
 POLE = 1e-8
+# Difference of the films of both meshes over the smaller one. Next to a pole of the finer mesh it is 1, next to one of
+# the coarser mesh more; at eigenvalues of machines it is 0.01 to 0.3, of those that hardly oscillate up to 0.5.
+KNOWN = 0.75
+# From a start to its eigenvalue, over the larger of start and speed of the rotor: it is up to 0.1. The iteration from a
+# start of which the films have no eigenvalue wanders, and ends by chance.
+MOVED = 0.25
 ITERATIONS, CLOSE = 30, 1e-10  # of the inverse iteration, and its last step over |s|
 CENTRE = 1e-9  # m: off the centre by less, a journal takes no notice of both surfaces turning
 EQUAL = 1e-6  # relative: the same eigenvalue, from two starts
 NEARLY_REAL = 1e-3  # imaginary part over |s|: round-off of a start that is real
+INSTANT = 1e-5  # delay over the longest one of all films, below which the oil of a state answers at once
 
 
 @dataclass(frozen=True)
@@ -146,32 +153,39 @@ class Oscillator:
         return matrix, slope
 
     def starts(self, films: Sequence[DynamicStiffness]) -> list[tuple[complex, Complex]]:
-        """Eigenvalues with their shapes (n,), of films with few states: a dense problem."""
-        from scipy.linalg import eig
+        """Eigenvalues with their shapes (n,), of films with few states: a dense problem, of displacements, velocities
+        and the states of the oil.
 
-        n, sizes = len(self.mass), [len(film.delays) for film in films]
-        size = 2 * n + sum(sizes)
-        rate, own = np.eye(size, dtype=complex), np.zeros((size, size), dtype=complex)
-        rate[n : 2 * n, n : 2 * n] = self.mass
-        own[:n, n : 2 * n] = np.eye(n)
-        own[n : 2 * n, :n], own[n : 2 * n, n : 2 * n] = -self.stiffness, -self.damping
-        begin = 2 * n
-        for push, journal, film, count in zip(self.pushes, self.journals, films, sizes, strict=True):
-            oil = slice(begin, begin + count)
-            begin += count
-            own[n : 2 * n, :n] -= push @ film.place @ journal
-            own[n : 2 * n, n : 2 * n] -= push @ film.rate @ journal
-            own[n : 2 * n, oil] = -push @ film.left
-            own[oil, :n], own[oil, n : 2 * n] = film.right_place @ journal, film.right_rate @ journal
-            own[oil, oil], rate[oil, oil] = -np.eye(count), np.diag(film.delays)
+        Most projections have directions that store no oil, whose delays are round-off. As states they would spoil all
+        eigenvalues: they answer at once, as stiffness and damping."""
+        n, longest = len(self.mass), max((np.abs(film.delays).max(initial=0.0) for film in films), default=0.0)
+        stiffness, damping = self.stiffness.astype(complex), self.damping.astype(complex)
+        oil: list[tuple[Complex, ...]] = []
+        for push, journal, film in zip(self.pushes, self.journals, films, strict=True):
+            stores = np.abs(film.delays) > INSTANT * longest
+            at_once, slow = film.left[:, ~stores], film.left[:, stores]
+            stiffness += push @ (film.place + at_once @ film.right_place[~stores]) @ journal
+            damping += push @ (film.rate + at_once @ film.right_rate[~stores]) @ journal
+            by_state = film.delays[stores, None]
+            place, rate = (each[stores] @ journal / by_state for each in (film.right_place, film.right_rate))
+            oil.append((push @ slow, place, rate, 1.0 / film.delays[stores]))
+        left = np.hstack([np.zeros((n, 0)), *(each[0] for each in oil)])
+        place, rate = (np.vstack([np.zeros((0, n)), *(each[part] for each in oil)]) for part in (1, 2))
+        decay = np.diag(np.concatenate([np.zeros(0), *(each[3] for each in oil)]))
+        own = np.block(
+            [
+                [np.zeros((n, n)), np.eye(n), np.zeros_like(left)],
+                [-np.linalg.solve(self.mass, np.hstack([stiffness, damping, left]))],
+                [place, rate, -decay],
+            ]
+        )
         spins = np.array(self.turning, dtype=np.int64)
-        kept = np.delete(np.arange(size), spins)
-        own, rate = (each[np.ix_(kept, kept)] for each in (own, rate))
-        values, states = eig(own, rate)
-        shapes = np.zeros((size, len(kept)), dtype=complex)
+        kept = np.delete(np.arange(len(own)), spins)
+        values, states = np.linalg.eig(own[np.ix_(kept, kept)])
+        shapes = np.zeros((len(own), len(kept)), dtype=complex)
         shapes[kept] = states
         shapes[spins] = shapes[n + spins]
-        return [(complex(values[i]), shapes[:n, i]) for i in np.flatnonzero(np.isfinite(values))]
+        return [(complex(value), shapes[:n, i]) for i, value in enumerate(values)]
 
 
 def modes(
@@ -180,20 +194,22 @@ def modes(
     """Eigenvalues in 1/s with their shapes (n,), of pairs the one with positive imaginary part: all that grow, and
     those that decay by less than DAMPED.
 
-    own: the films' dynamic stiffness. Eigenvalues at which the projections are not to be trusted are none of the
-    machine."""
+    own: the films' dynamic stiffness. None of the machine are eigenvalues at which the projections are not to be
+    trusted, at which the films of the two meshes are not the same, and those far from where the iteration began."""
     found: list[tuple[complex, Complex]] = []
     for start, shape in machine.starts([film.one for film in films]):
         if start.imag < -NEARLY_REAL * abs(start) or start.real < -DAMPED * abs(omega):
             continue
         value, vector = _iterated(machine, own, start, shape)
-        if not math.isfinite(value.real) or value.real < -DAMPED * abs(omega) or value.imag < -EQUAL * abs(value):
+        if value.imag < 0.0:
+            value, vector = value.conjugate(), vector.conj()
+        if not abs(value - start) < MOVED * max(abs(start), abs(omega)) or value.real < -DAMPED * abs(omega):
             continue
         if any(abs(value - other) < EQUAL * abs(value) for other, _ in found):
             continue
         if any((np.abs(1.0 + value * film.delays) < POLE).any() for film in own):
             continue
-        if all(_trusted(film, value) for film in films):
+        if all(_trusted(film, value) and _known(film, value) for film in films):
             found.append((value, vector))
     return found
 
@@ -236,6 +252,7 @@ def _iterated(
     """The eigenvalue that the inverse iteration leads to from s, with its shape; NaN if it leads nowhere."""
     real = abs(s.imag) < EQUAL * abs(s)
     vector: Complex = np.asarray(shape / np.linalg.norm(shape))
+    before = math.inf
     for _ in range(ITERATIONS):
         matrix, slope = machine.at(s, films)
         try:
@@ -247,9 +264,20 @@ def _iterated(
         if real:
             s = complex(s.real)
         vector = np.asarray(following / np.linalg.norm(following))
-        if abs(step) < CLOSE * abs(s):
-            return (complex(s.real) if abs(s.imag) < CLOSE * abs(s) else s), vector
+        # round-off may leave more than CLOSE of a slow motion; its steps then no longer fall
+        if abs(step) < CLOSE * abs(s) or before <= 2.0 * abs(step) < EQUAL * abs(s):
+            return (complex(s.real) if abs(s.imag) < EQUAL * abs(s) else s), vector
+        before = abs(step)
     return complex(math.nan, math.nan), vector
+
+
+def _known(film: DynamicFilm, s: complex) -> bool:
+    """Whether the films of both meshes are the same at s: not near a pole, which is the motion of the oil of one mesh.
+    By the blocks of forces by displacements and of moments by tilts."""
+    own, fine = film.own.at(s)[0], film.fine.at(s)[0]
+    blocks = [(slice(first, first + 2),) * 2 for first in range(0, len(own), 2)]
+    sizes = [min(np.abs(own[block]).max(), np.abs(fine[block]).max()) for block in blocks]
+    return all(np.abs((own - fine)[block]).max() <= KNOWN * size for block, size in zip(blocks, sizes, strict=True))
 
 
 def _trusted(film: DynamicFilm, s: complex) -> bool:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import json
 import os
 import signal
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -29,8 +31,10 @@ QUICK = ["jeffcott", *SHORT]
 
 
 @pytest.fixture(autouse=True)
-def in_a_directory_of_its_own(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def in_a_directory_of_its_own(tmp_path: Path) -> Iterator[None]:
+    """Not by monkeypatch: where a test undoes its patches, it would go on beside the files of the user."""
+    with contextlib.chdir(tmp_path):
+        yield
 
 
 def ask_to_end(*_: object) -> None:
@@ -224,7 +228,8 @@ def test_a_full_disk_is_one_line_wherever_it_is_met(
     assert frb(["runup", *QUICK, "-o", "run.h5", "--json"]) == 1
     said = capsys.readouterr()
     assert json.loads(said.out)["message"] == "No space left on device: /cache/of/kernels"
-    assert said.err == "frb: No space left on device: /cache/of/kernels\n"
+    lines = [line for line in said.err.splitlines() if not line.startswith("Compiling the kernels")]  # where none are
+    assert lines == ["frb: No space left on device: /cache/of/kernels"]
     monkeypatch.undo()
     after_calls(monkeypatch, March, "compile", 0, OSError(errno.EIO, "a bug"))
     with pytest.raises(OSError, match="a bug"):

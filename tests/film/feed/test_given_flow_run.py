@@ -153,17 +153,23 @@ def test_a_run_resumed_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPa
 
 
 def test_a_film_that_was_emptied_fills_again(tmp_path: Path) -> None:
-    """Its supply falls to the pressure of the air and comes back: so do oil, place of the journal and balance."""
+    """Its supply falls to the pressure of the air and comes back: so do oil, place of the journal and balance.
+
+    Fronts of oil cross the turning cells one after the other. The ripple that they leave, 1e-8 m, never repeats:
+    round-off grows to it within half a second. Means over three revolutions and 96 cells are free of it, and at each
+    instant the runs agree within the errors that they state."""
     speed = "speed.from=15", "speed.to=15", "speed.duration=1.5", "start.position=resting"
     rows = '[["0 s", "3 bar"], ["0.02 s", "1 bar"], ["0.12 s", "1 bar"], ["0.14 s", "3 bar"], ["2 s", "3 bar"]]'
     run, plain = (
         runup(case_of(GROOVE.replace('"3 bar"', given), None, *speed), tmp_path / name)
         for name, given in (("run.h5", rows), ("plain.h5", '"3 bar"'))
     )
-    oil, full = run["oil_fraction"], plain["oil_fraction"]
+    oil, full, last = run["oil_fraction"], plain["oil_fraction"], run["time_s"] > 1.3
     assert oil.min() < 0.8 * full[-1]
     assert run["eccentricity"].max() > plain["eccentricity"].max() + 0.05
-    assert oil[-1] == pytest.approx(full[-1], abs=1e-4)
+    assert oil[last].mean() == pytest.approx(full[last].mean(), abs=1e-4)
+    stated = sum(each.error[name] for each in (run, plain) for name in ("time_integration", "cells"))  # type: ignore[misc]
     for name in ("journal_x_m", "journal_y_m"):
-        assert run[name][-1] == pytest.approx(plain[name][-1], abs=1e-4 * 40e-6)
+        assert run[name][last].mean() == pytest.approx(plain[name][last].mean(), abs=1e-4 * 40e-6)
+        assert np.abs(run[name] - plain[name])[last].max() < stated * 40e-6
     assert run.error["oil_balance_relative"] < 1e-5  # type: ignore[operator]
