@@ -47,6 +47,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
+# numba looks for settings in the current folder whenever it compiles: there are none
+setattr(config, "_config_fname", "")  # noqa: B010
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
 # LLVM orders the instructions of a block twice. Its usual way of doing so for the first time takes time with the square
 # of their number, more than half of that for the machine code of a time loop, which begins with thousands of addresses.
