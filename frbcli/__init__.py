@@ -3,11 +3,11 @@
 The public names below are imported when they are first used, so that `import frbcli` and `frb --help` cost nothing.
 """
 
-from __future__ import annotations
-
 import importlib
-from typing import TYPE_CHECKING
 
+from frbcli.libraries import guard_numba
+
+TYPE_CHECKING = False  # for type checkers; `typing` itself would be imported from the current folder if it lay there
 if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.events import find_events as find_events
     from frbcli.analysis.measured import Measurement as Measurement
@@ -64,6 +64,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
 
 
 __version__ = "0.1.0"
+
+guard_numba()
 
 _PUBLIC = {  # module, or module:attribute of another name
     "Case": "frbcli.case.schema",

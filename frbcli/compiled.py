@@ -9,28 +9,31 @@ from __future__ import annotations
 import hashlib
 import logging
 import os
+import pickle
 import re
 from collections.abc import Callable, Set
 from contextlib import suppress
-from copy import copy
 from functools import cache, partial, update_wrapper
+from glob import escape
 from inspect import signature
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
 from llvmlite import binding, ir
-from numba import njit, types
+from numba import __version__, njit, types
 from numba.core import config, runtime
+from numba.core.caching import NullCache
 from numba.core.ccallback import CFunc
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.entrypoints import init_all
+from numba.core.serialize import dumps
 from numba.core.sigutils import normalize_signature
 from numba.extending import overload
 from numpy.typing import NDArray
 
-from frbcli.caches import KERNELS, take_shipped_kernels
+from frbcli.caches import KERNELS, is_trusted, store, stored, take_shipped_kernels, temporary_cache
 
 _PACKAGE = Path(__file__).parent
 _BRINGS_KERNELS = (_PACKAGE / KERNELS).exists()
@@ -44,6 +47,8 @@ Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
+# numba looks for settings in the current folder whenever it compiles: there are none
+setattr(config, "_config_fname", "")  # noqa: B010
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
 # LLVM orders the instructions of a block twice. Its usual way of doing so for the first time takes time with the square
 # of their number, more than half of that for the machine code of a time loop, which begins with thousands of addresses.
@@ -173,8 +178,7 @@ class _Cache:
 
     def __getattr__(self, name: str) -> Any:
         if self._kernel._cache is self:
-            _keep(self._kernel.enable_caching)
-            _follow(self._kernel, self._source)
+            _keep(self._kernel, self._source)
         return getattr(self._kernel._cache, name)
 
 
@@ -189,8 +193,7 @@ def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> 
     load_extensions: Any = init_all  # likewise
     made: Any = CFunc(function, normalize(signature), locals={}, options={"error_model": "numpy"})
     if sources:
-        _keep(made.enable_caching)
-        _follow(made, *sources)
+        _keep(made, *sources)
     else:
         load_extensions()
     made.compile()
@@ -221,59 +224,132 @@ def call_of(numbers: int) -> Callable[..., Any]:
     return generate
 
 
-def _keep(enable: Callable[[], None]) -> None:
-    """Have a kernel kept on disk: where numba has no place for it, in a temporary directory, which one line tells."""
-    try:
-        enable()
-    except RuntimeError:
-        from frbcli.caches import temporary_cache
+def folder_of(kernel: Callable[..., object]) -> Path | None:
+    """The folder in which a kernel is kept, None if it is not."""
+    found: Any = kernel
+    return None if found._cache.cache_path is None else Path(found._cache.cache_path)
 
+
+def _keep(made: Any, *sources: Path) -> None:
+    """Have a kernel kept on disk, in files that follow its sources: where numba puts it if nobody else can write there,
+    else in a temporary directory; without any place, or with a numba that has other files, in memory.
+
+    Beside its sources it is trusted as they are: Python runs what it finds there, too.
+    """
+    beside = sources[0].parent / "__pycache__"
+    for use_another_place in (_use_temporary_cache, _say_that_nothing_is_kept):
+        with suppress(RuntimeError, OSError):  # numba has no place for it
+            made.enable_caching()
+            index = _index_of(made._cache)
+            if index is not None and (index.parent == beside or _is_own_place(index)):
+                break
+        use_another_place()
+    else:
+        made._cache = NullCache()
+        return
+    kept, places = made._cache, [index]
+    if _BRINGS_KERNELS and index.parent != beside:
+        places.append(beside / index.name)
+    kept._cache_file = _Files(places, f"{__version__} {sources_digest(*sources)}")
+    quick = hasattr(kept, READ) and _MEMORY is not None  # else numba prepares itself first
+    kept.load_overload = partial(_read, getattr(kept, READ) if quick else kept.load_overload)
+    kept.save_overload = partial(_write, kept.save_overload)
+
+
+def _index_of(cache: Any) -> Path | None:
+    """Where numba has the index of a kernel, to which it has no public way; None if it is elsewhere."""
+    found = getattr(getattr(cache, "_cache_file", None), "_index_path", None)
+    return None if found is None else Path(found)
+
+
+def _is_own_place(index: Path) -> bool:
+    """Whether an index lies where only this user can write. Without a name for its cache, numba takes the current
+    folder, which may have come from somewhere else."""
+    settings: Any = config  # numba tells no types of it
+    return bool(index.is_absolute() or settings.CACHE_DIR) and is_trusted(index.parent)
+
+
+def _use_temporary_cache() -> None:
+    """Raises OSError if there is none."""
+    with suppress(OSError):
         place = str(temporary_cache())
         os.environ["NUMBA_CACHE_DIR"] = place  # also of the processes of a sweep
         settings: Any = config  # numba tells no types of it
         settings.CACHE_DIR = place
         logging.getLogger("frbcli").warning(
-            "Compiled kernels are kept in %s, for neither the installation nor the home directory can be written. "
+            "Compiled kernels are kept in %s, for neither the installation nor NUMBA_CACHE_DIR or the home directory "
+            "is a place where this user can write and others cannot. "
             "Set NUMBA_CACHE_DIR to a directory of your own to keep them longer.", place,
         )  # fmt: skip
-        enable()
 
 
-def _follow(made: Any, *sources: Path) -> None:
-    """Have the cache of a kernel follow its sources, and read it alone, to which numba has no public way.
+@cache
+def _say_that_nothing_is_kept(cause: str = "there is no place for them") -> None:
+    told = "Compiled kernels are not kept on disk: %s. The next start compiles them again."
+    logging.getLogger("frbcli").warning(told, cause)
 
-    What its index is compared with before it is read as a whole: an older one may name types that are no longer there,
-    and could not be read.
+
+class _Files:
+    """The files of a kernel, in place of numba's: an index, and a file for each set of types, all with checksums.
+
+    Neither is read where the sources were others: an older index may name types that are no longer there.
     """
-    kept = made._cache
-    file, digest = kept._cache_file, sources_digest(*sources)
-    file._version, file._source_stamp = f"{file._version} {digest}", digest
-    beside = sources[0].parent / "__pycache__"
-    if _BRINGS_KERNELS and Path(file._cache_path) != beside:
-        shipped, own = copy(file), file.load
-        shipped._cache_path, shipped._index_path = str(beside), str(beside / Path(file._index_path).name)
-        file.load = lambda key: own(key) or shipped.load(key)
-    if hasattr(kept, READ) and _MEMORY is not None:  # else numba reads it in its own way
-        kept.load_overload = partial(_read, getattr(kept, READ))
+
+    def __init__(self, indexes: list[Path], made_for: str) -> None:
+        self._indexes, self._made_for = indexes, made_for
+
+    def load(self, key: object) -> Any:
+        """The parts of a compiled kernel, None if they are not there, or damaged."""
+        for index in self._indexes:
+            name = self._names(index).get(key)
+            content = None if name is None else stored(index.with_name(name), self._made_for)
+            if content is not None:
+                return pickle.loads(content)
+        return None
+
+    def save(self, key: object, parts: object) -> None:
+        """Keep a compiled kernel in the first place. Its file is named by what it holds, so that two processes never
+        take it for another one. Raises OSError."""
+        index, write = self._indexes[0], cast("Any", dumps)  # numba tells no types of it
+        content = write(parts)
+        name = f"{index.stem}.{hashlib.sha256(content).hexdigest()[:16]}.nbc"
+        store(index.with_name(name), content, self._made_for)
+        names = {**self._names(index), key: name}
+        store(index, write(names), self._made_for)
+        for other in index.parent.glob(f"{escape(index.stem)}.*.nbc"):  # of older sources
+            if other.name not in names.values():
+                other.unlink(missing_ok=True)
+
+    def _names(self, index: Path) -> dict[object, str]:
+        content = stored(index, self._made_for)
+        return {} if content is None else pickle.loads(content)
 
 
 def _read(read: Callable[[Any, Any], Any], signature: Any, target: Any) -> Any:
-    """A kernel from the disk, None if it is not there, without what numba needs to compile: its preparation takes half
-    as long as importing numba. numba prepares itself where a kernel has to be compiled.
+    """A kernel from the disk, None if it is not there or cannot be read, without what numba needs to compile: its
+    preparation takes half as long as importing numba. numba prepares itself where a kernel has to be compiled.
 
     Machine code calls functions in C: numba names all of them when it starts, except those for the memory of arrays,
     and for the hashes of sets and dictionaries, which kernels do not have.
     """
     _name_memory()
-    with suppress(PermissionError):  # Windows: another process has the file
+    with suppress(Exception):  # of numba, for types of another version of a library, say: it is compiled again
         return read(signature, target)
     return None
+
+
+def _write(write: Callable[[Any, Any], None], signature: Any, made: Any) -> None:
+    """Keep a kernel on disk; where it cannot be written, the process goes on without."""
+    try:
+        write(signature, made)
+    except OSError as error:
+        _say_that_nothing_is_kept(error.strerror or str(error))
 
 
 @cache
 def _name_memory() -> None:
     """Let machine code find numba's functions for the memory of arrays."""
-    for name, address in _MEMORY.items():
+    for name, address in (_MEMORY or {}).items():
         binding.add_symbol(name if name.startswith("_") else f"NRT_{name}", address)
 
 

@@ -135,6 +135,21 @@ def test_kernels_of_another_version_are_left_alone(package: Path, other: str) ->
     assert "NUMBA_CPU_NAME" not in caches.os.environ
 
 
+@pytest.mark.parametrize("content", ["", "[1", "[]", "3", "{}", '{"python": 3}', "\0"])
+def test_a_damaged_file_of_a_wheel_stops_nothing(package: Path, content: str) -> None:
+    (package / KERNELS).write_text(content)
+    take_shipped_kernels(package)
+    assert "NUMBA_CPU_NAME" not in caches.os.environ
+
+
+def test_targets_that_are_none_stop_nothing(package: Path) -> None:
+    shipped = json.loads((package / KERNELS).read_text())
+    for targets in (None, 3, ["z80"], [[]]):
+        (package / KERNELS).write_text(json.dumps({**shipped, "targets": targets}))
+        take_shipped_kernels(package)
+        assert "NUMBA_CPU_NAME" not in caches.os.environ
+
+
 def test_a_choice_of_the_user_stands(package: Path) -> None:
     caches.os.environ["NUMBA_CPU_NAME"] = "generic"
     take_shipped_kernels(package)

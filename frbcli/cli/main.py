@@ -205,7 +205,9 @@ def run(arguments: Sequence[str]) -> int:
     try:
         spare = reserve()
         code = frb.main(list(arguments), prog_name="frb", standalone_mode=False)
-    except click.Abort:  # click turns KeyboardInterrupt into it
+    except click.Abort as aborted:  # click turns KeyboardInterrupt into it, and EOFError as well, which is a bug
+        if isinstance(aborted.__cause__, EOFError):
+            raise aborted.__cause__ from None
         click.echo("interrupted", err=True)
         return INTERRUPTED
     except click.exceptions.NoArgsIsHelpError as nothing_asked:

@@ -146,6 +146,11 @@ def main() -> NoReturn:
 
 def prepare_libraries() -> None:
     """Set what libraries read when they are imported, and spare them what they would do in vain."""
+    # No program and no module comes from the current folder, also in processes that this one starts.
+    if "PATH" in os.environ:
+        os.environ["PATH"] = os.pathsep.join(filter(os.path.isabs, os.environ["PATH"].split(os.pathsep)))
+    os.environ["NODEFAULTCURRENTDIRECTORYINEXEPATH"] = "1"  # of Windows
+    os.environ.setdefault("PYTHONSAFEPATH", "1")
     # Pictures go into files: no window system is asked for, and one that matplotlib does not know stops nothing.
     os.environ["MPLBACKEND"] = "agg"
     # The matrices here are small: a second thread of the linear algebra costs CPU time and gains none.

@@ -8,23 +8,23 @@ from __future__ import annotations
 import hashlib
 import io
 import os
-import uuid
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import fields, is_dataclass
 from functools import lru_cache, wraps
 from pathlib import Path
-from typing import Any, ParamSpec
+from typing import ParamSpec
 
 import numba
 import numpy as np
 
-from frbcli.compiled import Array, sources_digest
+from frbcli.caches import store, stored
+from frbcli.compiled import Array, folder_of, sources_digest
 
 SUFFIX = ".table"
 MOST_KEPT = 64  # files in a folder; those that were used last
 MOST_HELD = 8  # arrays of one function in the memory of a process
-CHECKSUM = 32  # bytes before the content of a file
+NAME = 32  # letters of the digest in the name of a file
 
 Arguments = ParamSpec("Arguments")
 
@@ -44,26 +44,22 @@ def kept_beside(kernel: Callable[..., object]) -> Callable[[Callable[Arguments, 
         def kept(*given: Arguments.args, **named: Arguments.kwargs) -> Array:
             content = repr((_told(given), _told(tuple(named.items()))))
             made_by = f"{make.__qualname__} {sources_digest(source)} {np.__version__} {numba.__version__}"
-            name = hashlib.sha256(f"{made_by} {content}".encode()).hexdigest()[:CHECKSUM]
-            with suppress(OSError):
-                folder = folder_of(kernel)
-                found = _read(folder / f"{make.__name__}-{name}{SUFFIX}")
-                if found is not None:
-                    return found
+            name = hashlib.sha256(f"{made_by} {content}".encode()).hexdigest()[:NAME]
+            folder = folder_of(kernel)
+            if folder is None:
+                return make(*given, **named)
+            file = folder / f"{make.__name__}-{name}{SUFFIX}"
+            found = _read(file)
+            if found is not None:
+                return found
             array = make(*given, **named)
             with suppress(OSError):
-                _write(folder_of(kernel) / f"{make.__name__}-{name}{SUFFIX}", array)
+                _write(file, array)
             return array
 
         return kept  # type: ignore[return-value]  # the cache of functools loses the types of the arguments
 
     return decorated
-
-
-def folder_of(kernel: Callable[..., object]) -> Path:
-    """The folder in which numba keeps a kernel."""
-    dispatcher: Any = kernel
-    return Path(dispatcher._cache.cache_path)
 
 
 def _told(value: object) -> object:
@@ -80,12 +76,9 @@ def _told(value: object) -> object:
 
 
 def _read(path: Path) -> Array | None:
-    """The array of a file, None if there is none or it is damaged. Raises OSError."""
-    if not path.exists():
-        return None
-    stored = path.read_bytes()
-    content = stored[CHECKSUM:]
-    if hashlib.sha256(content).digest() != stored[:CHECKSUM]:
+    """The array of a file, None if there is none or it is damaged."""
+    content = stored(path)
+    if content is None:
         return None
     with suppress(OSError):  # of another user
         os.utime(path)
@@ -94,18 +87,10 @@ def _read(path: Path) -> Array | None:
 
 
 def _write(path: Path, array: Array) -> None:
-    """Write a file at once, so that no process reads half of it, and remove those that were not used for the longest
-    time. Raises OSError."""
+    """Write a file, and remove those that were not used for the longest time. Raises OSError."""
     content = io.BytesIO()
     np.save(content, array, allow_pickle=False)
-    stored = content.getvalue()
-    part = path.with_name(f"{path.name}.{uuid.uuid4().hex}")
-    try:
-        part.write_bytes(hashlib.sha256(stored).digest() + stored)
-        part.replace(path)
-    except OSError:
-        part.unlink(missing_ok=True)
-        raise
+    store(path, content.getvalue())
     others = sorted(path.parent.glob(f"*{SUFFIX}"), key=lambda other: other.stat().st_mtime)
     for other in others[:-MOST_KEPT]:
         other.unlink(missing_ok=True)

@@ -68,6 +68,7 @@ STYLE: Any = {
     "svg.fonttype": "none",
     "pdf.fonttype": 42,  # TrueType: journals refuse Type 3
     "svg.hashsalt": "frb",
+    "text.usetex": False,  # texts are written for matplotlib itself
 }
 
 

@@ -7,13 +7,12 @@ in state.py, the methods in tableau.py.
 from __future__ import annotations
 
 import math
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, compiled
+from frbcli.compiled import AS_KERNELS, compiled, folder_of
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, have_heat, warm_stage, write_heat
@@ -209,8 +208,8 @@ def _solve_stage(
 
 def some_are_kept() -> bool:
     """Whether the time loop has been compiled for a machine before, and is on disk with the kernels that it calls."""
-    cache: Any = _advance._cache  # type: ignore[attr-defined]  # numba tells no types of it
-    return any(Path(cache.cache_path).glob("*_advance*.nbi"))
+    folder = folder_of(_advance)
+    return folder is not None and any(folder.glob("*_advance*.nbi"))
 
 
 @compiled()

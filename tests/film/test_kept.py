@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
@@ -71,6 +73,27 @@ def test_a_damaged_file_is_not_read(folder: Path) -> None:
         assert counting(calls)(MESH, 0.5, True).tobytes() == expected.tobytes()
         assert file.read_bytes() == whole
     assert len(calls) == 5
+
+
+@pytest.mark.parametrize("make", [os.mkfifo, Path.mkdir, lambda file: file.symlink_to("/dev/zero")])
+def test_what_is_no_file_is_not_opened(folder: Path, make: Callable[[Path], None]) -> None:
+    """A FIFO would be waited for, a device read without end."""
+    calls: list[tuple[object, ...]] = []
+    counting(calls)(MESH, 0.5, True)
+    (file,) = folder.iterdir()
+    file.unlink()
+    make(file)
+    for _ in range(2):
+        assert counting(calls)(MESH, 0.5, True)[0] == 0.5
+    assert len(calls) == 2  # it was replaced
+
+
+def test_without_a_folder_a_table_is_made_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(kept, "folder_of", lambda _: None)
+    calls: list[tuple[object, ...]] = []
+    for _ in range(2):
+        assert counting(calls)(MESH, 0.5, True)[0] == 0.5
+    assert len(calls) == 2
 
 
 def test_a_place_that_cannot_be_written_costs_time_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
+import matplotlib as mpl
 from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
@@ -27,9 +29,15 @@ def check_animation(path: Path) -> None:
     """Raises InputError if a moving picture cannot have this name or this place, or its program is missing."""
     if path.suffix.lower() not in FORMATS:
         raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
-    if path.suffix.lower() == ".mp4" and not FFMpegWriter.isAvailable():
+    if path.suffix.lower() == ".mp4" and _ffmpeg() is None:
         raise refused(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
     require_places([(path, PICTURES[path.suffix.lower()])])
+
+
+def _ffmpeg() -> str | None:
+    """The program ffmpeg, not one of the current folder; None if there is none."""
+    found = shutil.which(mpl.rcParams["animation.ffmpeg_path"])
+    return found if found is not None and os.path.isabs(found) else None
 
 
 def write_animation(
@@ -44,5 +52,6 @@ def write_animation(
     told = None if observe is None else lambda frame, _: observe(frame + 1, frames)
     with written(path, PICTURES[path.suffix.lower()]) as part, TemporaryDirectory(prefix="frb-") as folder:
         drawn = Path(folder) / f"moving{path.suffix.lower()}"  # by which its writers know the format
-        moving.save(str(drawn), writer=writer, dpi=dpi, progress_callback=told)
+        with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg() or ""}):
+            moving.save(str(drawn), writer=writer, dpi=dpi, progress_callback=told)
         shutil.copyfile(drawn, part)

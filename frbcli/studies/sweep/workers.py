@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+import logging
+import os
+import signal
 import warnings
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import BrokenExecutor
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from importlib.util import find_spec
+from multiprocessing import resource_tracker
+from pathlib import Path
 from typing import Any
 
 import joblib
 
+from frbcli.caches import is_trusted
 from frbcli.runs.record.interrupt import deaf
 from frbcli.studies.sweep.points import refused
 from frbcli.studies.sweep.task import ERROR, SweepPoint, Task, solve
@@ -20,6 +26,15 @@ BACKENDS = ("loky", "dask")
 CONNECT_WITHIN_s = 10.0
 MOST_PER_CORE = 16
 QUEUE = 2  # tasks given out per worker: the next one waits where the last one ends
+START = "Start `dask scheduler` and `dask worker`, and give the scheduler's address."
+ENCRYPTED = ("tls://", "wss://")
+CERTIFICATES = (
+    f"{START} Name your certificates in dask's settings: distributed.comm.tls.ca-file, client.cert and client.key."
+)
+UNENCRYPTED = (
+    "Whoever can connect to %s can run code in its workers and in this process. Give the cluster certificates and an "
+    "address tls://, or keep others out of its network."
+)
 DIED = "its process ended: it was killed, or there was too little memory."
 
 
@@ -38,9 +53,15 @@ def check_workers(workers: Workers) -> None:
     """Raises InputError if there can be no such workers."""
     if workers.backend not in BACKENDS:
         raise refused("--backend", workers.backend, "is not a backend.", f"There are: {', '.join(BACKENDS)}.")
-    if workers.backend == "dask" and find_spec("distributed") is None:
-        remedy = "Install it: pip install frbcli[cluster]"
-        raise refused("--backend", "dask", "needs the library dask.distributed.", remedy)
+    for library in ("distributed", "cryptography"):  # the second for the certificates of a cluster of this machine
+        needed = workers.backend == "dask" and not (workers.scheduler and library == "cryptography")
+        if needed and find_spec(library) is None:
+            remedy = "Install it: pip install frbcli[cluster]"
+            raise refused("--backend", "dask", f"needs the library {library}.", remedy)
+    settings = Path(os.path.expanduser("~/.config/dask"))  # dask runs what they name
+    if workers.backend == "dask" and settings.exists() and not is_trusted(settings):
+        remedy = f"Let nobody else write there: chmod -R go-w {settings}"
+        raise refused("--backend", "dask", f"has settings in {settings}, which other users can change.", remedy)
     if workers.backend != "dask" and workers.scheduler:
         raise refused("--scheduler", workers.scheduler, "is for a cluster.", "Add --backend dask.")
     if workers.jobs != -1 and workers.jobs < 1:
@@ -107,19 +128,56 @@ def _deaths(workers: Workers) -> Iterator[tuple[type[Exception], ...]]:
         with joblib.parallel_config("loky", inner_max_num_threads=1):  # one core for each point
             yield (BrokenExecutor,)
         return
-    from distributed import Client, KilledWorker
+    from distributed import KilledWorker
+
+    with ExitStack() as cluster:
+        client = cluster.enter_context(_client(workers)) if workers.scheduler else _local_client(workers.jobs, cluster)
+        with joblib.parallel_config("dask", client=client):
+            yield (KilledWorker,)
+
+
+def _local_client(jobs: int, cluster: ExitStack) -> Any:
+    """A client of a dask cluster of this machine, with certificates of its own: whoever could connect would run code.
+
+    What a terminal sends to all is heard by this process alone, after the start: the threads that start the others have
+    it blocked, and so have these.
+    """
+    from distributed import Client
 
     connect: Any = Client  # without types where it is installed
-    if not workers.scheduler:
-        count = joblib.cpu_count() if workers.jobs == -1 else workers.jobs
-        local = connect(n_workers=count, threads_per_worker=1, dashboard_address=None, set_as_default=False)
-        with local, joblib.parallel_config("dask", client=local):
-            yield (KilledWorker,)
-        return
+    count = joblib.cpu_count() if jobs == -1 else jobs
+    blocking = hasattr(signal, "pthread_sigmask")
+    resource_tracker.ensure_running()  # whatever thread starts it has the signals no longer blocked
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, (signal.SIGINT, signal.SIGHUP)) if blocking else set()
+    try:
+        client = connect(
+            n_workers=count, threads_per_worker=1, dashboard_address=None, set_as_default=False, security=True,
+            silence_logs=logging.CRITICAL,
+        )  # fmt: skip
+        cluster.enter_context(client).run(_say_nothing)
+        return client
+    finally:
+        if blocking:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def _say_nothing() -> None:
+    """In a process of dask, which tells tracebacks of tasks that an interruption cuts short."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+
+
+def _client(workers: Workers) -> Any:
+    """A client of a dask cluster. Raises InputError if there is none at the address."""
+    from distributed import Client
+
+    connect: Any = Client  # likewise
+    encrypted = workers.scheduler.startswith(ENCRYPTED)
     try:
         client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
-    except (OSError, ValueError) as error:
-        remedy = "Start `dask scheduler` and `dask worker`, and give the scheduler's address."
-        raise refused("--scheduler", workers.scheduler, f"cannot be reached: {error}.", remedy) from error
-    with client, joblib.parallel_config("dask", client=client):
-        yield (KilledWorker,)
+    except Exception as error:  # of dask, of the name of the machine, of certificates, of the library of a protocol
+        told = " ".join(str(error).split()).removesuffix(".") or type(error).__name__
+        remedy = CERTIFICATES if encrypted else START
+        raise refused("--scheduler", workers.scheduler, f"cannot be reached: {told}.", remedy) from error
+    if not encrypted:
+        logging.getLogger("frbcli").warning(UNENCRYPTED, workers.scheduler)
+    return client
