@@ -157,17 +157,21 @@ def _identifier(text: str) -> str:
 Label = Annotated[str, AfterValidator(_printable)]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 
-Length = Annotated[float, Quantity("m", "20 mm", above=0)]
-Play = Annotated[float, Quantity("m", "0.1 mm", least=0)]
-Clearance = Annotated[float, Quantity("m", "35 um", above=0)]
-Position = Annotated[float, Quantity("m", "80 mm")]
-InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0)]
-Mass = Annotated[float, Quantity("kg", "6 kg", above=0)]
-ShellMass = Annotated[float, Quantity("kg", "2 kg", least=0)]
-JournalMass = Annotated[float, Quantity("kg", "100 g", above=0)]
-Inertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", least=0)]
-RingInertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", above=0)]
-Unbalance = Annotated[float, Quantity("kg*m", "3 g*mm", least=0)]
+# Limits of sizes and masses, well above those of the largest machines: rotors of 100 t and 20 m.
+LONGEST, WIDEST_GAP, HEAVIEST = 1e3, 1.0, 1e7  # m, m, kg
+MOST_INERTIA, MOST_UNBALANCE = 1e9, 1e5  # kg m^2, kg m
+
+Length = Annotated[float, Quantity("m", "20 mm", above=0, most=LONGEST)]
+Play = Annotated[float, Quantity("m", "0.1 mm", least=0, most=WIDEST_GAP)]
+Clearance = Annotated[float, Quantity("m", "35 um", above=0, most=WIDEST_GAP)]
+Position = Annotated[float, Quantity("m", "80 mm", least=-LONGEST, most=LONGEST)]
+InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0, most=LONGEST)]
+Mass = Annotated[float, Quantity("kg", "6 kg", above=0, most=HEAVIEST)]
+ShellMass = Annotated[float, Quantity("kg", "2 kg", least=0, most=HEAVIEST)]
+JournalMass = Annotated[float, Quantity("kg", "100 g", above=0, most=HEAVIEST)]
+Inertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", least=0, most=MOST_INERTIA)]
+RingInertia = Annotated[float, Quantity("kg*m^2", "20 kg*mm^2", above=0, most=MOST_INERTIA)]
+Unbalance = Annotated[float, Quantity("kg*m", "3 g*mm", least=0, most=MOST_UNBALANCE)]
 Stiffness = Annotated[float, Quantity("N/m", "5000 N/mm", above=0)]
 Damping = Annotated[float, Quantity("N*s/m", "1 N*s/m", least=0)]
 Acceleration = Annotated[float, Quantity("m/s^2", "9.81 m/s^2", least=0)]

@@ -26,6 +26,7 @@ from frbcli.case.rules.faults import objections, with_nearest_kinds
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.machine_table import machine_breaches
 from frbcli.errors import Fault, InputError
+from frbcli.results.files.named import NoFile, NoText, Unreadable, text_of
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
 
@@ -229,19 +230,12 @@ def _plain(value: Any, path: lines.Path = ()) -> Any:
 def _read(path: Path) -> str | None:
     """The text of the regular file `path`, None if there is none. Raises InputError if it cannot be a case."""
     try:
-        if not path.is_file():
-            return None
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        if len(content) > LARGEST_FILE:
-            raise _unreadable(path, f"is larger than {LARGEST_FILE // 1024} KiB.", "Name a case file.")
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        problem = f"is not UTF-8 text (at byte {error.start})."
-        raise _unreadable(path, problem, "Name a case file, or save it as UTF-8.") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise _unreadable(path, f"cannot be read: {reason}.", "Check path and permissions.") from None
+        return text_of(path, LARGEST_FILE)
+    except NoFile:
+        return None
+    except Unreadable as error:
+        remedy = "Name a case file, or save it as UTF-8." if isinstance(error, NoText) else "Name a case file."
+        raise _unreadable(path, str(error), remedy) from None
 
 
 def _shipped(source: str) -> str:

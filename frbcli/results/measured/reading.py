@@ -12,6 +12,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
+from frbcli.results.files.named import Unreadable, require_file
 from frbcli.results.measured.columns import LARGEST_FILE, Columns, wrong_file
 from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
 from frbcli.results.measured.mat import read_mat
@@ -36,14 +37,13 @@ def read_columns(path: Path) -> Columns:
     a decimal comma. WAV: the channels, named 1, 2 and so on, from -1 to 1 where they are whole numbers. MAT: `read_mat`
     of mat.py. UFF (or unv): see `read_uff`. Raises InputError for what is none of these.
     """
-    if not path.is_file():
-        problem = "is no file." if path.exists() else "does not exist."
-        raise wrong_file(path, problem, "Give the file of a measurement.")
+    try:
+        require_file(path, LARGEST_FILE)
+    except Unreadable as error:
+        raise wrong_file(path, str(error), "Give the file of a measurement, or cut it into several.") from None
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         raise wrong_file(path, "is of no known kind.", f"Known are {', '.join(READERS)}.")
-    if path.stat().st_size > LARGEST_FILE:
-        raise wrong_file(path, f"has more than {LARGEST_FILE // 1024**2} MB.", "Cut it into several files.")
     try:
         found = reader(path)
     except InputError:
