@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -131,3 +132,38 @@ def test_a_number_of_an_option_that_cannot_be_is_refused(
     scattered = ("--set", "bearing.clearance=normal(35 um, 1 um)", "--samples", "4", "--stability", "--jobs", "1")
     said = refuses(("sweep", "my.toml", *scattered, *SHORT, *option), capsys)
     assert option[0] in said
+
+
+def test_what_the_system_says_of_a_file_is_one_line(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Wherever a library meets it."""
+
+    def denied(*_: object) -> None:
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), "there/run.h5")
+
+    monkeypatch.setattr("frbcli.results.store.read_run", denied)
+    assert refuses(("report", "run.h5"), capsys) == (
+        "frb: file there/run.h5\n  file: cannot be used: Permission denied. Check path and permissions.\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "setting", "key"),
+    [
+        ("thrust", "thrust_bearing.end_play=1e15 m", "thrust_bearing.end_play"),
+        ("thrust", "thrust_bearing.taper=20 m", "thrust_bearing.taper"),
+        ("turbocharger-car-thrust", "thrust_bearing.taper=1 mm", "thrust_bearing.taper"),
+        ("turbocharger-car-thrust", "thrust_bearing.end_play=2 mm", "thrust_bearing.end_play"),
+        ("thrust", "thrust_bearing.outer_radius=1e9 m", "thrust_bearing.outer_radius"),
+        ("jeffcott", "rotor.mass=1e12 kg", "rotor.mass"),
+        ("jeffcott", "rotor.unbalance=1e9 kg*m", "rotor.unbalance"),
+        ("turbocharger-car", "shaft.0.length=1e6 m", "shaft.0.length"),
+        ("turbocharger-car", "disk.turbine.polar_inertia=1e12 kg*m^2", "disk.2.polar_inertia"),
+        ("turbocharger-car", "disk.turbine.position=-1e9 m", "disk.2.position"),
+    ],
+)
+def test_sizes_of_no_machine_are_refused(
+    name: str, setting: str, key: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert key in refuses(("check", name, "--set", setting), capsys)
