@@ -134,6 +134,15 @@ def test_a_number_of_an_option_that_cannot_be_is_refused(
     assert option[0] in said
 
 
+@pytest.mark.parametrize("hazard", ["pipe", "device", "directory", "binary", "zeros"])
+def test_a_log_of_no_sweep_is_refused(hazard: str, capsys: pytest.CaptureFixture[str]) -> None:
+    Path("points.csv").write_text("rotor.unbalance\n1 g*mm\n2 g*mm\n")
+    Path("study").mkdir()
+    HAZARDS[hazard](Path("study/sweep.jsonl"))
+    words = ("sweep", "my.toml", "--stability", "--list", "points.csv", "--jobs", "1", "-o", "study", *SHORT)
+    assert "study/sweep.jsonl" in refuses(words, capsys)
+
+
 def test_what_the_system_says_of_a_file_is_one_line(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
