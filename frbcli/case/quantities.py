@@ -157,13 +157,13 @@ def _identifier(text: str) -> str:
 Label = Annotated[str, AfterValidator(_printable)]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 
-# Limits of sizes and masses, well above those of the largest machines: rotors of 100 t and 20 m.
-LONGEST, WIDEST_GAP, HEAVIEST = 1e3, 1.0, 1e7  # m, m, kg
+# Limits of sizes and masses, well above those of the largest machines: rotors of 500 t and 80 m.
+LONGEST, HEAVIEST = 1e3, 1e7  # m, kg
 MOST_INERTIA, MOST_UNBALANCE = 1e9, 1e5  # kg m^2, kg m
 
 Length = Annotated[float, Quantity("m", "20 mm", above=0, most=LONGEST)]
-Play = Annotated[float, Quantity("m", "0.1 mm", least=0, most=WIDEST_GAP)]
-Clearance = Annotated[float, Quantity("m", "35 um", above=0, most=WIDEST_GAP)]
+Play = Annotated[float, Quantity("m", "0.1 mm", least=0, most=LONGEST)]
+Clearance = Annotated[float, Quantity("m", "35 um", above=0, most=LONGEST)]
 Position = Annotated[float, Quantity("m", "80 mm", least=-LONGEST, most=LONGEST)]
 InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0, most=LONGEST)]
 Mass = Annotated[float, Quantity("kg", "6 kg", above=0, most=HEAVIEST)]

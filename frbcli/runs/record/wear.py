@@ -22,7 +22,7 @@ from frbcli.scene.machine.system import System
 from frbcli.solve.state import Array
 
 ANGLES = 72  # places around a shell, evenly from the top on, counter-clockwise
-NAME, DEEPEST = "wear", 1.0  # in a checkpoint; m, the widest gap of a case
+NAME, DEEPEST = "wear", 1.0  # in a checkpoint; m, deeper than any shell
 
 
 class RunWear:
