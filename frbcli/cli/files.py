@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
 if TYPE_CHECKING:
     from frbcli.results.files.kinds import Kind
 
-_READS = "frbcli.reads"  # in the context of a command
+_READS, _FORCE = "frbcli.reads", "frbcli.force"  # in the context of a command
+
+Function = TypeVar("Function", bound=Callable[..., object])
 
 
 class InputFile(click.Path):
@@ -23,7 +26,10 @@ class InputFile(click.Path):
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The path, which the command then does not write."""
-        path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        try:
+            path = Path(os.fsdecode(super().convert(value, param, ctx)))
+        except ValueError as error:  # of a name that no file can have
+            self.fail(f"{value!r} is no name of a file: {error}.", param, ctx)
         note_read(path, ctx)
         return path
 
@@ -60,6 +66,24 @@ def note_read(path: Path, context: click.Context | None) -> None:
         context.meta.setdefault(_READS, []).append(path)
 
 
+def force_option(
+    words: str = "Replace files that frb did not write.", told: bool = False
+) -> Callable[[Function], Function]:
+    """Give a command the option --force; told: it receives `force: bool`."""
+
+    def remember(context: click.Context, _: click.Parameter, force: bool) -> bool:
+        context.meta[_FORCE] = force
+        return force
+
+    return click.option("--force", is_flag=True, is_eager=True, expose_value=told, callback=remember, help=words)
+
+
+def forced() -> bool:
+    """Whether the command may replace files that frb did not write."""
+    context = click.get_current_context(silent=True)
+    return context is not None and bool(context.meta.get(_FORCE))
+
+
 def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None) -> None:
     """Raises InputError, before the work, if results of the command cannot have these places.
 
@@ -73,10 +97,10 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     if picture is not None:
         from frbcli.plot.style import check_picture
 
-        check_picture(picture)
+        check_picture(picture, forced())
         wanted.append((picture, PICTURES[picture.suffix.lower()]))
     context = click.get_current_context(silent=True)
-    require_places(wanted, reads=() if context is None else context.meta.get(_READS, ()))
+    require_places(wanted, () if context is None else context.meta.get(_READS, ()), forced())
 
 
 def beside(run: Path, what: str) -> Path:

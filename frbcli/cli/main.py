@@ -10,6 +10,7 @@ from __future__ import annotations
 import errno
 import importlib
 import io
+import os
 import sys
 from collections.abc import Sequence
 
@@ -17,7 +18,7 @@ import click
 
 from frbcli import __version__
 from frbcli.cli.runs.memory import require_memory, reserve, shortage
-from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, printable
+from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, input_error, printable
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
 # the module is imported when its command is called
@@ -225,14 +226,24 @@ def run(arguments: Sequence[str]) -> int:
         return _tell_error(arguments, error)
     except Exception as error:
         del spare
-        if isinstance(error, OSError) and error.errno in FULL:  # temporary files, or numba's cache
-            where = "" if error.filename is None else f": {error.filename}"
-            return _tell_error(arguments, FrbError(f"{error.strerror}{where}"))
-        short = shortage(error)
-        if short is None:
+        known = _of_files(error) or shortage(error)
+        if known is None:
             raise
-        return _tell_error(arguments, short)
+        return _tell_error(arguments, known)
     return code if isinstance(code, int) else 0
+
+
+def _of_files(error: Exception) -> FrbError | None:
+    """The error that the system had with a file, wherever that was met; None for any other one."""
+    if not isinstance(error, OSError) or error.errno is None:
+        return None
+    if error.errno in FULL:  # temporary files, or numba's cache
+        where = "" if error.filename is None else f": {error.filename}"
+        return FrbError(f"{error.strerror}{where}")
+    if error.filename is None:
+        return None
+    name = os.fsdecode(error.filename) if isinstance(error.filename, str | bytes) else str(error.filename)
+    return input_error(f"file {name}", "file", "", f"cannot be used: {error.strerror}.", "Check path and permissions.")
 
 
 def _tell(text: str) -> None:

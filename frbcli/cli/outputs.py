@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from frbcli.cli.common import Terminal
-from frbcli.cli.files import OUTPUT, check_outputs
+from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.progress import drawing
@@ -45,7 +45,7 @@ class Outputs:
         if self.csv is not None:
             from frbcli.results.files.write import write_table
 
-            write_table(found.to_pandas(), self.csv)
+            write_table(found.to_pandas(), self.csv, forced())
             terminal.result(f"table: {self.csv}")
         if self.picture is None:
             return {"picture": None, "csv": self.csv}
@@ -89,12 +89,13 @@ picture_switch = click.option("--picture/--no-picture", default=True, help="Draw
 
 
 def outputs_options(default: str) -> Callable[[Function], Function]:
-    """Give a command -o, --picture, --csv and the options of the look; it receives `outputs: OutputOptions`."""
+    """Give a command -o, --picture, --csv, --force and the options of the look; it receives `outputs`, which are
+    OutputOptions."""
     csv = click.option("--csv", metavar="FILE", type=OUTPUT, help="Write the table of all results as CSV, too.")
 
     def decorated(function: Function) -> Function:
         gathering = gathered("outputs", OutputOptions)(function)
-        return picture_option(default)(picture_switch(csv(look_options(gathering))))
+        return picture_option(default)(picture_switch(csv(force_option()(look_options(gathering)))))
 
     return decorated
 
@@ -120,7 +121,7 @@ def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path
 
         warnings.filterwarnings("always", message="Glyph")
         figure = fit(picture(), look.size_in, look.x_limits, look.y_limits, look.rpm)
-        save_figure(figure, target, look.dpi)
+        save_figure(figure, target, look.dpi, forced())
     terminal.result(f"{what}: {target}")
     texts = [str(warning.message) for warning in caught]
     letters = dict.fromkeys(chr(int(found[1])) for found in map(MISSING.match, texts) if found)

@@ -17,6 +17,7 @@ CLOSED = 1e-7  # share of the flow of an open end that stands for none: the limi
 NO_BATH = -1.0
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
+LEAST = 2  # cells between two edges
 LARGEST_ECCENTRICITY = 0.9999  # end of the tables
 
 
@@ -199,10 +200,12 @@ def groove_pressure(section: Section, groove: AxialGroove, distance: Array) -> A
     return groove.pressure * (1.0 - section.sealed * falls)
 
 
-def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Array) -> Array:
+def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Array, exact: bool = False) -> Array:
     """(n + 1,) boundaries of cells over one turn from the first break (or -pi), denser around phi = narrowest.
 
     breaks: angles that must be boundaries (edges of grooves). The density follows Sommerfeld's angle: ring_vertices.
+    Each piece has its share of the elements, rounded, and LEAST at least; exact: n is the number of elements, or as
+    many as the pieces need at least.
     """
     gamma = np.linspace(-np.pi, np.pi, 20_001)
     angle = narrowest + 2.0 * np.arctan2(contraction * np.sin(0.5 * gamma), np.cos(0.5 * gamma))
@@ -212,12 +215,26 @@ def graded_ring(elements: int, narrowest: float, contraction: float, breaks: Arr
     long_angle = np.concatenate([angle[:-1], angle + 2 * np.pi])
     long_gamma = np.concatenate([gamma[:-1], gamma + 2 * np.pi])
     places = np.interp(turn, long_angle, long_gamma)
+    shares = [elements * (end - start) / (2 * math.pi) for start, end in itertools.pairwise(places)]
+    counts = [max(LEAST, round(share)) for share in shares]
+    if exact:
+        _add_up(counts, shares, elements)
     pieces = []
-    for start, end in itertools.pairwise(places):
-        count = max(2, round(elements * (end - start) / (2 * math.pi)))
+    for (start, end), count in zip(itertools.pairwise(places), counts, strict=True):
         pieces.append(np.interp(np.linspace(start, end, count + 1)[:-1], long_gamma, long_angle))
     pieces.append(turn[-1:])
     return np.concatenate(pieces)
+
+
+def _add_up(counts: list[int], shares: list[float], total: int) -> None:
+    """Change counts, where they are furthest from their shares, until they add up to a total that leaves each LEAST."""
+    total = max(total, LEAST * len(counts))
+    while (missing := total - sum(counts)) != 0:
+        sign = 1 if missing > 0 else -1
+        # pieces that are equal but for round-off are taken in their order
+        off = [round(sign * (share - count), 6) for count, share in zip(counts, shares, strict=True)]
+        open_ones = [i for i, count in enumerate(counts) if sign > 0 or count > LEAST]
+        counts[max(open_ones, key=off.__getitem__)] += sign
 
 
 def _apart(cuts: Array) -> Array:

@@ -25,6 +25,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from frbcli.errors import InputError, input_error, printable
 from frbcli.results.files.kinds import PICTURES
+from frbcli.results.files.mark import MARK
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
 
@@ -37,9 +38,9 @@ LEVEL_MAP = "viridis"  # rises evenly in lightness, so that it survives a grey p
 Picture = Figure  # the name outside matplotlib
 
 FORMATS = {
-    ".png": {},
-    ".pdf": {"CreationDate": None},
-    ".svg": {"Date": None},
+    ".png": {"Software": MARK},
+    ".pdf": {"Creator": MARK, "CreationDate": None},
+    ".svg": {"Creator": MARK, "Date": None},
 }  # no dates, so that the same run gives the same file
 
 SYMBOL = re.compile(r"(?<!\w)([^\W\d_])_([^\W_]{1,2})(?!\w)")  # with its index
@@ -227,25 +228,26 @@ def legend_beside(axes: Axes) -> None:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
 
 
-def check_picture(path: Path) -> None:
-    """Raises InputError if a picture cannot have this name or this place; called before the work."""
+def check_picture(path: Path, force: bool = False) -> None:
+    """Raises InputError if a picture cannot have this name or this place; called before the work. force: also in place
+    of a file that frb did not write."""
     if path.suffix.lower() not in FORMATS:
         raise refused(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
-    require_places([(path, PICTURES[path.suffix.lower()])])
+    require_places([(path, PICTURES[path.suffix.lower()])], force=force)
 
 
-def save_figure(figure: Figure, path: str | Path, dpi: int = 150) -> Path:
+def save_figure(figure: Figure, path: str | Path, dpi: int = 150, force: bool = False) -> Path:
     """Write a figure as PNG, PDF or SVG, as the suffix of `path` says. Raises InputError if that does not work.
 
-    It is drawn before the file is touched.
+    It is drawn before the file is touched. force: see check_picture.
     """
     path = Path(path)
-    check_picture(path)
+    check_picture(path, force)
     try:
         content = picture(figure, path.suffix.lower(), dpi)
     except (OSError, ValueError) as error:
         raise refused(path, f"cannot be drawn: {error}.", "") from error
-    write(path, PICTURES[path.suffix.lower()], content)
+    write(path, PICTURES[path.suffix.lower()], content, force)
     return path
 
 

@@ -35,6 +35,7 @@ from frbcli.report.speed_words import SpeedWords, speed_words
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import event_name, told_amplitude, told_frequency
 from frbcli.results.files.kinds import PAGE
+from frbcli.results.files.mark import MARK
 from frbcli.results.files.place import require_places
 from frbcli.results.files.write import write
 from frbcli.results.records import SPEED
@@ -68,7 +69,7 @@ class ShownRun:
 
 def write_report(
     run: Run, path: str | Path, speeds_Hz: Sequence[float] = (), signal: str = "journal", author: str = "",
-    both_units: bool = False,
+    both_units: bool = False, force: bool = False,
 ) -> Path:  # fmt: skip
     """Write the page of a run.
 
@@ -86,6 +87,8 @@ def write_report(
         Who made it, for the line on top, which also has the date and the version.
     both_units : bool
         Rotor speeds in Hz and in rpm; without it in rpm where the case gives them so, else in Hz.
+    force : bool
+        Also in place of a file that frb did not write.
 
     Returns
     -------
@@ -104,8 +107,8 @@ def write_report(
     >>> frbcli.write_report(run, "run.html")  # doctest: +SKIP
     """
     path = Path(path)
-    require_places([(path, PAGE)])
-    write(path, PAGE, report(run, speeds_Hz, signal, author, both_units))
+    require_places([(path, PAGE)], force=force)
+    write(path, PAGE, report(run, speeds_Hz, signal, author, both_units), force)
     return path
 
 
@@ -132,6 +135,7 @@ def report(
     )
     style, script = (Markup(_text(environment, name)) for name in TEXTS[1:])
     return environment.get_template(TEXTS[0]).render(
+        mark=MARK,
         title=printable(title),
         subtitle=printable(", ".join(word for word in (run.command.replace("run", "run-"), words, run.status) if word)),
         made=printable(", ".join(word for word in (_today(), f"frb {__version__}", author) if word)),

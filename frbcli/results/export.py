@@ -12,6 +12,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 from frbcli.errors import InputError, input_error
 from frbcli.results.files.kinds import ROSS, TABLES
+from frbcli.results.files.mark import MARK, mark_table
 from frbcli.results.files.write import harmless_text, write, written
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run
@@ -21,14 +22,16 @@ if TYPE_CHECKING:
 
 LINES = 50_000  # of CSV that are made at a time
 MOST_COMPRESSED = 4_000_000  # samples of a column of MAT
+MAT_BEGINS, MAT_TEXT = b"MATLAB 5.0 MAT-file", 116  # bytes of its text
 
 COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
            for letter, name, unit in (("k", "stiffness", "N_m"), ("c", "damping", "N_s_m"))
            for axes in ("xx", "xy", "yx", "yy")}  # fmt: skip
 
 
-def export_run(run: Run, path: str | Path, table_format: str) -> Path:
-    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat".
+def export_run(run: Run, path: str | Path, table_format: str, force: bool = False) -> Path:
+    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also in place of a
+    file that frb did not write.
 
     Raises InputError for an unknown format, a file that cannot be written, a run in its place, or if Parquet is asked
     for without its library.
@@ -37,7 +40,7 @@ def export_run(run: Run, path: str | Path, table_format: str) -> Path:
     if table_format not in FORMATS:
         raise _refuse("format", f'there is no format "{table_format}".', f"Use one of {', '.join(FORMATS)}.")
     try:
-        with written(path, TABLES[table_format]) as part:
+        with written(path, TABLES[table_format], force=force) as part:
             FORMATS[table_format](run, part)
     except ValueError as error:  # of the libraries, for names or lengths that a format does not have
         raise _refuse("output", f"{path} cannot be written: {error}.", "Choose another format.") from error
@@ -57,6 +60,7 @@ def write_csv(run: Run, target: IO[str]) -> None:
 def _write_csv(run: Run, path: Path) -> None:
     with path.open("w", encoding="utf-8", newline="") as target:
         write_csv(run, target)
+    mark_table(path)
 
 
 def _write_parquet(run: Run, path: Path) -> None:
@@ -65,7 +69,7 @@ def _write_parquet(run: Run, path: Path) -> None:
     import pyarrow as pa
     from pyarrow import parquet
 
-    schema = pa.schema([(name, pa.float64()) for name in run.signals])
+    schema = pa.schema([(name, pa.float64()) for name in run.signals], metadata={"writer": MARK})
     with parquet.ParquetWriter(path, schema) as writer:
         for first, last in pieces(0, len(run)):
             columns = {name: signal[first:last] for name, signal in run.signals.items()}
@@ -80,6 +84,9 @@ def _write_mat(run: Run, path: Path) -> None:
     columns = _MatColumns(run, {"title": run.title, "status": run.status, "case_text": run.case_text})
     savemat(path, columns, appendmat=False, long_field_names=True, do_compression=len(run) <= MOST_COMPRESSED,
             oned_as="column")  # fmt: skip
+    with path.open("r+b") as file:  # the text at the beginning of the format
+        file.seek(len(MAT_BEGINS))
+        file.write(f", {MARK}".ljust(MAT_TEXT - len(MAT_BEGINS)).encode())
 
 
 class _MatColumns(Mapping[str, Any]):
@@ -120,7 +127,7 @@ def ross_files(path: Path, films: Sequence[str]) -> dict[str, Path]:
     return {film: path.with_name(f"{path.stem}-{film}{path.suffix}") for film in films}
 
 
-def write_ross(table: pd.DataFrame, path: Path) -> None:
+def write_ross(table: pd.DataFrame, path: Path, force: bool = False) -> None:
     """A TOML table of one film: node n (to be set there), kxx to cyy in N/m and N s/m over the frequency in rad/s.
 
     table: the rows of the film in BearingSheet.to_pandas over speed; states that were not found are left out. Raises
@@ -128,10 +135,10 @@ def write_ross(table: pd.DataFrame, path: Path) -> None:
     """
     found = table[table["status"] == "resting"].sort_values("speed_Hz")
     name = table["film"].iloc[0] or "bearing"
-    lines = [f'["BearingElement_{name}"]', "n = 0", f'tag = "{name}"']
+    lines = [f"# {MARK}", f'["BearingElement_{name}"]', "n = 0", f'tag = "{name}"']
     lines += [f"{name} = {_numbers(found[column])}" for name, column in COLUMNS.items()]
     lines.append(f"frequency = {_numbers(2.0 * math.pi * found['speed_Hz'])}")
-    write(path, ROSS, "\n".join(lines) + "\n")
+    write(path, ROSS, "\n".join(lines) + "\n", force)
 
 
 def _numbers(values: pd.Series) -> str:

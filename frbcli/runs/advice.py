@@ -16,6 +16,7 @@ from frbcli.elements.collar.thrust import COLLAR
 from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
+from frbcli.runs.record.restored import number_of
 from frbcli.scene.clearance_steps import case_at, step_times
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
@@ -59,10 +60,9 @@ class RunEnd:
 
 
 def run_end(run: Run) -> RunEnd:
-    """How a run ended, from its last sample, its events and its state."""
+    """How a run ended, from its last sample, its events and its state. Raises RunFileError for a state that is none."""
     last = {name: float(run[joined("eccentricity", name)][-1]) for name in films(run.signals) if len(run)}
     film = max(last, key=last.__getitem__, default="")
-    numbers = None if run.checkpoint is None else run.checkpoint.get("numbers")
     whirls = [event for event in run.events if event["kind"] in ("onset", "offset") and event["film"] in (film, None)]
     return RunEnd(
         status=run.status,
@@ -70,9 +70,9 @@ def run_end(run: Run) -> RunEnd:
         speed_Hz=float(run["speed_Hz"][-1]) if len(run) else 0.0,
         film=film,
         eccentricity=last.get(film, 0.0),
-        step_s=None if numbers is None else float(numbers[STEP]),
+        step_s=number_of(run, "numbers", STEP),
         whirl=whirls[-1] if whirls and whirls[-1]["kind"] == "onset" else None,
-        hot_film=hot_film(run.signals, run.checkpoint or {}),
+        hot_film=hot_film(run),
         on_pads=any(event["kind"] == "contact" and event.get("point") == COLLAR for event in run.events),
     )
 

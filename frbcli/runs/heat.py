@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -10,9 +10,10 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import first
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
+from frbcli.results.store import Run
 from frbcli.runs.inputs import signal_of
 from frbcli.runs.record.film_numbers import FilmNumbers
-from frbcli.runs.record.restored import array
+from frbcli.runs.record.restored import WrongCheckpoint, array, number_of
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of
 from frbcli.scene.machine.system import System
@@ -126,8 +127,12 @@ class RunHeat:
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up what a checkpoint holds. Raises WrongCheckpoint if it is not one of this run."""
-        if self._loop is not None:
-            self._loop.state[:] = array(checkpoint, "heat", self._loop.state.shape)
+        if self._loop is not None and self._heat is not None:
+            state = array(checkpoint, "heat", self._loop.state.shape)
+            warm = np.all(state[-len(self._heat.model.capacity) :] > 0.0)
+            if not warm or state[HOT] not in range(len(self._names) + 1):
+                raise WrongCheckpoint("heat holds no temperatures of this machine")
+            self._loop.state[:] = state
             self._loop.last[:] = array(checkpoint, "heat_step", self._loop.last.shape)
             self._loop.now[AT_END] = array(checkpoint, "heat_films", self._loop.now[AT_END].shape)
 
@@ -166,11 +171,12 @@ def heat_units(case: Case, system: System) -> dict[str, str]:
     return told | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
 
 
-def hot_film(signals: Iterable[str], checkpoint: Mapping[str, Array]) -> str:
+def hot_film(run: Run) -> str:
     """The name of the film that became too hot in a run, or whose gap has closed; "" if there is none."""
     begin, end = QUANTITIES[-1].split("{}")
-    names = [name.removeprefix(begin.rstrip("_")).removesuffix(end.lstrip("_")) for name in signals if _is_flow(name)]
-    number = int(checkpoint["heat"][HOT]) if "heat" in checkpoint else 0
+    flows = filter(_is_flow, run.signals)
+    names = [name.removeprefix(begin.rstrip("_")).removesuffix(end.lstrip("_")) for name in flows]
+    number = int(number_of(run, "heat", HOT) or 0)
     return names[number - 1].strip("_") or "film" if 0 < number <= len(names) else ""
 
 

@@ -22,7 +22,7 @@ from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, fillings, film_signals, tilt_signals
 from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_names
 from frbcli.runs.record.kept_films import KeptFilms
-from frbcli.runs.record.restored import array, check_samples, restored
+from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
 from frbcli.runs.start import control_of, first_state, in_turn, micro_cost, rotor_data
 from frbcli.scene.costs.cost import expected_cost
@@ -62,6 +62,7 @@ CHUNK_s = 0.1
 # A run with this many times the expected steps makes no progress and is stopped.
 RUNAWAY, FEWEST_STEPS = 100, 2_000_000
 UNBOUNDED = 1e6  # displacement over the length of a machine without films from which it counts as unbounded
+FARTHEST = 100.0  # clearances that the journals of a checkpoint may be away, also where contact is elastic
 
 
 @dataclass(frozen=True)
@@ -291,6 +292,8 @@ class March:
             self._noted = array(checkpoint, "noted", self._noted.shape)
         self._state, self._samples = state, samples
         self._take_up(sum(segment.start <= self.time for segment in self._segments[1:]))
+        if not np.all(self._now.eccentricities(state.q) <= FARTHEST):
+            raise WrongCheckpoint("its journals are outside of their bearings")
         self._heat.take_up(self._segments[self._current].case, self._system)
         self._heat.restore(checkpoint)
         self._wear.restore(checkpoint)

@@ -16,6 +16,7 @@ import shutil
 import stat
 import sys
 import time
+import zlib
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -28,20 +29,27 @@ from frbcli.case.reading.shipped import find_shipped
 from frbcli.cli.main import run as frb
 from frbcli.results.files.kinds import PAGE, PICTURES, TABLES
 from frbcli.results.files.kinds import RUN as RUN_KIND
+from frbcli.results.files.mark import MARK
 from frbcli.runs.run import runup
 
 TRIALS = int(os.environ.get("FRB_TRIALS", "5000"))
-PICTURE = {".png": b"\x89PNG" + bytes(500), ".pdf": b"%PDF" + bytes(500), ".svg": b"<?xml" + bytes(500)}
+OWN = MARK.encode()
+HEADS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
+PICTURE = {suffix: head + OWN + bytes(500) for suffix, head in HEADS.items()}
 COMPUTED = (
     "linear.bearing_sheet.bearing_sheet", "linear.response.response", "linear.stability.stability",
     "studies.sweep.task.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.method.threshold.threshold_kind",
     "studies.fit.fit", "studies.accuracy.accuracy", "bearing_tests.kinematic.rotation", "report.page.report",
     "bearing_tests.kinematic.squeeze", "bearing_tests.kinematic.whirl",
 )  # fmt: skip
-OLD = {"old.png": PICTURE[".png"], "old.csv": b"film,a\n1,2\n", "old.html": b"<!doctype html>\n<p>old"}
+CHECKSUM = 25 * b"0" + b"%010d" % zlib.crc32(b"film,a\n1,2.5\n")
+OLD = {"old.png": PICTURE[".png"], "old.csv": b"film,a\n1,2.5" + CHECKSUM + b"\n",
+       "old.html": b"<!doctype html>\n<p>old" + OWN}  # fmt: skip
 OTHERS = {
     TABLE: b"t,x\n0,1\n1,2\n", "points.csv": b"rotor.unbalance\n1 g*mm\n2 g*mm\n", "notes.txt": b"notes\n",
-    "rotor.json": json.dumps({"ShaftElement_0": {}}).encode(), "data.mat": b"no MAT", "image.png": b"no PNG",
+    "rotor.json": json.dumps({"ShaftElement_0": {}}).encode(), "data.mat": b"no MAT",
+    "image.png": PICTURE[".png"].replace(OWN, b""),
+    "mine.csv": b"time_s,speed_Hz\n0.0,1.5\n", "mine.html": b"<!doctype html>\n<p>mine",
     "no.h5": b"",
 }  # fmt: skip
 SUFFIXES = (".png", ".svg", ".csv", ".html", ".h5", ".toml", ".gif", ".mat", "")
@@ -81,7 +89,7 @@ def _quick(monkeypatch: pytest.MonkeyPatch) -> None:
 def make_files(folder: Path, whole: bytes, chance: random.Random) -> None:
     """What is there before a call: inputs, earlier results, other files, links, a folder, a pipe."""
     contents = {CASE: find_shipped("jeffcott").encode(), "bearing.toml": find_shipped("bearing").encode(), RUN: whole,
-                "cut.h5": whole[:-9], **OLD, **OTHERS, "folder/inside.csv": b"film,1\n",
+                "cut.h5": whole[:-9], **OLD, **OTHERS, "folder/inside.csv": OLD["old.csv"],
                 "folder/sweep.jsonl": b"mine"}  # fmt: skip
     (folder / "folder").mkdir()
     for name, content in contents.items():
@@ -129,7 +137,8 @@ def may_change(name: str, before: bytes, after: bytes, words: list[str]) -> bool
     if RUN_KIND.head.match(before):
         return words[0] in ("runup", "rundown") and "--force" in words and RUN_KIND.head.match(after) is not None
     kind = next((kind for kind in kinds.values() if kind.head.match(before)), None)
-    return len(before) == 0 or (name != CASE and kind is not None and kind.head.match(after) is not None)
+    own = OWN in before or before == OLD["old.csv"]
+    return len(before) == 0 or (name != CASE and own and kind is not None and kind.head.match(after) is not None)
 
 
 @pytest.mark.nightly

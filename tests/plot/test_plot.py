@@ -29,6 +29,7 @@ from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.plot.style import LABEL_ROWS, new_figure, picture, save_figure, styled
+from frbcli.results.files.mark import MARK
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 
@@ -335,7 +336,7 @@ def test_a_png_is_the_one_that_matplotlib_saves(run: Run) -> None:
     for _ in range(2):
         saved = io.BytesIO()
         with styled():
-            theirs.savefig(saved, dpi=72)
+            theirs.savefig(saved, dpi=72, metadata={"Software": MARK})
         assert picture(figure, ".png", 72) == saved.getvalue()
     assert figure.dpi == theirs.dpi
 

@@ -17,7 +17,6 @@ import numpy as np
 import pandas as pd
 import pytest
 from output_options import CALLS, CASE, RUN, SETTINGS, SHORT, TABLE, Option, other_paths, output_options
-from pages import column_tables
 from paths import ROOT
 from synthetic_run import Rotor, signals
 
@@ -30,6 +29,7 @@ from frbcli.errors import InputError
 from frbcli.plot.moving.orbits import animate_orbits
 from frbcli.results.files.kinds import PAGE, TABLES
 from frbcli.results.files.lock import locked
+from frbcli.results.files.mark import has_checksum, mark_table
 from frbcli.results.files.write import harmless_text, write, write_table, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
@@ -136,20 +136,97 @@ def test_a_report_and_a_table_replace_their_like_and_nothing_else() -> None:
         assert Path(name).read_text() == other
 
 
-def heads() -> dict[str, str]:
-    """The first lines of all tables that are written; not those of JSON alone, nor the columns of another table."""
-    flat = {
-        name: [each for column in columns if column.flat for each in column.names]
-        for name, columns in column_tables.TABLES.items()
-    }
-    # columns that are added to those of another table
-    parts = ("moment of the force", "moment over time", "tilting films", "mixed friction", "collar", "gas of the oil")
-    return {name: ",".join(names) for name, names in flat.items() if names and name not in parts}
+FOREIGN = {  # files of others of the kinds that frb writes, and the words that would write there
+    "a.csv": (["export", RUN, "-o", "a.csv"], b"time_s,speed_Hz\n0.0,1.0\n0.1,1.5\n"),
+    "b.csv": ([*CALLS["stability"], "--no-picture", "--csv", "b.csv"], b"bearing,speed_Hz,\nmine,1.5,\n"),
+    "a.mat": (["export", RUN, "--format", "mat", "-o", "a.mat"], b"MATLAB 5.0 MAT-file, Platform: mine" + bytes(500)),
+    "a.parquet": (["export", RUN, "--format", "parquet", "-o", "a.parquet"], b"PAR1" + bytes(500) + b"PAR1"),
+    "a.html": (["report", RUN, "-o", "a.html"], b"<!DOCTYPE html>\n<title>mine</title>\n"),
+    "a.png": (["plot", RUN, "-o", "a.png"], b"\x89PNG\r\n\x1a\n" + bytes(500)),
+    "a.pdf": (["plot", RUN, "-o", "a.pdf"], b"%PDF-1.4\n" + bytes(500)),
+    "a.svg": (["plot", RUN, "-o", "a.svg"], b"<?xml version='1.0'?>\n<svg/>"),
+    "a.gif": (["plot", RUN, "--animate", "--what", "orbit", "--from", "0.09", "-o", "a.gif"], b"GIF89a" + bytes(500)),
+    "a.toml": ([*CALLS["bearing"], "--no-picture", "--ross", "a.toml"], b'["BearingElement_a"]\nn = 0\n'),
+    "whole-summary.png": (["runup", CASE, *SHORT, "-o", RUN], b"\x89PNG\r\n\x1a\n" + bytes(500)),
+}
 
 
-@pytest.mark.parametrize("name", heads())
-def test_a_table_of_every_kind_is_replaced_by_its_like(name: str) -> None:
-    assert TABLES["csv"].head.match(heads()[name].encode())
+@pytest.mark.parametrize("name", FOREIGN)
+def test_a_file_that_frb_did_not_write_is_replaced_by_force_alone(
+    name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("frbcli.plot.moving.orbits.FRAMES", 2)
+    words, other = FOREIGN[name]
+    if name.endswith(".parquet"):
+        pytest.importorskip("pyarrow")
+    Path(name).write_bytes(other)
+    assert frb(words) == 2
+    assert "--force" in capsys.readouterr().err
+    assert Path(name).read_bytes() == other
+    assert frb([*words, "--force"]) == 0
+    written_first = Path(name).read_bytes()
+    assert written_first != other
+    assert frb(words) == 0  # it is frb's own now
+    Path(name).write_bytes(written_first[:-20])
+    if name.endswith(".csv"):
+        assert frb(words) == 2  # and somebody's own again once it was changed
+
+
+def test_force_replaces_nothing_that_the_command_reads() -> None:
+    before = Path(CASE).read_bytes(), Path(RUN).read_bytes()
+    assert frb([*CALLS["bearing"], "--no-picture", "--csv", CASE, "--force"]) == 2
+    assert frb(["export", RUN, "-o", RUN, "--force"]) == 2
+    assert frb(["report", RUN, "-o", RUN, "--force"]) == 2
+    assert (Path(CASE).read_bytes(), Path(RUN).read_bytes()) == before
+    assert frb(["runup", CASE, *SHORT, "-o", CASE, "--force", "--no-picture"]) == 2
+    assert frb(["runup", CASE, *SHORT, "-o", TABLE, "--force", "--no-picture"]) == 2  # runs replace runs alone
+
+
+def test_a_case_is_written_to_a_new_file_or_by_force() -> None:
+    assert frb(["cases", "rigid", "-o", "notes.toml"]) == 0
+    assert frb(["cases", "jeffcott", "-o", "notes.toml"]) == 2
+    assert Path("notes.toml").read_text() == find_shipped("rigid")
+    assert frb(["cases", "jeffcott", "-o", "notes.toml", "--force"]) == 0
+    assert Path("notes.toml").read_text() == find_shipped("jeffcott")
+
+
+def test_the_checksum_of_a_table_is_in_no_number() -> None:
+    """All readers see the columns and numbers of a plain table, to the last bit where they read all digits."""
+    run = read_run(RUN)
+    assert frb(["export", RUN, "-o", "a.csv"]) == 0
+    text = Path("a.csv").read_text()
+    assert text.splitlines()[0] == ",".join(run.signals)
+    columns = np.stack([signal.values for signal in run.signals.values()], axis=1)
+    assert np.array_equal(np.loadtxt("a.csv", delimiter=",", skiprows=1), columns)
+    assert np.array_equal(np.genfromtxt("a.csv", delimiter=",", names=True)["time_s"], columns[:, 0])
+    with Path("a.csv").open(newline="") as file:
+        assert [float(value) for value in list(csv.DictReader(file))[-1].values()] == columns[-1].tolist()
+    table = pd.read_csv("a.csv")
+    assert list(table) == list(run.signals)
+    assert all(kind.kind == "f" for kind in table.dtypes)
+    assert np.allclose(table, columns, rtol=1e-15, atol=0.0)  # its parser is not exact
+
+
+LAST_LINES = "0.0,1.5\n", "-2.5e-07,1.0\n", "a,-1e-300,3.25,\n", '"a,1.5,b",2.5\n', "1.5\n", "9.5,0.0\r\n"
+
+
+@pytest.mark.parametrize("line", LAST_LINES)
+def test_a_table_with_a_number_in_its_last_line_is_told_by_its_checksum(line: str) -> None:
+    text = f"x,y\n0.0,0.0\n{line}"
+    Path("t.csv").write_text(text, newline="")
+    assert not has_checksum(Path("t.csv"))
+    mark_table(Path("t.csv"))
+    if '"' in line:  # in quotes a number is a text
+        assert Path("t.csv").read_bytes() == text.encode()
+        return
+    marked = Path("t.csv").read_bytes()
+    assert has_checksum(Path("t.csv"))
+    fields, before = (csv_text.splitlines()[-1].split(",") for csv_text in (marked.decode(), text))
+    for field, was in zip(fields, before, strict=True):
+        assert field == was or float(field) == float(was)
+    for changed in (marked.replace(b"x,y", b"x,z"), marked + b"\n", marked[:-1], b"# mine\n" + marked):
+        Path("t.csv").write_bytes(changed)
+        assert not has_checksum(Path("t.csv"))
 
 
 def test_a_link_stays_one_and_what_it_names_is_replaced() -> None:
@@ -376,7 +453,8 @@ def test_a_table_is_not_computed_by_a_spreadsheet_nor_obeyed_by_a_terminal(tmp_p
     table = pd.DataFrame({"=film": [1.5, -2.0], "film": ["=1", "\x1b]0;x\x07"], "none": [None, np.nan]})
     table = table[["film", "=film", "none"]]
     write_table(table, tmp_path / "a.csv")
-    assert (tmp_path / "a.csv").read_text() == "film,'=film,none\n'=1,1.5,\n?]0;x?,-2.0,\n"
+    text = re.sub(r"0{25}\d{10}(?=,\n$)", "", (tmp_path / "a.csv").read_text())  # without the checksum
+    assert text == "film,'=film,none\n'=1,1.5,\n?]0;x?,-2.0,\n"
 
 
 def test_the_table_of_a_sweep_has_no_formula_of_its_list() -> None:

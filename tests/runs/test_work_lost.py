@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import json
 import os
 import signal
@@ -12,6 +13,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import h5py
+import numpy as np
 import pytest
 from output_options import MODELS, SETTINGS, SHORT
 
@@ -19,6 +22,7 @@ from frbcli.bearing_tests import tested_film
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
+from frbcli.results.files.container import USER_BLOCK, seal
 from frbcli.results.store import read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
@@ -26,8 +30,13 @@ from frbcli.studies import accuracy as ladder
 from frbcli.studies.compare import compare
 from frbcli.studies.differences import verify
 from frbcli.studies.sweep.sweep import Workers, sweep
+from frbcli.thermal.exchange import HOT
 
 QUICK = ["jeffcott", *SHORT]
+WARM = (
+    "film.theory=short", "speed.duration=0.1 s", 'oil.viscosity={grade="SAE 10W-40"}',
+    "thermal.supply_temperature=60 degC",
+)  # fmt: skip
 
 
 @pytest.fixture(autouse=True)
@@ -234,3 +243,53 @@ def test_a_full_disk_is_one_line_wherever_it_is_met(
     after_calls(monkeypatch, March, "compile", 0, OSError(errno.EIO, "a bug"))
     with pytest.raises(OSError, match="a bug"):
         frb(["runup", *QUICK, "-o", "run.h5"])
+
+
+# --- a run file that somebody has made up ---
+
+FORGED: dict[str, tuple[str, Any]] = {  # array of the checkpoint, and what makes it one of no machine
+    "no numbers": ("numbers", lambda _: np.zeros(1)),
+    "numbers of a table": ("numbers", lambda own: np.zeros((len(own), 2))),
+    "no step": ("numbers", lambda own: np.full(len(own), np.nan)),
+    "heat of nothing": ("heat", lambda _: np.zeros(2)),
+    "heat without a number": ("heat", lambda own: np.full(len(own), np.nan)),
+    "below absolute zero": ("heat", lambda own: np.where(np.arange(len(own)) < len(own) - 1, own, -1.0)),
+    "a hot film of none": ("heat", lambda own: np.where(np.arange(len(own)) == HOT, 77.0, own)),
+    "far away": ("q", lambda own: np.full(len(own), 1.0)),
+    "of another size": ("q", lambda own: np.zeros(len(own) + 1)),
+}
+
+
+def forged(path: Path, name: str, change: Any) -> None:
+    """A run file with another array in its checkpoint, and the checksum of that."""
+    content = io.BytesIO(path.read_bytes())
+    with h5py.File(content, "r+") as file:
+        own = file["checkpoint"][name][...]
+        del file["checkpoint"][name]
+        file["checkpoint"][name] = change(own)
+    view = content.getbuffer()
+    path.write_bytes(seal(view) + bytes(view[USER_BLOCK:]))
+
+
+@pytest.fixture(scope="module")
+def warm_run(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """A run with heat that was interrupted."""
+    path = tmp_path_factory.mktemp("warm") / "run.h5"
+    assert runup(load_case("jeffcott", WARM), path, observe=ask_to_end).status == "interrupted"
+    return path.read_bytes()
+
+
+@pytest.mark.parametrize("forgery", FORGED)
+def test_a_checkpoint_of_another_machine_is_refused(
+    forgery: str, warm_run: bytes, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By what resumes it; what reads the run says so, or has no need of it."""
+    Path("run.h5").write_bytes(warm_run)
+    forged(Path("run.h5"), *FORGED[forgery])
+    before = Path("run.h5").read_bytes()
+    words = ["runup", "jeffcott", *(word for each in WARM for word in ("--set", each)), "-o", "run.h5", "--no-picture"]
+    assert frb([*words, "--resume"]) == 2
+    assert "cannot be resumed" in capsys.readouterr().err
+    assert Path("run.h5").read_bytes() == before
+    assert frb(["report", "run.h5"]) in (0, 2)
+    assert frb(["export", "run.h5"]) in (0, 2)

@@ -83,7 +83,7 @@ def test_a_list_reads_quoted_commas_blank_lines_and_empty_cells(tmp_path: Path) 
         (b"a,a\n1,2\n", "name every column once"),
         (b"a,\n1,2\n", "name every column once"),
         (b"a,b\n1,2\n1\n", "(line 3): has 1 values for 2 keys"),
-        (b"\xff\xfe\x00", "not UTF-8"),
+        (b"\xff\xfe\x00", "no UTF-8 text"),
         (b'a,b\n"1,2\n', "cannot be read"),
         (b"a\n \n", "nothing to change"),
     ],
@@ -94,7 +94,7 @@ def test_a_wrong_list_is_refused(tmp_path: Path, content: bytes, problem: str) -
     with pytest.raises(InputError) as error:
         read_list(file)
     assert problem in said(error)
-    with pytest.raises(InputError, match="cannot be read"):
+    with pytest.raises(InputError, match="does not exist"):
         read_list(tmp_path / "absent.csv")
 
 

@@ -11,6 +11,8 @@ from typing import Any
 from frbcli.case.quantities import LARGEST
 from frbcli.case.reading.lines import Path as Key
 from frbcli.case.reading.tables import Breach, at, replaced
+from frbcli.results.files import named
+from frbcli.results.files.named import NoFile, NoText, Unreadable
 
 LARGEST_FILE = 4_194_304  # bytes
 SI = "Correct it; values are in SI units."
@@ -45,20 +47,19 @@ def with_file(
 def text_of(path: Path, meant: str, write: str) -> str:
     """The text of a file; meant: what it should be; write: the remedy for what is no text. Raises Refused."""
     try:
-        if not path.is_file():
-            raise Refused("names no file.", "Give its path from the folder of the case.")
-        if path.stat().st_size > LARGEST_FILE:
-            raise Refused(f"is larger than {LARGEST_FILE // 1_048_576} MiB.", f"Name {meant}.")
-        return path.read_text(encoding="utf-8-sig")
-    except OSError as error:
-        raise Refused(f"cannot be read: {error.strerror or error}.", "Check path and permissions.") from None
-    except ValueError:
-        raise Refused("is no UTF-8 text.", write) from None
+        return named.text_of(path, LARGEST_FILE)
+    except NoFile:
+        raise Refused("names no file.", "Give its path from the folder of the case.") from None
+    except Unreadable as error:
+        raise Refused(str(error), write if isinstance(error, NoText) else f"Name {meant}.") from None
 
 
 def number_table(text: str, names_told: str) -> Columns:
     """The columns of a text by their names; names_told: the remedy for wrong names. Raises Refused."""
-    rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+    try:
+        rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise Refused(f"cannot be read: {error}.", names_told) from None
     if not rows:
         raise Refused("is empty.", names_told)
     names = [cell.strip() for cell in rows[0]]

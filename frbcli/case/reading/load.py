@@ -27,6 +27,7 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.machine_table import machine_breaches
 from frbcli.errors import Fault, InputError
 from frbcli.results.files.kinds import RUN_BEGINS
+from frbcli.results.files.named import NoFile, NoText, Unreadable, begins_with, text_of
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
 
@@ -230,22 +231,15 @@ def _plain(value: Any, path: lines.Path = ()) -> Any:
 def _read(path: Path) -> str | None:
     """The text of the regular file `path`, None if there is none. Raises InputError if it cannot be a case."""
     try:
-        if not path.is_file():
-            return None
-        with path.open("rb") as file:
-            content = file.read(LARGEST_FILE + 1)
-        if content.startswith(RUN_BEGINS):
+        return text_of(path, LARGEST_FILE)
+    except NoFile:
+        return None
+    except Unreadable as error:
+        if begins_with(path, RUN_BEGINS):
             problem = "is a run file: `frb plot`, `frb waterfall` and `frb report` show it."
-            raise _unreadable(path, problem, "Name a case.")
-        if len(content) > LARGEST_FILE:
-            raise _unreadable(path, f"is larger than {LARGEST_FILE // 1024} KiB.", "Name a case file.")
-        return content.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        problem = f"is not UTF-8 text (at byte {error.start})."
-        raise _unreadable(path, problem, "Name a case file, or save it as UTF-8.") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise _unreadable(path, f"cannot be read: {reason}.", "Check path and permissions.") from None
+            raise _unreadable(path, problem, "Name a case.") from None
+        remedy = "Name a case file, or save it as UTF-8." if isinstance(error, NoText) else "Name a case file."
+        raise _unreadable(path, str(error), remedy) from None
 
 
 def _shipped(source: str) -> str:

@@ -74,6 +74,8 @@ def _doubts(data: Mapping[str, Any]) -> Iterator[_Doubt]:
             for (place, film), growth in zip(end, growths, strict=True):
                 yield from _film((*path, *place), film, growth, top)
         yield from _film((*path, "damper"), table(bearing, "damper"), 0.0, top)
+    for path, bearing in tables(data, "thrust_bearing"):
+        yield from _pads(path, bearing)
     if top is not None and fastest > FASTEST_SURFACE:
         problem = f"gives a surface speed of the journal of {fastest:.4g} m/s, above {FASTEST_SURFACE:g} m/s"
         yield _Doubt(top.path, "surface-speed", problem, SPEED)
@@ -97,6 +99,16 @@ def _film(path: Path, film: Mapping[str, Any], growth: float, top: _Speed | None
         if top is not None and abs(growth) > LARGEST_GROWTH * clearance:
             problem = f"changes by {growth / clearance:+.0%} by centrifugal growth at {display(top.value, SPEED)}"
             yield _Doubt(where, "gap-growth", problem, "m")
+
+
+def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[_Doubt]:
+    """The depths of the films on the pads of a thrust bearing."""
+    radius = _size(bearing, "outer_radius", "m")
+    for key in ("taper", "end_play"):
+        depth = _size(bearing, key, "m")
+        if depth and radius and depth > THICKEST_FILM * radius:
+            problem = f"is {display(depth, 'm')}, above a tenth of the outer radius, too large for a thin film"
+            yield _Doubt((*path, key), "clearance", problem, "m")
 
 
 def _journal_growth(bearing: Mapping[str, Any], top: _Speed | None) -> tuple[float, ...]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import OUTPUT, here
+from frbcli.cli.files import OUTPUT, forced, here
 from frbcli.cli.options import LOAD_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
@@ -122,7 +122,7 @@ def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Pat
 
     table = found.to_pandas()
     for film, path in elements.items():
-        write_ross(table[table["film"] == film], path)
+        write_ross(table[table["film"] == film], path, forced())
         terminal.result(f"ROSS: {path}")
 
 

@@ -8,7 +8,7 @@ import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.completion import complete_key
-from frbcli.cli.files import OUTPUT, check_outputs
+from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
 
 
 @click.command()
@@ -18,6 +18,7 @@ from frbcli.cli.files import OUTPUT, check_outputs
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
 @click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
+@force_option("Replace a file at -o.")
 @output_options
 def command(
     names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool,
@@ -75,9 +76,9 @@ def _list(terminal: Terminal) -> None:
 
 
 def _write(text: str, output: Path) -> None:
-    """Write a case to a new file."""
+    """Write a case to a new file, with --force to any."""
     from frbcli.results.files.kinds import NEW
     from frbcli.results.files.write import write
 
     check_outputs((output, NEW))
-    write(output, NEW, text)
+    write(output, NEW, text, forced())

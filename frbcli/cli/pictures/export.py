@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, force_option, forced
 from frbcli.cli.progress import WRITING, display
 
 
@@ -23,6 +23,7 @@ from frbcli.cli.progress import WRITING, display
     help="Format of the table; parquet needs the extra frbcli[parquet].",
 )
 @click.option("-o", "--output", metavar="FILE", type=OUTPUT, help='Table; "-" writes CSV to stdout. [RUN.FORMAT]')
+@force_option()
 @output_options
 def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""
@@ -42,7 +43,7 @@ def command(run_file: Path, table_format: str, output: Path | None, terminal: Te
         return
     with display(terminal, WRITING):
         run = read_run(run_file)
-        export_run(run, target, table_format)
+        export_run(run, target, table_format, forced())
     terminal.result(f"{len(run)} samples of {len(run.signals)} signals: {target}")
     terminal.emit(
         {

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import INPUT, beside, check_outputs, here
+from frbcli.cli.files import INPUT, beside, check_outputs, force_option, forced, here
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import TIME_OPTION, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
@@ -56,6 +56,7 @@ class Times:
               help="A moving picture of an orbit or a film: GIF, or MP4 where ffmpeg is installed.")  # fmt: skip
 @click.option("--film", metavar="NAME", help="The film of --what film, as in eccentricity_NAME. [the first one]")
 @picture_option("RUN-WHAT.png")
+@force_option()
 @look_options
 @output_options
 @gathered("span", Times)
@@ -118,15 +119,15 @@ def _animate(
     from frbcli.results.files import kinds
     from frbcli.results.store import read_run
 
-    check_animation(target)
+    check_animation(target, forced())
     check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
     run = read_run(run_file)
     with display(terminal, "Drawing.") as shown:
         tell = shown.counting("frame ")
         if what == "film":
-            animate_films(run, target, film, *span, observe=tell)
+            animate_films(run, target, film, *span, observe=tell, force=forced())
         else:
-            animate_orbits(run, target, *span, observe=tell)
+            animate_orbits(run, target, *span, observe=tell, force=forced())
     terminal.result(f"{what}: {target}")
     terminal.emit({"command": "plot", "run": run_file, "output": target, "what": what})
 

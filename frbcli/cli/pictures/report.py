@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs
+from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, force_option, forced
 from frbcli.cli.options import signal_option, speeds_option
 from frbcli.cli.progress import drawing
 
@@ -20,6 +20,7 @@ from frbcli.cli.progress import drawing
 @click.option("--author", default="", metavar="NAME", help="Name on top of the page, beside date and version.")
 @click.option("--both-units", is_flag=True,
               help="Rotor speeds in Hz and rpm. [rpm where the case gives them so, else Hz]")  # fmt: skip
+@force_option()
 @output_options
 def command(
     run_file: Path, output: Path | None, speeds: tuple[float, ...], signal: str, author: str, both_units: bool,
@@ -35,6 +36,6 @@ def command(
     with drawing(terminal):
         from frbcli.report.page import write_report
 
-        write_report(read_run(run_file), target, speeds, signal, author, both_units)
+        write_report(read_run(run_file), target, speeds, signal, author, both_units, forced())
     terminal.result(f"report: {target}")
     terminal.emit({"command": "report", "run": run_file, "output": target})

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, beside, check_outputs
+from frbcli.cli.files import INPUT, beside, check_outputs, force_option
 from frbcli.cli.looks import Span, look_options
 from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
@@ -63,6 +63,7 @@ class View:
 @click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [those of free whirls]")
 @click.option("--list", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
 @measured_options
+@force_option()
 @look_options
 @output_options
 @gathered("view", View)

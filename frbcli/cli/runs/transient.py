@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import OUTPUT, beside, check_outputs, here
+from frbcli.cli.files import OUTPUT, beside, check_outputs, force_option, here
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.outputs import draw, picture_switch
@@ -55,7 +55,7 @@ def run_options(function: Function) -> Function:
     """Give a command the options of a run; it receives `options: RunOptions`."""
     output = click.option("-o", "--output", type=OUTPUT, metavar="RUN.h5", help="Run file. [CASE.h5, here]")
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
-    force = click.option("--force", is_flag=True, help="Replace the run in the run file.")
+    force = force_option("Replace the run in the run file, and a picture that frb did not write.", told=True)
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
     )

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT, here
+from frbcli.cli.files import INPUT, OUTPUT, forced, here
 from frbcli.cli.options import Names, signal_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import READING, computing, display
@@ -73,7 +73,7 @@ def command(
     if save is not None:
         from frbcli.results.files.write import write
 
-        write(save, NEW, found.case.source_text)
+        write(save, NEW, found.case.source_text, forced())
         terminal.result(f"case: {save}")
     terminal.emit(
         {

@@ -12,7 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.completion import complete_case
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, here
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import SPEED_OPTION, gathered
 from frbcli.cli.outputs import draw, picture_switch
@@ -78,7 +78,8 @@ class Machines:
               "uniform(LOW, HIGH) or truncated(MEAN, DEVIATION, LOW, HIGH).")  # fmt: skip
 @click.option("--correlation", "correlations", multiple=True, metavar="KEY,KEY=R",
               help="Correlation of two keys that scatter. Repeatable.")  # fmt: skip
-@click.option("--seed", type=int, default=0, show_default=True, help="Seed of the Sobol sequence of the machines.")
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True,
+              help="Seed of the Sobol sequence of the machines.")  # fmt: skip
 @click.option("--below", type=SPEED_OPTION, metavar="SPEED",
               help="Speed below which the share of machines that whirl is given. [the highest of CASE]")  # fmt: skip
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
@@ -92,6 +93,7 @@ class Machines:
 @click.option("--jobs", type=int, default=-1, metavar="N", help="Processes. [one for each core]")
 @click.option("--backend", default="loky", show_default=True, metavar="NAME", help="loky (this machine) or dask.")
 @click.option("--scheduler", default="", metavar="ADDRESS", help="Address of the dask cluster, e.g. tcp://10.0.0.1:8786.")
+@force_option()
 @look_options
 @output_options
 @gathered("kept", Kept)
@@ -128,7 +130,7 @@ def command(
     with display(terminal) as shown:
         found = sweep(case, points, folder, method, not kept.no_runs, workers, _progress(shown))
     _report(found, terminal)
-    write_table(found, table, kept.table_format)
+    write_table(found, table, kept.table_format, forced())
     terminal.result(f"table: {table}")
     document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": found.table().documents()}
     if distributions and any(point.status != "interrupted" for point in found.points):

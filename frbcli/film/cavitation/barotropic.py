@@ -47,8 +47,8 @@ class Barotropic(Law):
     meaning = "Bayada and Chupin's model: density by the speed of sound in liquid, mixture and vapour."
     cell_words = "density of liquid, mixture and vapour from the speed of sound"
     keys = (
-        Key("liquid_sound_speed", 1400.0, "c_l, in the oil", "1400 m/s", unit="m/s", above=0.0),
-        Key("vapour_sound_speed", 350.0, "c_v, in its vapour or gas", "350 m/s", unit="m/s", above=0.0),
+        Key("liquid_sound_speed", 1400.0, "c_l, in the oil", "1400 m/s", unit="m/s", least=10.0, most=1e5),
+        Key("vapour_sound_speed", 350.0, "c_v, in its vapour or gas", "350 m/s", unit="m/s", least=1.0, most=1e4),
     )
     cost = 2.0
 
@@ -142,8 +142,12 @@ def mixture(emptied: float, vapour: float, liquid: float) -> tuple[float, float,
 
 
 def vapour_fraction(vapour: float, liquid: float, cavity: float) -> float:
-    """theta_v with which the mixture becomes vapour at the pressure rho_v c_v^2; cavity: p_cav, absolute."""
+    """theta_v with which the mixture becomes vapour at the pressure rho_v c_v^2; cavity: p_cav, absolute. Raises
+    ValueError for a vapour that is not lighter and slower than the liquid there."""
     from scipy.optimize import brentq
+
+    if vapour >= liquid:
+        raise ValueError("the vapour is as stiff as the liquid")
 
     def missing(pressure: float) -> float:
         tension, _, lowest = mixture(pressure / vapour, vapour, liquid)

@@ -48,15 +48,16 @@ def film_moments_figure(
 
 def animate_films(
     run: Run, path: str | Path, film: str | None = None, from_time: float | None = None, to_time: float | None = None,
-    frames: int = FRAMES, dpi: int = DPI, observe: Observer | None = None,
+    frames: int = FRAMES, dpi: int = DPI, observe: Observer | None = None, force: bool = False,
 ) -> Path:  # fmt: skip
     """Write a film as a moving picture of at most `frames` of the moments that a run has kept from from_time to to_time
     in s.
 
-    Raises InputError if it cannot be written, RunFileError if the run has kept none.
+    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    the run has kept none.
     """
     path = Path(path)
-    check_animation(path)
+    check_animation(path, force)
     kept, first, last = _frames(run, film, from_time, to_time)
     chosen = _even(first, last, frames)
     with styled():
@@ -75,7 +76,7 @@ def animate_films(
                 line.set_xdata([np.degrees(kept.narrowest(frame))] * 2)
             told.set_text(_told(run, kept, frame))
 
-        write_animation(path, figure, draw, len(chosen), dpi, observe)
+        write_animation(path, figure, draw, len(chosen), dpi, observe, force)
     return path
 
 

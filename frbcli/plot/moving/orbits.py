@@ -24,19 +24,20 @@ TRAIL = 2.0  # revolutions of the rotor that stay seen
 
 def animate_orbits(
     run: Run, path: str | Path, from_time: float | None = None, to_time: float | None = None, frames: int = FRAMES,
-    dpi: int = DPI, observe: Observer | None = None,
+    dpi: int = DPI, observe: Observer | None = None, force: bool = False,
 ) -> Path:  # fmt: skip
     """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
 
-    Raises InputError if it cannot be written, RunFileError if the run has no samples between these times.
+    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    the run has no samples between these times.
     """
     path = Path(path)
-    check_animation(path)
+    check_animation(path, force)
     end = ends(run)[1] if to_time is None else to_time
     begin = max(end - LAST_s, 0.0) if from_time is None else from_time
     cut(run, begin, end)
     with styled():
-        write_animation(path, *_scene(run, begin, end, frames), frames, dpi, observe)
+        write_animation(path, *_scene(run, begin, end, frames), frames, dpi, observe, force)
     return path
 
 

@@ -3,53 +3,58 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
-HEAD = 65_536  # bytes from which a file is recognised; the names of the columns of a table are among them
+from frbcli.results.files.mark import has_checksum, has_mark
+
+HEAD = 4096  # bytes by which a kind is recognised
 
 
 @dataclass(frozen=True)
 class Kind:
-    """name: in errors, e.g. "a run of frb"; head: what its files begin with."""
+    """name: in errors, e.g. "a run of frb"; head: what its files begin with; marked: whether one of them, a file at a
+    path, was written by frb; forced: whether a file that is none may be replaced where that is asked for."""
 
     name: str
     head: re.Pattern[bytes]
+    marked: Callable[[Path], bool] = has_mark
+    forced: bool = True
 
     def holds(self, path: Path) -> bool:
-        """Whether an existing file is empty or of this kind. Raises OSError if it cannot be read."""
+        """Whether an existing file is empty, or of this kind and written by frb. Raises OSError if it cannot be
+        read."""
         with path.open("rb") as file:
             head = file.read(HEAD)
-        return not head.strip() or self.head.match(head) is not None
+        return not head.strip() or (self.head.match(head) is not None and self.marked(path))
 
 
-def kind(name: str, head: bytes) -> Kind:
+def kind(name: str, head: bytes, marked: Callable[[Path], bool] = has_mark, forced: bool = True) -> Kind:
     """The kind of files that begin with a regular expression."""
-    return Kind(name, re.compile(head, re.IGNORECASE))
+    return Kind(name, re.compile(head, re.IGNORECASE), marked, forced)
+
+
+def _by_head(_: Path) -> bool:
+    """Of kinds that no other program writes."""
+    return True
 
 
 RUN_BEGINS = b"frb-run "
-RUN = kind("a run of frb", RUN_BEGINS)
+RUN = kind("a run of frb", RUN_BEGINS, _by_head, forced=False)
 NEW = kind("", rb"(?!)")  # of a case, which takes the place of nothing
 PAGE = kind("a page of frb", rb"\s*<!doctype html>")
-ROSS = kind("a bearing of frb for ROSS", rb'\["BearingElement_')
-SWEEP_LOG = kind("the log of a sweep", rb"\{\"")
-# What the first line of a table says, which distinguishes those of frb from others
-COLUMNS = (
-    rb"film,|bearing,speed_Hz,|speed_Hz,(point|status|synchronous_x_m_computed),|time_s,speed_Hz"
-    rb"|cavitation,theory,(status|coupling),|theory,cavitation,mesh,|frequency_Hz,direction,|stiffness_N_m,forward_"
-    rb"|([^\n]*,)?branch,speed_Hz,|[^\n]*,unit,curve,kind,|point,[^\n]*status,|key,unit,start,|changed,onset_Hz,"
-    rb"|name,topic,expected"
-)
+ROSS = kind("a bearing of frb for ROSS", rb"#")
+SWEEP_LOG = kind("the log of a sweep", rb"\{\"", _by_head, forced=False)  # one that is read before
 TABLES = {
-    "csv": kind("a table of frb", COLUMNS),
-    "parquet": kind("a Parquet file", rb"PAR1"),
-    "mat": kind("a MAT file", rb"MATLAB "),
+    "csv": kind("a table of frb", rb"", has_checksum),
+    "parquet": kind("a Parquet file of frb", rb"PAR1"),
+    "mat": kind("a MAT file of frb", rb"MATLAB "),
 }
 PICTURES = {
-    ".png": kind("a PNG picture", rb"\x89PNG"),
-    ".pdf": kind("a PDF file", rb"%PDF"),
-    ".svg": kind("an SVG picture", rb"<\?xml"),
-    ".gif": kind("a GIF picture", rb"GIF8"),
-    ".mp4": kind("an MP4 film", rb"....ftyp"),
+    ".png": kind("a PNG picture of frb", rb"\x89PNG"),
+    ".pdf": kind("a PDF file of frb", rb"%PDF"),
+    ".svg": kind("an SVG picture of frb", rb"<\?xml"),
+    ".gif": kind("a GIF picture of frb", rb"GIF8"),
+    ".mp4": kind("an MP4 film of frb", rb"....ftyp"),
 }

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from frbcli.errors import printable
 from frbcli.results.files.kinds import TABLES, Kind
+from frbcli.results.files.mark import mark_table
 from frbcli.results.files.place import TOKEN, part_of, real, refused, wrong_place
 
 if TYPE_CHECKING:
@@ -32,13 +33,14 @@ FORMULA = re.compile(r"[=@]|[+-](?![\d.][\w.,%°µΩ·*/^ ]*$)")
 
 
 @contextmanager
-def written(path: Path, kind: Kind, remedy: str = REMEDY) -> Iterator[Path]:
+def written(path: Path, kind: Kind, remedy: str = REMEDY, force: bool = False) -> Iterator[Path]:
     """Where to write the content of `path`, which takes its place when the block ends.
 
     If the block raises an error, `path` stays as it was. A device or a pipe is given the content at the end. remedy:
-    for a disk that does not take it. Raises InputError if `path` is not of this kind or cannot be written.
+    for a disk that does not take it; force: see wrong_place. Raises InputError if `path` is not of this kind or cannot
+    be written.
     """
-    if wrong := wrong_place(path, kind):
+    if wrong := wrong_place(path, kind, force=force):
         raise refused(path, *wrong)
     try:
         if path.exists() and not path.is_file():
@@ -52,9 +54,9 @@ def written(path: Path, kind: Kind, remedy: str = REMEDY) -> Iterator[Path]:
         raise refused(path, f"cannot be written: {error.strerror or error}.", remedy) from error
 
 
-def write(path: Path, kind: Kind, content: bytes | str) -> None:
+def write(path: Path, kind: Kind, content: bytes | str, force: bool = False) -> None:
     """Make `content` that of a file, text in UTF-8. Raises InputError as `written` does."""
-    with written(path, kind) as part:
+    with written(path, kind, force=force) as part:
         part.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
@@ -87,15 +89,16 @@ def _pour(content: Path, target: Path) -> None:
         shutil.copyfileobj(source, stream)
 
 
-def write_table(table: pd.DataFrame, path: Path) -> None:
+def write_table(table: pd.DataFrame, path: Path, force: bool = False) -> None:
     """Write a table as CSV, with texts that do nothing in a spreadsheet or a terminal. Raises InputError as `written`
     does."""
     harmless = table.rename(columns=harmless_text)
     for place, kind in enumerate(harmless.dtypes):
         if kind.kind not in "fiub":
             harmless.isetitem(place, harmless.iloc[:, place].map(harmless_text))
-    with written(path, TABLES["csv"]) as part:
+    with written(path, TABLES["csv"], force=force) as part:
         harmless.to_csv(part, index=False, lineterminator="\n")
+        mark_table(part)
 
 
 def harmless_text(cell: Any) -> Any:

@@ -147,7 +147,10 @@ def fields(line: str, delimiter: str) -> list[str]:
     if delimiter == " ":
         return line.split()
     if '"' in line:
-        return [field.strip() for field in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])]
+        try:
+            return [field.strip() for field in next(csv.reader([line], delimiter=delimiter, skipinitialspace=True), [])]
+        except csv.Error as error:
+            raise ValueError(f"a line of it is no table: {error}") from None
     return [field.strip() for field in line.split(delimiter)]
 
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
+from frbcli.results.files.named import Unreadable, require_file
 from frbcli.results.measured.columns import LARGEST_FILE, Columns, is_interval, wrong_file
 from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
 from frbcli.results.measured.mat import read_mat
@@ -43,9 +44,10 @@ def read_columns(path: Path) -> Columns:
     where they are whole numbers. MAT: `read_mat` of mat.py. UFF (or unv): see `read_uff`. Raises InputError for what is
     none of these.
     """
-    if not path.is_file():
-        problem = "is no file." if path.exists() else "does not exist."
-        raise wrong_file(path, problem, "Give the file of a measurement.")
+    try:
+        require_file(path, LARGEST_FILE)
+    except Unreadable as error:
+        raise wrong_file(path, str(error), "Give the file of a measurement, or cut it into several.") from None
     reader = READERS.get(path.suffix.lower())
     if reader is None:
         other = OTHERS.get(path.suffix.lower())
@@ -53,8 +55,6 @@ def read_columns(path: Path) -> Columns:
         if other:
             what, remedy = f"is a file of {other}, which is not read.", "Export its channels as CSV or MAT."
         raise wrong_file(path, what, remedy)
-    if path.stat().st_size > LARGEST_FILE:
-        raise wrong_file(path, f"has more than {LARGEST_FILE // 1024**2} MB.", "Cut it into several files.")
     try:
         found = reader(path)
     except InputError:

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED as SPEED_SIGNAL
 from frbcli.results.records import TIME as TIME_SIGNAL
 from frbcli.results.signals import pieces
@@ -57,6 +58,17 @@ def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: floa
         off = np.abs(2.0 * math.pi * run.read(SPEED_SIGNAL, first, last) - speeds).max()
         if late > SAME * profile.end or off > SAME * fastest:
             raise WrongCheckpoint("its samples have other times or speeds")
+
+
+def number_of(run: Run, name: str, place: int) -> float | None:
+    """The number at a place of an array in the checkpoint of a run; None where there is none. Raises RunFileError for
+    an array that has no such number."""
+    if run.checkpoint is None or name not in run.checkpoint:
+        return None
+    found = np.asarray(run.checkpoint[name])
+    if found.ndim != 1 or len(found) <= place or not abs(found[place]) <= LARGEST:
+        raise refuse(run.path, f"has a checkpoint whose {name} are not those of a run.", "Run the case again.")
+    return float(found[place])
 
 
 def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:

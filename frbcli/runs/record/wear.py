@@ -17,12 +17,12 @@ from frbcli.film.roughness.asperities import wear_along
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.film_signals import Samples, film_motions
-from frbcli.runs.record.restored import array
+from frbcli.runs.record.restored import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
 from frbcli.solve.state import Array
 
 ANGLES = 72  # places around a shell, evenly from the top on, counter-clockwise
-NAME = "wear"  # in a checkpoint
+NAME, DEEPEST = "wear", 1.0  # in a checkpoint; m, deeper than any shell
 
 
 class RunWear:
@@ -49,7 +49,10 @@ class RunWear:
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up the depths of a checkpoint. Raises WrongCheckpoint."""
         if len(self._depths):
-            self._depths = array(checkpoint, NAME, self._depths.shape).copy()
+            depths = array(checkpoint, NAME, self._depths.shape)
+            if not np.all((depths >= 0.0) & (depths <= DEEPEST)):
+                raise WrongCheckpoint("wear holds depths that no shell has")
+            self._depths = depths
 
     def told(self) -> dict[str, float]:
         """The largest depth in m and phi of its place in degrees, 0 all around a shell that turns."""

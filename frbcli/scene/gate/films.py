@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
+from frbcli.film.cavitation.barotropic import Barotropic
+from frbcli.film.cavitation.law import FilmOil
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
@@ -105,6 +107,20 @@ def saturation_faults(case: Case) -> Iterator[Fault]:
         problem = f"is above {display(HENRY, 'Pa')}, up to which gas dissolves in proportion to its pressure."
         remedy = "Give the pressure of the air over the oil in its tank."
         yield Fault("film.bubbly.saturation_pressure", display(pressure, "Pa"), None, problem, remedy)
+
+
+def sound_faults(case: Case) -> Iterator[Fault]:
+    """Speeds of sound with which no vapour is in balance with the oil at the pressure of the cavities."""
+    if Barotropic.name not in case.cavitations:
+        return
+    given, oil = case.film.barotropic, case.oil
+    try:
+        Barotropic.scaled(given, FilmOil(1.0, oil.ambient_pressure, oil.cavitation_pressure, oil.density))
+    except ValueError:
+        speed = display(given.vapour_sound_speed, "m/s")
+        problem = f"leaves no vapour that is lighter than the oil at {display(oil.cavitation_pressure, 'Pa')}."
+        remedy = 'Correct it, film.barotropic.liquid_sound_speed, which is larger, or oil.cavitation_pressure.'
+        yield Fault("film.barotropic.vapour_sound_speed", speed, None, problem, remedy)
 
 
 def moved_gas_faults(case: Case) -> Iterator[Fault]:

@@ -80,6 +80,7 @@ RULES = (
     Rule(films.rough_coupling_faults, (RUN,)),
     Rule(films.rough_heat_faults, (*KINEMATIC, *EVERY_CYCLE)),
     Rule(films.saturation_faults, ALL),
+    Rule(films.sound_faults, ALL),
     Rule(films.moved_gas_faults, (RUN, *EVERY_CYCLE), moving=True),
     Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
+from frbcli.film.cells.mesh.grid import least_around
 from frbcli.film.section_faults import no_inflow
 from frbcli.scene.films import FilmPlace, film_places, is_plain
 from frbcli.scene.planning.short_bearing import CLOSEST
@@ -99,9 +100,11 @@ RECESSES_OIL = CellError(6e-3, 1.5, BORES_OIL.along, least=40)
 
 @dataclass(frozen=True)
 class WorstFilm:
-    """What cells make of the error of a machine: the errors of all of its films."""
+    """What cells make of the error of a machine: the errors of all of its films. fewest: cells around that each of them
+    can have: the arrays of a machine have films of equal numbers of cells."""
 
     films: tuple[CellError, ...]
+    fewest: int = FEWEST[0]
 
     def of(self, cells: tuple[int, float]) -> float:
         """Expected error of the eccentricities with cells (around, along): that of the worst film."""
@@ -110,7 +113,7 @@ class WorstFilm:
     @property
     def least(self) -> int:
         """Cells around, below which the error is a matter of chance."""
-        return max(film.least for film in self.films)
+        return max(self.fewest, *(film.least for film in self.films))
 
     @property
     def coarser(self) -> float:
@@ -120,8 +123,11 @@ class WorstFilm:
 
 def worst_film(case: Case, eccentricity: float | None) -> WorstFilm:
     """The errors of the films of a case up to the largest eccentricity, where that is known."""
-    kinds = (_kind(case, place) for place in film_places(case))
-    return WorstFilm(tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds))
+    places = film_places(case)
+    kinds = (_kind(case, place) for place in places)
+    around = (least_around(film_section(case, place.geometry, place.feed_holes)) for place in places)
+    found = tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds)
+    return WorstFilm(found, max(FEWEST[0], *around))
 
 
 def gap_ratio(expected: float, reached: float) -> float:
@@ -147,10 +153,10 @@ def fewest_cells(
     return next(cells for cells in choices if errors[cells] <= allowed)
 
 
-def given_cells(mesh: tuple[int, int], fewest: tuple[int, int]) -> tuple[tuple[int, int], str]:
-    """Cells or elements (around, along) for a mesh (along, around) that a case sets, and why."""
+def given_cells(mesh: tuple[int, int], fewest: int = FEWEST[0]) -> tuple[tuple[int, int], str]:
+    """Cells (around, along) for a mesh (along, around) that a case sets, and why. fewest: around."""
     along, around = mesh
-    found = max(around, fewest[0]), max(along, fewest[1])
+    found = max(around, fewest), max(along, FEWEST[1])
     if found == (around, along):
         return found, "set in the case"
     return found, f"[{along}, {around}] is set in the case, fewer than a film needs"
@@ -166,7 +172,7 @@ def coarser_cells(worst: WorstFilm, cells: tuple[int, int]) -> tuple[int, int] |
     OF_HOLES times if such cells are not too few for their error to be known; None if there are none."""
     low, high = FEWER
     around = [m for m in (*FEWER_AROUND, *AROUND) if low * cells[0] <= m <= high * cells[0]]
-    choices = [(m, k) for m in around for k in FAST if low * cells[1] <= k <= high * cells[1]]
+    choices = [(m, k) for m in around for k in FAST if m >= worst.fewest and low * cells[1] <= k <= high * cells[1]]
     errors = {choice: worst.of(choice) for choice in choices}
     tried = [(COARSER, 0)] if worst.coarser == COARSER else [(worst.coarser, worst.least), (COARSER, 0)]
     for times, fewest in tried:

@@ -21,7 +21,7 @@ from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 from frbcli.scene.forms.tilted import TILTED
-from frbcli.scene.planning.cell_choice import FEWEST, WorstFilm, fewest_cells, given_cells, worst_film
+from frbcli.scene.planning.cell_choice import WorstFilm, fewest_cells, given_cells, worst_film
 from frbcli.scene.planning.eccentricity import expected_eccentricity
 from frbcli.scene.planning.short_bearing import short_error, slenderness_of
 from frbcli.scene.tilt import misaligned
@@ -201,7 +201,7 @@ def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
 def _cells(case: Case, form: CellForm, worst: WorstFilm, target: float) -> tuple[tuple[int, int], str]:
     """Cells (around, along) of a form, and what comes before their error in their reason."""
     if case.accuracy.mesh is not None:
-        cells, why = given_cells(case.accuracy.mesh, FEWEST)
+        cells, why = given_cells(case.accuracy.mesh, worst.fewest)
         return form.of_whole(cells), f"{why}; "
     allowed = (RING_SHARE if turning_rings(case) else CELL_SHARE) * target
     return fewest_cells(worst, allowed, REACHED * target, form.lengths, form.as_exact), ""

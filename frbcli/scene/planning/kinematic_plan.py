@@ -24,7 +24,7 @@ from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import motion_omega
 from frbcli.scene.gate.tested import tested_case
-from frbcli.scene.planning.cell_choice import FEWEST, given_cells
+from frbcli.scene.planning.cell_choice import given_cells
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
@@ -162,7 +162,7 @@ def _form(case: Case, rectangle: Section | None) -> FilmForm:
 
 def _cells(case: Case, test: str) -> tuple[tuple[int, int], str]:
     if case.accuracy.mesh is not None:
-        return given_cells(case.accuracy.mesh, FEWEST)
+        return given_cells(case.accuracy.mesh)
     if test != ROTATION:
         return MOVING_CELLS, "equal ones around, for the narrowest gap moves"
     fine = case.accuracy.target <= FINE_TARGET

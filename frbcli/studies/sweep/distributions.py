@@ -84,8 +84,8 @@ def samples(
     """`count` points, a power of 2, of keys that scatter.
 
     correlations: between -1 and 1, by pairs of keys, of the normal variables beneath; 0 where none is given. seed: of
-    the scrambling. Raises InputError for a count that is no power of 2, keys that do not scatter, and correlations that
-    contradict each other.
+    the scrambling. Raises InputError for a count that is no power of 2, a seed below 0, keys that do not scatter, and
+    correlations that contradict each other.
     """
     from scipy.special import ndtr, ndtri
     from scipy.stats.qmc import Sobol
@@ -94,6 +94,8 @@ def samples(
     if count < 2 or count > MOST_SAMPLES or count & (count - 1):
         near = min(MOST_SAMPLES, 1 << max(1, count - 1).bit_length())
         raise refused("--samples", str(count), "is not a power of 2, as a Sobol sequence needs.", f"Write {near}.")
+    if seed < 0:
+        raise refused("--seed", str(seed), "is below 0.", "Write a whole number from 0 on.")
     factor = _factor(keys, correlations or {})
     shares = Sobol(len(keys), scramble=True, seed=seed).random(count)
     inner = np.clip(shares, 2.0**-33, 1.0 - 2.0**-33)  # 0 would lie at minus infinity

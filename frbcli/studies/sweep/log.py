@@ -15,11 +15,14 @@ from typing import Any
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
 from frbcli.results.files.kinds import SWEEP_LOG
+from frbcli.results.files.named import Unreadable, text_of
 from frbcli.results.files.write import write
 from frbcli.studies.sweep.points import refused
 from frbcli.studies.sweep.task import UNDECIDED, SweepPoint
 
 Header = Mapping[str, Any]
+
+LARGEST_LOG = 1024**3  # bytes
 
 
 def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
@@ -29,15 +32,14 @@ def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
     is the log of another sweep, or cannot be read or written.
     """
     try:
-        known = path.read_text(encoding="utf-8").split("\n") if path.exists() else []
+        known = text_of(path, LARGEST_LOG).split("\n") if path.exists() else []
         if known and not _same_sweep(_parsed(known[0]), json.loads(json.dumps(header)), case):
             remedy = "Choose another directory with -o, or remove this one."
             raise refused("--output", str(path), "belongs to another sweep, case or version.", remedy)
         done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
-    except (OSError, UnicodeDecodeError) as error:
-        reason = getattr(error, "strerror", None) or error
-        remedy = "Choose another directory with -o."
-        raise refused("--output", str(path), f"cannot be used: {reason}.", remedy) from error
+    except (OSError, Unreadable) as error:
+        told = str(error) if isinstance(error, Unreadable) else f"cannot be used: {error.strerror}."
+        raise refused("--output", str(path), told, "Choose another directory with -o.") from error
     lines = [json.dumps(header), *map(_line, done.values())]
     write(path, SWEEP_LOG, "".join(f"{line}\n" for line in lines))
     return tuple(done.values())

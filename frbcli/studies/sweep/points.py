@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import itertools
+import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
@@ -11,16 +12,18 @@ from pathlib import Path
 import numpy as np
 
 from frbcli.errors import Fault, InputError, input_error
+from frbcli.results.files.named import Unreadable, text_of
 
 Settings = dict[str, str]  # key of the case -> value as text, as `--set` takes it
 
 SOURCE = "sweep"
-MOST_POINTS = 100_000
+MOST_POINTS, MOST_KEYS = 100_000, 1000
+LARGEST_LIST = 64 * 1024**2  # bytes of the file of a list
 OPENING, CLOSING, QUOTES = "([{", ")]}", "\"'"
 LINK = ";"  # between keys of one setting that change together
 MOST_IN_RANGE = 10_000
 NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
-_RANGE = re.compile(rf"({NUMBER})\s*(.*?)\s*\.\.\s*({NUMBER})\s*(.*?)\s*/\s*(\d+)")
+_RANGE = re.compile(rf"({NUMBER})\s*(.*?)\s*\.\.\s*({NUMBER})\s*(.*?)\s*/\s*(\d{{1,9}})")
 
 
 def read_values(text: str) -> tuple[str, ...]:
@@ -36,7 +39,7 @@ def _written_out(value: str) -> tuple[str, ...]:
     low, low_unit, high, high_unit, count = found.groups()
     if low_unit and low_unit != high_unit:
         raise refused("--set", "", f"{value}: has two units.", f"Write {low}..{high} {low_unit} / 6.")
-    if not 2 <= int(count) <= MOST_IN_RANGE:
+    if not 2 <= int(count) <= MOST_IN_RANGE or math.isinf(float(low)) or math.isinf(float(high)):
         problem = f"{value}: is not a range of 2 to {MOST_IN_RANGE} values."
         raise refused("--set", "", problem, f"Write e.g. {low}..{high} {high_unit} / 6.")
     return tuple(f"{number:.10g} {high_unit}".rstrip() for number in np.linspace(float(low), float(high), int(count)))
@@ -108,15 +111,17 @@ def read_list(path: str | Path) -> tuple[Settings, ...]:
     Raises InputError for a file that cannot be read or has a line that does not fit its first one.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8-sig")
+        text = text_of(Path(path), LARGEST_LIST)
         rows = [(line, row) for line, row in enumerate(csv.reader(text.splitlines(), strict=True), 1) if any(row)]
-    except UnicodeDecodeError:
-        raise _list_error(path, None, "is not UTF-8 text.") from None
-    except (OSError, ValueError, csv.Error) as error:
-        raise _list_error(path, None, f"cannot be read: {getattr(error, 'strerror', None) or error}.") from None
+    except Unreadable as error:
+        raise _list_error(path, None, str(error)) from None
+    except csv.Error as error:
+        raise _list_error(path, None, f"cannot be read: {error}.") from None
     if len(rows) < 2:
         raise _list_error(path, None, "holds no points.")
     head_line, head = rows[0][0], [key.strip() for key in rows[0][1]]
+    if len(head) > MOST_KEYS:
+        raise _list_error(path, head_line, f"has {len(head)} columns, more than {MOST_KEYS}.")
     if not all(head) or len(set(head)) < len(head):
         raise _list_error(path, head_line, "does not name every column once.")
     for line, row in rows[1:]:

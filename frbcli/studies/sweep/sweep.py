@@ -24,6 +24,7 @@ from frbcli.errors import InputError
 from frbcli.html import Tabular
 from frbcli.results.files.kinds import TABLES
 from frbcli.results.files.lock import locked
+from frbcli.results.files.mark import MARK
 from frbcli.results.files.write import write_table as write_csv
 from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan
@@ -200,15 +201,21 @@ def _first_here(
     return others, replace(workers, jobs=1) if len(others) * spent < START_s else workers
 
 
-def write_table(found: Sweep, path: str | Path, table_format: str = "csv") -> Path:
-    """Write the table of a sweep as "csv" or "parquet". Raises InputError if that does not work."""
+def write_table(found: Sweep, path: str | Path, table_format: str = "csv", force: bool = False) -> Path:
+    """Write the table of a sweep as "csv" or "parquet"; force: also in place of a file that frb did not write. Raises
+    InputError if that does not work."""
     path = Path(path)
     check_table_format(table_format)
     if table_format == "csv":
-        write_csv(found.to_pandas(), path)
+        write_csv(found.to_pandas(), path, force)
     else:
-        with written(path, TABLES[table_format]) as part:
-            found.to_pandas().to_parquet(part, index=False)
+        import pyarrow as pa
+        from pyarrow import parquet
+
+        rows = pa.Table.from_pandas(found.to_pandas(), preserve_index=False)
+        rows = rows.replace_schema_metadata({**(rows.schema.metadata or {}), "writer": MARK})
+        with written(path, TABLES[table_format], force=force) as part:
+            parquet.write_table(rows, part)
     return path
 
 

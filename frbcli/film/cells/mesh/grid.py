@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from frbcli.film.cells.mesh.around_bores import Cells, around_bores
 from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
 from frbcli.film.cells.mesh.tilted import tilted_weights
-from frbcli.film.gap import AxialGroove, Section, graded_ring, groove_pressure
+from frbcli.film.gap import LEAST, AxialGroove, Section, graded_ring, groove_pressure
 from frbcli.film.grid import Array
 
 FEW = 64  # films whose weights are kept: a film is solved often
@@ -180,11 +180,17 @@ def _to_edge(opening: Opening, around: Array, along: Array, phi: Array, z: Array
 
 
 def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
-    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut."""
+    """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut. Their number
+    around is the given one, or what the pieces between edges need (least_around) if that is more."""
     around, along = cells
     edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
-    ring = graded_ring(around, 0.0, 1.0, np.array(edges))
+    ring = graded_ring(around, 0.0, 1.0, np.array(edges), exact=True)
     return volume_grid(section, ring, np.linspace(0.0, 1.0, along + 1))
+
+
+def least_around(section: Section) -> int:
+    """Cells around that run_grid makes of a section at least: LEAST in each groove and each land."""
+    return 2 * LEAST * len(section.grooves)
 
 
 def axial_weights(z: Array, mirrored: bool) -> Array:

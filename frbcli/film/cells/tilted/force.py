@@ -99,7 +99,7 @@ def tilted_film(
     sections = parts(section, mirrored)
     spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
     edges = np.array([middle + side * half for middle, half in spans for side in (-1.0, 1.0)])
-    ring = graded_ring(around, 0.0, 1.0, edges)
+    ring = graded_ring(around, 0.0, 1.0, edges, exact=True)
     for one, side, centre in sections:
         grid = volume_grid(one, ring, *tilted_cells(along // len(sections)))
         width = side * one.width

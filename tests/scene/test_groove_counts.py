@@ -1,0 +1,119 @@
+"""Axial grooves of any number in any film of a machine: all of its films have equal numbers of cells, whatever edges
+their grooves have, and no more or fewer than the plan says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.case.schema import Case
+from frbcli.cli.main import run as frb
+from frbcli.film.gap import LEAST, graded_ring
+from frbcli.film.kinds.cells import CellFilms
+from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.scene.machine.machine_films import make_films
+from frbcli.scene.planning.plan import make_plan
+
+TURN = 2.0 * np.pi
+COUNTS = range(1, 13)
+DAMPED = "bearing.damper={width='20 mm', diameter='60 mm', clearance='90 um', ends='oil-bath', mass='1 kg', "
+DAMPED += "spring='5e6 N/m'}"
+# Machines with other films beside the one with grooves, and the table whose supply they have
+MACHINES = {
+    "single": ("jeffcott", "bearing", ()),
+    "damper": ("jeffcott", "bearing", (DAMPED,)),
+    "inner": ("floating-ring", "bearing.inner", ()),
+    "outer": ("floating-ring", "bearing.outer", ()),
+    "one of two": ("turbocharger-car", "bearing.turbine.inner", ()),
+    "outer of two": ("turbocharger-car", "bearing.compressor.outer", ()),
+    "cartridge": ("turbocharger-car-cartridge", "bearing.inner", ()),
+    "cartridge outside": ("turbocharger-car-cartridge", "bearing.outer", ()),
+}
+RUN = ("speed.from=20 Hz", "speed.to=22 Hz", "speed.duration=2 ms", "output.step=0.2 ms")
+
+
+def settings(machine: str, count: int, share: float = 0.3) -> tuple[str, tuple[str, ...]]:
+    """A shipped case, and what gives one of its films grooves that take a share of its turn."""
+    source, table, others = MACHINES[machine]
+    angle = 360.0 * share / count
+    return source, (
+        *others, f"{table}.supply={{kind='axial-grooves', count={count}, opening_angle='{angle:.6g} deg', "
+        "position='17 deg', pressure='2 bar'}", "film.cavitation=reynolds",
+    )  # fmt: skip
+
+
+def with_grooves(machine: str, count: int, *more: str, share: float = 0.3) -> Case:
+    source, given = settings(machine, count, share)
+    return load_case(source, (*given, *more))
+
+
+@pytest.mark.parametrize("machine", MACHINES)
+def test_films_have_the_cells_of_their_plan_however_many_grooves(machine: str) -> None:
+    for count in (*COUNTS, 24):
+        for share, more in ((0.3, ()), (0.02, ()), (0.3, ("accuracy.mesh=[4, 12]",))):
+            case = with_grooves(machine, count, *more, share=share)
+            plan = make_plan(case)
+            films = make_films(case, plan)
+            assert isinstance(films, CellFilms | TiltedFilms)
+            assert films.data.cells.shape[2] == films.cells[0] == plan.cells[0]  # type: ignore[index]
+            fewer = plan.form.fewer_cells(case, plan)
+            assert fewer is None or fewer[0] >= 4 * count
+
+
+def test_films_that_tilt_have_the_cells_of_their_plan() -> None:
+    for count in COUNTS:
+        case = with_grooves("one of two", count, "film.tilt=follows")
+        plan = make_plan(case)
+        films = make_films(case, plan)
+        assert isinstance(films, TiltedFilms)
+        assert films.data.cells.shape[2] == plan.cells[0]  # type: ignore[index]
+
+
+def test_a_ring_of_cells_has_its_number_and_all_edges() -> None:
+    chance = np.random.default_rng(5)
+    for _ in range(200):
+        edges = np.cumsum(chance.uniform(0.02, 1.0, 2 * chance.integers(1, 13)))
+        edges *= chance.uniform(0.5, 0.99) * TURN / edges[-1]
+        cells = int(chance.integers(LEAST * len(edges), 160))
+        ring = graded_ring(cells, 0.0, 1.0, edges, exact=True)
+        assert len(ring) == cells + 1
+        assert np.all(np.diff(ring) > 0.0)
+        assert ring[-1] - ring[0] == pytest.approx(TURN, rel=1e-12)
+        assert np.abs(np.remainder(ring[:, None] - edges + 1.0, TURN) - 1.0).min(axis=0).max() < 1e-9
+        if cells >= 3 * LEAST * len(edges):  # no cell is much wider than an equal one: each share is met to one cell
+            assert np.diff(ring).max() < 2.0 * TURN / cells
+
+
+def test_round_off_does_not_choose_which_of_equal_lands_has_a_cell_more() -> None:
+    edges = np.arange(5) * TURN / 5
+    edges = np.sort(np.concatenate([edges, edges + 0.3]))
+    whole = [np.diff(graded_ring(48, 0.0, 1.0, edges + 1e-15 * k, exact=True)) for k in range(-9, 10)]
+    assert all(np.allclose(one, whole[0], atol=1e-12) for one in whole)
+
+
+@pytest.mark.parametrize("machine", ["inner", "cartridge"])
+def test_grooves_of_an_odd_number_are_checked(machine: str, capsys: pytest.CaptureFixture[str]) -> None:
+    source, given = settings(machine, 7)
+    assert frb(["check", source, *(word for each in given for word in ("--set", each))]) == 0, capsys.readouterr().err
+
+
+@pytest.mark.nightly
+@pytest.mark.parametrize("count", COUNTS)
+@pytest.mark.parametrize("machine", MACHINES)
+def test_every_number_of_grooves_in_every_command(
+    machine: str, count: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    source, given = settings(machine, count)
+    words = [word for each in given for word in ("--set", each)]
+    run = [word for each in RUN for word in ("--set", each)]
+    for command in (["check", source], ["bearing", source, "--no-picture", "--speed", "30 Hz"],
+                    ["stability", source, "--no-picture", "--speed", "30 Hz"],
+                    ["runup", source, *run, "--no-picture", "-o", "run.h5"]):  # fmt: skip
+        code = frb([*command, *words])
+        said = capsys.readouterr()
+        assert code in (0, 3), (command, said.err)
+        assert "Traceback" not in said.err
