@@ -16,6 +16,7 @@ from frbcli.case.quantities import (
     Angle,
     Count,
     Damping,
+    DampingTime,
     Density,
     Fraction,
     Identifier,
@@ -59,7 +60,10 @@ class JeffcottRotor(Model):
     shaft_stiffness: Stiffness = Field(description="stiffness between disk and journals")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius, at the disk")
     external_damping: Damping = Field(default=0.0, description="damping of the disk against the ground")
-    shaft_damping: Damping = Field(default=0.0, description="damping between disk and journals")
+    shaft_damping: Damping = Field(default=0.0, description="damping between disk and journals that does not turn")
+    internal_damping: Damping = Field(
+        default=0.0, description="damping between disk and journals that turns with the shaft"
+    )
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
 
@@ -76,7 +80,10 @@ class TurbochargerRotor(Model):
         default=6, description="modes kept in each plane, of the free rotor: translation, tilt, then bending"
     )
     cutoff: Speed | None = Field(default=None, description="in place of `modes`: keep those up to this frequency")
-    modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode")
+    modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode; does not turn")
+    internal_damping: DampingTime = Field(
+        default=0.0, description="damping of the shaft over its stiffness; turns with the shaft"
+    )
     external_damping: Damping = Field(default=0.0, description="damping of each disk against the ground")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
@@ -94,6 +101,9 @@ class ShaftSection(Model):
     density: Density = Field(default=7850.0, description="of the material")
     youngs_modulus: Modulus = Field(default=210e9, description="of the material; steel")
     poisson_ratio: Ratio = Field(default=0.3, description="of the material, for its shear")
+    internal_damping: DampingTime | None = Field(
+        default=None, description="of the section over its stiffness, in place of that of the rotor; turns with it"
+    )
 
 
 class Disk(Model):

@@ -22,6 +22,7 @@ Complex = NDArray[np.complex128]
 
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 HALVINGS = 30  # of an interval with several Hopf points
+UNDAMPED = -1e-300  # 1/s, of a whirl that does not grow yet and has no damping: its zero is where growth begins
 JUMP = 1e-2  # growth over that at the ends of an interval above which a whirl has turned into a drift
 
 
@@ -121,7 +122,7 @@ def located(
     def growth(value: float) -> float:
         if value not in known:
             known[value] = at(value)
-        return known[value].growth_of(number)
+        return known[value].growth_of(number) or UNDAMPED
 
     ends, tolerance = [low.value, high.value], close * high.value
     if guess is not None and low.value < guess < high.value:

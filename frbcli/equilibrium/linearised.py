@@ -6,6 +6,7 @@ them where a ring sticks. A ring with a pin leans on it, so that small motions s
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -20,6 +21,7 @@ from frbcli.rotor.linear import LinearRotor, with_precession
 from frbcli.scene.machine.system import System
 
 Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
 
 
 def rotor_at_rest(
@@ -98,6 +100,69 @@ def state_matrix(rotor: LinearRotor, omega: float, stiffness: Array, damping: Ar
     whole = first_order(*linearised(rotor, omega, stiffness, damping))
     kept = np.delete(np.arange(len(whole)), rotor.turning)
     return whole[np.ix_(kept, kept)]
+
+
+def eigenpairs(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Complex, Complex]:
+    """(N,) eigenvalues in 1/s of a machine as `linearised`, and the motions (n, N) of all its degrees of freedom. The
+    angles of rings on which nothing depends are no states of it."""
+    values, vectors = np.linalg.eig(state_matrix(rotor, omega, stiffness, damping))
+    motions = vectors[-rotor.size :].astype(complex)  # velocities, of which each degree of freedom has one
+    matrices = linearised(rotor, omega, stiffness, damping)
+    found = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
+    return found, motions
+
+
+def _sensitivity(vectors: Complex, mass: Array) -> Array:
+    """(N,) by how much eigenvalues move by a small error of their motions: 0 of normal motions, whose balance of work
+    is left by it to first order, and large where two are about to become one. vectors: (N, N) states, the last n of
+    which are velocities."""
+    n = len(mass)
+    try:
+        left = np.linalg.solve(mass, np.linalg.inv(vectors)[:, -n:].T)
+    except np.linalg.LinAlgError:
+        return np.full(len(vectors), math.inf)
+
+    def size(motions: Complex) -> Array:
+        return np.asarray(np.sqrt(np.abs(np.einsum("in,ij,jn->n", motions.conj(), mass, motions))))
+
+    condition = 2.0 * size(vectors[-n:]) * size(left)  # 1 of a normal motion
+    return np.asarray(np.sqrt(np.maximum(condition**2 - 1.0, 0.0)))
+
+
+def _grown_by_work(
+    values: Complex, motions: Complex, matrices: tuple[Array, Array, Array], sensitivity: Array
+) -> Complex:
+    """Eigenvalues (N,) in 1/s of mass, damping and stiffness (n, n), with the growth that the work of their motions
+    (n, N) has, 0 where it is round-off.
+
+    With its motion x an eigenvalue s solves m s^2 + (d + i g) s + k + i c = 0 for m = x^H M x, d + i g = x^H D x and
+    k + i c = x^H K x. The imaginary part is the work in a period: for s = a + i w it gives the growth
+
+        a = -(w d + c) / (2 w m + g),
+
+    exactly 0 of an undamped motion, where the real part that a solver finds is round-off of the largest eigenvalue. A
+    motion without stiffness and damping, of a free body, has a double eigenvalue 0, of which a solver finds the root of
+    its round-off."""
+    found, (mass, damping, stiffness) = values.copy(), matrices
+    size, noise = float(np.max(np.abs(values), initial=0.0)), len(values) * float(np.finfo(float).eps)
+
+    def work(matrix: Array) -> tuple[Complex, Array]:
+        """x^H A x of all motions, and its round-off."""
+        taken = np.einsum("in,ij,jn->n", motions.conj(), matrix, motions)
+        return taken, noise * np.einsum("in,ij,jn->n", *(np.abs(each) for each in (motions, matrix, motions)))
+
+    (m, _), (d, off_d), (k, off_k) = map(work, (mass, damping, stiffness))
+    frequency, slow = values.imag, math.sqrt(noise) * size
+    inertia = 2.0 * frequency * m.real + d.imag
+    doubtful = (np.abs(values.real) <= slow) & (np.abs(inertia) > np.abs(frequency) * m.real) & (frequency != 0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        growth = -(frequency * d.real + k.imag) / inertia
+        least = (np.abs(frequency) * off_d + off_k) / np.abs(inertia)
+    none = (np.abs(growth) <= least) | ((growth > 0.0) & (growth <= noise * size * sensitivity))
+    found.real[doubtful] = np.where(none, 0.0, growth)[doubtful]
+    free = (np.abs(k) <= noise * size**2 * m.real) & (np.abs(d) <= noise * size * m.real + off_d)
+    found[(np.abs(values) <= slow) & free | (np.abs(values) <= noise * size)] = 0.0
+    return found
 
 
 def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:

@@ -154,7 +154,7 @@ MODES = (
     Column("frequency", "Hz", "frequency of a mode", lambda mode: mode.value.imag / (2 * math.pi),
            shown=(Shown("mode Hz", ".1f", table=STABILITY),)),
     Column("damping_ratio", "", "share of the critical damping, below 0 of a mode that grows",
-           lambda mode: -mode.value.real / abs(mode.value), shown=(Shown("damping", ".4f", table=STABILITY),),
+           lambda mode: 0.0 - mode.value.real / abs(mode.value), shown=(Shown("damping", ".4f", table=STABILITY),),
            key="damping"),
     Column("growth", "1/s", "real part of the eigenvalue", attrgetter("value.real"),
            shown=(Shown("growth 1/s", ".1f", table=STABILITY),)),

@@ -12,7 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.hopf import oscillating
-from frbcli.equilibrium.linearised import state_matrix
+from frbcli.equilibrium.linearised import eigenpairs
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular
@@ -54,12 +54,12 @@ class DampedMode:
     @property
     def damping_ratio(self) -> float:
         """-Re / |.|, negative where the mode grows."""
-        return -self.eigenvalue.real / abs(self.eigenvalue)
+        return 0.0 - self.eigenvalue.real / abs(self.eigenvalue)
 
     @property
     def logarithmic_decrement(self) -> float:
         """Logarithm of the ratio of two amplitudes a period apart."""
-        return -2.0 * math.pi * self.eigenvalue.real / self.eigenvalue.imag
+        return 0.0 - 2.0 * math.pi * self.eigenvalue.real / self.eigenvalue.imag
 
 
 @dataclass(frozen=True, repr=False)
@@ -145,9 +145,8 @@ def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[comp
     """Eigenvalues with positive imaginary part in 1/s, and displacements (n,), as eigenvalues of stability.py."""
     if machine.dynamic:
         return [(value, vector) for value, vector in machine.modes if oscillating(np.array([value]))[0]]
-    n, (stiffness, damping) = rotor.size, coefficients_of(machine.films)
-    values, vectors = np.linalg.eig(state_matrix(rotor, machine.omega, stiffness, damping))
-    return [(complex(values[i]), vectors[:n, i]) for i in np.flatnonzero(oscillating(values))]
+    values, motions = eigenpairs(rotor, machine.omega, *coefficients_of(machine.films))
+    return [(complex(values[i]), motions[:, i]) for i in np.flatnonzero(oscillating(values))]
 
 
 def _direction(motion: Complex) -> str:

@@ -13,7 +13,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.coefficients import LEAST, FilmsAtRest, RestingFilm, stacked
 from frbcli.equilibrium.dynamic_films import DynamicFilm, place_errors
-from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
+from frbcli.equilibrium.linearised import eigenpairs, rotor_at_rest
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
@@ -133,7 +133,7 @@ def eigenvalues(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arr
 
     Ascending in |imaginary part|, then in the real part, of a pair the one with positive imaginary part first.
     """
-    return _ordered(np.linalg.eigvals(state_matrix(rotor, omega, stiffness, damping)).astype(complex))
+    return _ordered(eigenpairs(rotor, omega, stiffness, damping)[0])
 
 
 def _ordered(values: Complex) -> Complex:

@@ -19,6 +19,7 @@ from frbcli.scene.remedies import advised
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
+UNDAMPED = "no motion grows, and one that is undamped does not decay either"
 AHEAD = 1e-3  # of the speed, for the derivative of the eigenvalue
 # Eigenvalues on films that keep oil scatter from speed to speed, as fronts of the oil cross cells. There a threshold is
 # sought as closely as NEAR, relative to its speed, and is the zero of the line through FITTED ones within AROUND of it.
@@ -53,7 +54,9 @@ def find_threshold(
     if len(resting) == 1:
         return None, _one_speed(slowest, len(sweep))
     above = deciding(resting)[-1]
-    if resting[above].growth <= 0.0:
+    if resting[above].growth == 0.0:
+        return None, f"No threshold up to {fastest.speed_Hz:.4g} Hz: {UNDAMPED}."
+    if resting[above].growth < 0.0:
         return None, f"{STABLE}: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
     if above == 0:
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
@@ -86,7 +89,8 @@ def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float
 
 def _one_speed(point: StabilityPoint, tried: int) -> str:
     """Why a single speed has no threshold."""
-    speed, found = f"{point.speed_Hz:.4g} Hz", "a motion grows" if point.growth > 0.0 else "every motion decays"
+    speed = f"{point.speed_Hz:.4g} Hz"
+    found = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
     if tried > 1:
         return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
     return (

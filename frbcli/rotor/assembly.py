@@ -7,7 +7,7 @@ uses the assembled machine changes.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
 
@@ -75,12 +75,22 @@ def assembled(
         multiplicity=np.array([film.count for film in films], dtype=np.float64),
         points=tuple((name, place[: len(PLANE)]) for name, place in nodes.items()),
     )
-    machine = machine.with_parts([part.seen_by(relative(link), link.count) for link, part in parts])
+    own = [part.seen_by(relative(link), link.count) for link, part in parts]
+    machine = machine.with_parts([*own, *_internal_dampings(bodies, size)])
     constant = (nodes[each.node][: len(PLANE)].T @ np.array(each.force) for each in forces)
     if all(body.inertia is not None for body in bodies):
         nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
     varying = tuple(load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
     return replace(machine, static_load=sum(constant, machine.static_load), loads=varying)
+
+
+def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart]:
+    """The dampings of bodies that turn with them, on all degrees of freedom of a machine with n of them."""
+    first = 0
+    for body in bodies:
+        if body.internal is not None:
+            yield LinearPart.turning(body.internal).seen_by(np.eye(body.size, size, first))
+        first += body.size
 
 
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:

@@ -27,7 +27,8 @@ ELEMENTS = 80  # of a shaft, at least
 
 @dataclass(frozen=True)
 class BeamSection:
-    """A cylindrical section of a shaft: lengths in m, density in kg/m^3, youngs_modulus in Pa."""
+    """A cylindrical section of a shaft: lengths in m, density in kg/m^3, youngs_modulus in Pa; internal_damping in s,
+    over its stiffness."""
 
     length: float
     diameter: float
@@ -35,6 +36,7 @@ class BeamSection:
     density: float
     youngs_modulus: float
     poisson_ratio: float
+    internal_damping: float = 0.0
 
     @property
     def area(self) -> float:
@@ -64,13 +66,15 @@ class Plane:
     """A free rotor in one plane with the degrees of freedom v_1, psi_1, v_2, psi_2, ... of its k nodes.
 
     positions: (k,) m along the shaft, ascending. mass, stiffness, polar: (2 k, 2 k), sparse; polar is the inertia about
-    the axis of rotation that the slopes carry along: M v'' - i Omega G v' + K v = f for v = x + i y.
+    the axis of rotation that the slopes carry along, internal the damping that turns with the shaft:
+    M v'' - i Omega G v' + C (v' - i Omega v) + K v = f for v = x + i y.
     """
 
     positions: Array
     mass: csc_array
     stiffness: csc_array
     polar: csc_array
+    internal: csc_array
 
     def node(self, position: float) -> int:
         """Index of the node at a position in m. Raises ValueError if there is none."""
@@ -140,7 +144,8 @@ def beam(sections: Sequence[BeamSection], stations: Sequence[float], elements: i
         np.array([owner.density * owner.area for owner in owners]),
         np.array([owner.density * owner.second_moment for owner in owners]),
     )
-    return Plane(positions, *(_assembled(matrices) for matrices in local))
+    times = np.array([owner.internal_damping for owner in owners])
+    return Plane(positions, *map(_assembled, (*local, times[:, None, None] * local[1])))
 
 
 def _nodes(places: Array, length: float, elements: int) -> Array:

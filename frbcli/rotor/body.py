@@ -22,7 +22,8 @@ class Body:
     (n,) kg m, see LinearRotor. nodes: names and (c, n) maps of the places at which elements act and which a run
     records, with rows for the first c of the COORDINATES: the two of the PLANE, or all four of a node that tilts;
     inertia: (2, n) kg against accelerations of the ground in x and y, the mass matrix times a displacement of the whole
-    body, None where that is not known.
+    body, None where that is not known. internal: (n / 2, n / 2) N s/m, damping of each plane that turns with the rotor,
+    of a body whose degrees of freedom are those of x and then those of y; None without any.
     """
 
     mass: Array
@@ -34,6 +35,7 @@ class Body:
     unbalance_sin: Array
     nodes: tuple[tuple[str, Array], ...]
     inertia: Array | None = None
+    internal: Array | None = None
 
     @property
     def size(self) -> int:
@@ -103,11 +105,12 @@ def jeffcott_rotor(
     external_damping: float,
     shaft_damping: float,
     gravity: float,
+    internal_damping: float = 0.0,
 ) -> Body:
     """The symmetric Jeffcott rotor (2.4): a disk on a massless flexible shaft, two equal journals moving as one.
 
     Masses m_D, m_J in kg, stiffness c in N/m, unbalance U of the disk in kg m, dampings d_o, d_i in N s/m, gravity in
-    m/s^2. q = [x_J, x_D, y_J, y_D]."""
+    m/s^2. internal_damping, N s/m, turns with the shaft, and shaft_damping does not. q = [x_J, x_D, y_J, y_D]."""
     coupling = np.array([[1.0, -1.0], [-1.0, 1.0]])
     masses = np.array([journal_mass, mass])
     return Body(
@@ -120,6 +123,7 @@ def jeffcott_rotor(
         unbalance_sin=np.array([0.0, 0.0, 0.0, unbalance]),
         nodes=(("journal", planar(4, 0, 2)), ("disk", planar(4, 1, 3))),
         inertia=np.kron(np.eye(2), masses),
+        internal=internal_damping * coupling if internal_damping else None,
     )
 
 

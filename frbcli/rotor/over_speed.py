@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+FASTEST = 1e6  # rad/s, above the speed of any rotor
+
 
 @dataclass(frozen=True)
 class LinearPart:
@@ -31,6 +33,17 @@ class LinearPart:
         """Constant coefficients (c, c); those that are None are 0."""
         given = (np.zeros_like(stiffness) if each is None else each for each in (damping, mass))
         return cls(np.zeros(1), stiffness[None], *(each[None] for each in given))
+
+    @classmethod
+    def turning(cls, damping: Array) -> Self:
+        """A damping C (n, n) of one plane that turns with the rotor: for v = x + i y the force -C (v' - i Omega v), on
+        the x of n degrees of freedom and then their y.
+
+        The term with Omega is a stiffness that couples the planes and feeds forward whirls slower than the rotor. It
+        is a line through zero, which ends at FASTEST."""
+        both, across = np.kron(np.eye(2), damping), np.kron([[0.0, FASTEST], [-FASTEST, 0.0]], damping)
+        stiffness, rates = np.stack([-across, across]), np.stack([both, both])
+        return cls(FASTEST * np.array([-1.0, 1.0]), stiffness, rates, np.zeros_like(rates))
 
     @property
     def constant(self) -> bool:

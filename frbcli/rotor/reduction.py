@@ -38,8 +38,8 @@ class FreeModes:
 
     positions: (k,) m; frequencies: (n,) rad/s, ascending, the first two zero; shapes: (k, n) displacements in
     1/sqrt(kg): the first a translation, the second a tilt about the centre of mass; slopes: (k, n) in 1/(m sqrt(kg));
-    polar: (n, n) inertia about the axis of rotation in these modes. weight: (n,) sqrt(kg), the modes' share of a
-    uniform acceleration.
+    polar: (n, n) inertia about the axis of rotation in these modes, internal: (n, n) 1/s, damping that turns with the
+    shaft. weight: (n,) sqrt(kg), the modes' share of a uniform acceleration.
     """
 
     positions: Array
@@ -47,6 +47,7 @@ class FreeModes:
     shapes: Array
     slopes: Array
     polar: Array
+    internal: Array
     weight: Array
 
     def at(self, position: float) -> Array:
@@ -68,6 +69,7 @@ class FreeModes:
             self.shapes[:, :count],
             self.slopes[:, :count],
             self.polar[:count, :count],
+            self.internal[:count, :count],
             self.weight[:count],
         )
 
@@ -122,12 +124,15 @@ def free_modes(plane: Plane) -> FreeModes:
     # A solver finds the motions of the rigid body mixed and to round-off only; they are known.
     frequencies[:RIGID], vectors[:, :RIGID] = 0.0, _rigid_motions(plane)
     uniform = _uniform(plane)
+    internal = _symmetric(vectors.T @ (plane.internal @ vectors))
+    internal[:RIGID] = internal[:, :RIGID] = 0.0  # a motion that does not bend is not damped
     return FreeModes(
         plane.positions,
         frequencies,
         np.asarray(vectors[::2], dtype=np.float64),
         np.asarray(vectors[1::2], dtype=np.float64),
-        np.asarray(vectors.T @ (plane.polar @ vectors), dtype=np.float64),
+        _symmetric(vectors.T @ (plane.polar @ vectors)),
+        internal,
         np.asarray(vectors.T @ (plane.mass @ uniform), dtype=np.float64),
     )
 
@@ -175,6 +180,11 @@ def reduction_error(modes: FreeModes, count: int, springs: Array, stiffness: Arr
         np.concatenate([a[:n] for (a, _), n in zip(pairs, shortest, strict=True)]),
         np.concatenate([b[:n] for (_, b), n in zip(pairs, shortest, strict=True)]),
     )
+
+
+def _symmetric(matrix: Array) -> Array:
+    """A matrix that is symmetric but for round-off, which would make work."""
+    return np.asarray(0.5 * (matrix + matrix.T), dtype=np.float64)
 
 
 def _uniform(plane: Plane) -> Array:

@@ -95,6 +95,7 @@ def turbocharger_rotor(
         unbalance_sin=unbalance_sin.ravel(),
         nodes=tuple(nodes),
         inertia=_of(both, modes.weight[None, :]),
+        internal=modes.internal if modes.internal.any() else None,
     )
 
 

@@ -142,7 +142,7 @@ def _refuse_others(element: RossElement, taken: Sequence[str]) -> None:
 
 
 def _cylinders_of(outer: float, growth: float, inner_growth: float) -> int:
-    """How many cylinders stand for a cone; outer: diameter at its left end, growth: of the outer and inner diameters."""
+    """How many cylinders stand for a cone; outer: diameter at its left end, growth: of the outer and inner ones."""
     least = min(outer, outer + growth)
     change = max(abs(growth), abs(inner_growth)) / least
     return min(max(1, math.ceil(change / STEP)), MOST_CYLINDERS)

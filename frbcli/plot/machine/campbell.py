@@ -52,8 +52,8 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     for label, order, dashes in (("rotor speed", 1.0, (0, (5, 3))), ("half the rotor speed", 0.5, (0, (1, 2)))):
         axes.plot(ends, order * ends, color=GREY, linestyle=dashes, linewidth=1.1, label=label, zorder=1.5)
     axes.scatter(
-        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, label="decays",
-        zorder=2.0,
+        speeds[~grows], frequencies[~grows], DOT, facecolors="white", edgecolors=BLUE, linewidths=0.9, zorder=2.0,
+        label="decays" if (values.real[~grows] < 0.0).all() else "does not grow",
     )  # fmt: skip
     axes.scatter(speeds[grows], frequencies[grows], DOT, color=VERMILION, label="grows", zorder=3)
     for which, colour in ((~grows, BLUE), (grows, VERMILION)):

@@ -85,7 +85,8 @@ def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
     """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve, but for an
     inverse that is renewed in every stage."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
-    follows = changes_with_speed(case) or (not case.films and shaft_of(case).gyroscopic)
+    shaft = shaft_of(case)
+    follows = changes_with_speed(case) or shaft.internally_damped or (not case.films and shaft.gyroscopic)
     renewed = stages * INVERSE_ns * rotor_size(case) ** 3 if follows else 0.0  # an inverse for each speed
     inverse, products = n**3 - SMALL_ROTOR**3, n**2 - SMALL_ROTOR**2
     journals = max(0, m**3 - SMALL_ROTOR**3)

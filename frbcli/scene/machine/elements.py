@@ -166,8 +166,12 @@ def speed_dependent(case: Case, what: str) -> list[Fault]:
     """The faults of elements whose coefficients depend on the speed, where `what` needs constant ones."""
     problem = f"depends on the speed, and {what}."
     remedy = "Give constant stiffness, damping and mass, those at the speed of interest."
-    return [
+    found = [
         Fault(f"{element.key}.over_speed", element.given.name, None, problem, remedy)
         for element in GivenCoefficients.of(case)
         if not element.linear.constant
     ]
+    if shaft_of(case).internally_damped:
+        turns = f"turns with the shaft, so that its force depends on the speed, and {what}."
+        found.append(Fault("rotor.internal_damping", "", None, turns, "Write 0, or take a run-up."))
+    return found

@@ -195,7 +195,11 @@ def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
 def _decide_scene(case: Case, decide: Decide) -> None:
     """Bearings, films and gap."""
     places = film_places(case)
-    decide("bearings", *shaft_of(case).bearings_modelled)
+    shaft = shaft_of(case)
+    decide("bearings", *shaft.bearings_modelled)
+    for choice, size, unit, acts in shaft.dampings:
+        if size > 0.0:
+            decide(choice, display(size, unit), acts)
     for decided in element_decisions(case):
         decide(*decided)
     if rings(case):

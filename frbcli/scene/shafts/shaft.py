@@ -86,6 +86,16 @@ class Shaft(ABC):
         return self.mass
 
     @property
+    def internally_damped(self) -> bool:
+        """Whether it has damping that turns with it."""
+        return False
+
+    @property
+    @abstractmethod
+    def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
+        """Its dampings for a plan, each with its value, the unit of that and what it acts on; 0 where it has none."""
+
+    @property
     def compliance(self) -> float:
         """Mass over stiffness in rigid bearings, the inverse square of the natural frequency in rad/s; 0 of a shaft
         that does not bend or whose modes are not known before they are computed."""
@@ -105,6 +115,12 @@ class Shaft(ABC):
         kind = self.case.rotor.kind
         fault = Fault("rotor.kind", kind, None, "has no shaft of sections.", 'Take kind = "turbocharger".')
         raise InputError(self.case.name or "case", (fault,))
+
+
+STANDS, TURNS = (
+    "does not turn with the shaft, so that it damps every whirl",
+    "turns with the shaft: it drives forward whirls that are slower than the rotor",
+)
 
 
 def symmetric_stations(positions: Array, maps: Array) -> Stations:

@@ -11,7 +11,7 @@ import numpy as np
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.shafts.shaft import Shaft, Stations, symmetric_stations
+from frbcli.scene.shafts.shaft import STANDS, TURNS, Shaft, Stations, symmetric_stations
 
 BENT = 21  # places along a shaft that bends
 
@@ -40,6 +40,10 @@ class RigidShaft(Shaft):
     @property
     def eccentricity(self) -> float:
         return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
+        return (("external damping", self.rotor.external_damping, "N*s/m", "of the rotor against the ground"),)
 
     def stations(self, machine: LinearRotor) -> Stations:
         journal = dict(machine.points)["journal"]
@@ -75,6 +79,19 @@ class JeffcottShaft(Shaft):
     @property
     def eccentricity(self) -> float:
         return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
+        rotor = self.rotor
+        return (
+            ("external damping", rotor.external_damping, "N*s/m", "of the disk against the ground"),
+            ("shaft damping", rotor.shaft_damping, "N*s/m", f"between disk and journals; {STANDS}"),
+            ("internal damping", rotor.internal_damping, "N*s/m", f"between disk and journals; {TURNS}"),
+        )
+
+    @property
+    def internally_damped(self) -> bool:
+        return self.rotor.internal_damping > 0.0
 
     @property
     def compliance(self) -> float:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
 
-from frbcli.case.rotor import TurbochargerRotor
+from frbcli.case.rotor import ShaftSection, TurbochargerRotor
 from frbcli.elements.collar.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
@@ -17,7 +17,7 @@ from frbcli.rotor.body import Body
 from frbcli.rotor.linear import Array, LinearRotor
 from frbcli.rotor.reduction import MOST, RIGID, FreeModes, ReductionError, free_modes, reduction_error
 from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
-from frbcli.scene.shafts.shaft import Shaft, Stations
+from frbcli.scene.shafts.shaft import STANDS, TURNS, Shaft, Stations
 
 FREQUENCIES = 3  # bending modes that are shown
 
@@ -70,7 +70,8 @@ class TurbochargerShaft(Shaft):
 
     def undamped_body(self) -> Body:
         free = self.free()
-        return turbocharger_rotor(free.modes, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
+        undamped = replace(free.modes, internal=np.zeros_like(free.modes.internal))
+        return turbocharger_rotor(undamped, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
 
     def free(self) -> FreeShaft:
         """See Shaft. Raises InputError where masses and stiffnesses differ by too many powers of ten for its modes."""
@@ -79,7 +80,7 @@ class TurbochargerShaft(Shaft):
     @cached_property
     def _free(self) -> FreeShaft:
         case = self.case
-        sections = [BeamSection(**dict(part)) for part in case.shaft]
+        sections = [BeamSection(**dict(part) | {"internal_damping": self._internal(part)}) for part in case.shaft]
         bearings = (*case.bearings, *case.elements)
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
         acting = case.thrust_bearings if case.axial is not None else ()
@@ -94,6 +95,25 @@ class TurbochargerShaft(Shaft):
         cutoff = self.rotor.cutoff
         count = self.rotor.modes if cutoff is None else modes.below(2 * math.pi * cutoff)
         return FreeShaft(modes, min(max(count, RIGID), len(modes.frequencies)), journals, self._wheels, collars)
+
+    def _internal(self, part: ShaftSection) -> float:
+        """The internal damping of a section over its stiffness, s."""
+        return self.rotor.internal_damping if part.internal_damping is None else part.internal_damping
+
+    @property
+    def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
+        """See Shaft; of sections with internal dampings of their own the largest one."""
+        rotor, internal = self.rotor, [self._internal(part) for part in self.case.shaft]
+        largest = "" if len(set(internal)) == 1 else "; largest of the sections"
+        return (
+            ("external damping", rotor.external_damping, "N*s/m", "of each disk against the ground"),
+            ("modal damping", rotor.modal_damping, "", f"ratio of every elastic mode; {STANDS}"),
+            ("internal damping", max(internal), "s", f"of the shaft over its stiffness{largest}; {TURNS}"),
+        )
+
+    @property
+    def internally_damped(self) -> bool:
+        return any(map(self._internal, self.case.shaft))
 
     @property
     def _wheels(self) -> tuple[Wheel, ...]:
