@@ -38,6 +38,7 @@ SPAN = 3.0  # factor by which a number may move either way, if no bounds are giv
 STEP = 0.01  # relative change of a number for its derivatives: above what steps and onsets scatter by
 FIRST_SHARE = 0.05  # of the largest of a ridge: its scatter for the first way
 LEAST_SHARE = 1e-3  # of the same: no ridge is known better
+EDGE = 2  # speeds at both ends of the ridges
 BESIDE = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
 SECOND = 6.0  # variance of a second difference of independent numbers over theirs
 SETTLED = 1e-3  # relative change of the numbers that ends a fit
@@ -243,15 +244,26 @@ def _compared(measured: Ridges) -> tuple[Truths, Truths]:
 
 def _differences(found: Ridges, measured: Ridges) -> list[Array]:
     """Computed less measured, by groups: synchronous amplitudes in m, frequencies in Hz and amplitudes in m of the
-    whirl, the onset in Hz. A ridge that the computed run does not have there counts as nothing."""
+    whirl, the onset in Hz. A ridge that the computed run does not have there counts as nothing, except at the EDGE
+    outermost speeds, which its windows may not reach: what is not known there is no difference."""
     still, whirls = _compared(measured)
     pairs = [
-        (found.synchronous[still].ravel(), measured.synchronous[still].ravel()),
-        (found.whirl_Hz[whirls], measured.whirl_Hz[whirls]),
-        (found.whirl[whirls], measured.whirl[whirls]),
+        (_reached(found.synchronous, measured.synchronous)[still].ravel(), measured.synchronous[still].ravel()),
+        (_reached(found.whirl_Hz, measured.whirl_Hz)[whirls], measured.whirl_Hz[whirls]),
+        (_reached(found.whirl, measured.whirl)[whirls], measured.whirl[whirls]),
         (_onset(found), _onset(measured)) if np.isfinite(measured.onset_Hz) else (np.zeros(0), np.zeros(0)),
     ]
     return [np.nan_to_num(mine) - other for mine, other in pairs]
+
+
+def _reached(found: Array, measured: Array) -> Array:
+    """A computed ridge (n, ...) over the speeds, at the outermost ones that its windows do not reach the measured one."""
+    filled, places = found.copy(), np.arange(len(found))
+    known = np.flatnonzero(np.isfinite(found.reshape(len(found), -1)).all(axis=1))
+    if len(known) and known[0] <= EDGE and known[-1] >= len(found) - 1 - EDGE:
+        outside = (places < known[0]) | (places > known[-1])
+        filled[outside] = measured[outside]
+    return filled
 
 
 def _onset(found: Ridges) -> Array:

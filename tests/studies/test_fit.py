@@ -238,3 +238,16 @@ def test_a_quantity_of_both_directions_is_one_number(key: str, words: str) -> No
 def test_a_measurement_at_a_constant_speed_is_refused() -> None:
     with pytest.raises(InputError, match="1 speeds in common"):
         fit(frbcli.load_case("jeffcott"), make_run(Rotor(speeds_Hz=(100.0, 100.0))), ["bearing.clearance"])
+
+
+def test_a_speed_that_the_windows_of_a_run_do_not_reach_is_no_difference(measurement: Run) -> None:
+    """At the last speed a run without a ridge counted as wrong by the whole frequency: 71 % stated, .8 % true."""
+    from frbcli.studies.fit import _differences
+
+    measured = ridges(measurement, ridge_speeds(measurement), CLEARANCE)
+    short = replace(measured, whirl_Hz=measured.whirl_Hz.copy(), whirl=measured.whirl.copy())
+    short.whirl_Hz[-1] = short.whirl[-1] = np.nan
+    assert measured.whirls[-1]
+    assert max(float(np.abs(group).max()) for group in _differences(short, measured)) == 0.0
+    short.whirl_Hz[-6:] = np.nan  # a run that ends early
+    assert np.abs(_differences(short, measured)[1]).max() == pytest.approx(np.nanmax(measured.whirl_Hz[-6:]))
