@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import shlex
 import tomllib
 from pathlib import Path
 from typing import Any
@@ -14,7 +15,7 @@ from paths import ROOT
 
 import frbcli
 from frbcli.case.reading.hard import hard_cases
-from frbcli.cli.main import COMMANDS
+from frbcli.cli.main import COMMANDS, run
 
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
 
@@ -67,13 +68,42 @@ def test_files_and_functions_that_are_named_exist(page: Path) -> None:
         assert re.search(rf"^(?:def|class) {function}\b|^{function}\b", (ROOT / name).read_text("utf-8"), re.MULTILINE)
 
 
+def test_readme_shows_what_its_commands_print(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Every line of a block that begins with a command, and the numbers of its sentences."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```\n\$ frb (.*?)\n(.*?)```", text, re.DOTALL)
+    assert blocks
+    printed = ""
+    for words, shown in blocks:
+        assert run([*shlex.split(words), "--no-picture"]) == 0
+        printed = capsys.readouterr().out
+        lines = [line.rstrip() for line in printed.splitlines()]
+        assert [line for line in shown.splitlines() if line.rstrip() not in lines] == []
+    for number in ("143 Hz", "204 Hz", "0.47 times", "2.7e-4 of"):
+        assert number in text
+    events = {row.split()[0]: row.split() for row in printed.splitlines() if "journal" in row or "disk" in row}
+    assert round(float(events["critical-speed"][3])) == 143
+    assert round(float(events["onset"][3])) == 204
+    assert f"{float(events['onset'][5]):.2f}" == "0.47"
+    assert re.search(r"error of the eccentricity +2\.7e-04", printed)
+
+
+def test_readme_is_short() -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert len(text.splitlines()) <= 100
+    assert len(text.split()) <= 900
+
+
 def test_readme_tours_every_command() -> None:
     text = (ROOT / "README.md").read_text(encoding="utf-8")
     assert [command for command in COMMANDS if f"frb {command}" not in text] == []
 
 
-def test_readme_shows_the_shipped_case_and_its_keys_in_the_sketch() -> None:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_the_page_of_cases_shows_a_shipped_one_and_its_keys_in_the_sketch() -> None:
+    text = (ROOT / "docs" / "cases.md").read_text(encoding="utf-8")
     shown, sketch = re.findall(r"```toml\n(.*?)```.*?```\n(.*?)```", text, re.DOTALL)[0]
     case = tomllib.loads(shown)
     assert case == tomllib.loads((ROOT / "cases" / "jeffcott.toml").read_text(encoding="utf-8"))
