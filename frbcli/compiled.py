@@ -22,10 +22,9 @@ from typing import Any, TypeVar, cast
 import numpy as np
 from llvmlite import binding, ir
 from numba import __version__, njit, types
-from numba.core import config, runtime
+from numba.core import codegen, config, dispatcher, runtime
 from numba.core.caching import NullCache
 from numba.core.ccallback import CFunc
-from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.entrypoints import init_all
 from numba.core.serialize import dumps
@@ -42,6 +41,11 @@ _IMPORTS = re.compile(r"from frbcli((?:\.\w+)*) import (\([^)]*\)|[^\n]*)")
 # How numba reads a kernel alone, and its functions in C for the memory of arrays, by their names: neither is public
 READ = "_load_overload"
 _MEMORY: Any = getattr(getattr(runtime, "_nrt_python", None), "c_helpers", None)
+# A library of machine code of numba, and what compiles the functions that Python calls; private as well. A numba
+# without them compiles each kernel by itself, which takes half as long again.
+_LIBRARY: Any = getattr(codegen, "JITCodeLibrary", object)
+_PARTS = hasattr(_LIBRARY, "_optimize_final_module") and hasattr(_LIBRARY, "_finalize_final_module")
+_PARTS = _PARTS and hasattr(getattr(dispatcher, "_FunctionCompiler", None), "_get_implementation")
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -50,13 +54,9 @@ Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 # numba looks for settings in the current folder whenever it compiles: there are none
 setattr(config, "_config_fname", "")  # noqa: B010
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
-# LLVM orders the instructions of a block twice. Its usual way of doing so for the first time takes time with the square
-# of their number, more than half of that for the machine code of a time loop, which begins with thousands of addresses.
-# In this way it takes a tenth, and the code is as fast.
-binding.set_option("frb", "-pre-RA-sched=list-burr")
 
 
-class _Part(JITCodeLibrary):
+class _Part(_LIBRARY):  # type: ignore[misc]
     """Code of a kernel that others call: it is optimised and turned to machine code within theirs, not by itself."""
 
     @property
@@ -80,7 +80,8 @@ class _PartCompiler(Compiler):
     def compile_extra(self, func: Any) -> Any:
         """See numba's."""
         part, compile_extra = cast("Any", _Part), cast("Any", super()).compile_extra  # numba tells no types of them
-        self.state.library = part(self.state.targetctx.codegen(), func.__qualname__)
+        if _PARTS:
+            self.state.library = part(self.state.targetctx.codegen(), func.__qualname__)
         return compile_extra(func)
 
 
@@ -118,13 +119,13 @@ def compiled(
         if internal:
             return cast("Kernel", _part(function, options))
         kernel: Any = njit(**options)(function)
+        kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
+        if not _PARTS:
+            return cast("Kernel", kernel)
         part = cache(partial(_part, function, options))  # made when something is compiled: most starts compile nothing
         kernel._compiler._get_implementation = lambda _, __: _call_of_part(function, part())
         kernel.get_call_template = lambda args, named: part().get_call_template(args, named)
         kernel.get_overload = lambda kinds: part().get_overload(kinds)
-        kernel._cache = _Cache(kernel, Path(function.__code__.co_filename))
-        # Kernels use no extensions of numba, which it would look for among all packages that are installed.
-        kernel._compilation_chain_init_hook = _no_extensions
         return cast("Kernel", kernel)
 
     return decorated
@@ -180,10 +181,6 @@ class _Cache:
         if self._kernel._cache is self:
             _keep(self._kernel, self._source)
         return getattr(self._kernel._cache, name)
-
-
-def _no_extensions() -> None:
-    """What numba does in place of loading its extensions."""
 
 
 def c_function(function: Callable[..., Any], signature: Any, *sources: Path) -> Any:

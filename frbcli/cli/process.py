@@ -30,7 +30,6 @@ WITHIN_s, WAITS_s = 10.0, 60.0  # CPU time and time for which an import is not i
 YOUNG = 300_000  # objects between two searches for garbage: what imports make stays, and searches find nothing
 IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 
-BLAS, ASKS_FOR_IT, ANSWER = "scipy.linalg", "numba.np.arraymath", "_HAVE_BLAS"
 PICTURES, ARTISTS, DESCRIBE = "matplotlib.", "matplotlib.artist", "_update_set_signature_and_docstring"
 
 
@@ -162,17 +161,11 @@ def prepare_libraries() -> None:
 
 
 class Spared:
-    """Asked for each module before it is imported, it finds none, but spares two libraries their longest beginnings.
-
-    numba imports all of scipy.linalg to see whether there is a BLAS, a tenth of the CPU time of a short run: it is
-    hidden as long as numba looks, so that inner products in numba's own statistics are loops. matplotlib writes
-    docstrings of the properties of all its classes, a quarter of the CPU time of a picture: there are none.
-    """
+    """Asked for each module before it is imported, it finds none, but spares matplotlib its longest beginning: the
+    docstrings of the properties of all its classes, a seventh of the CPU time of a picture."""
 
     def find_spec(self, name: str, *_: object) -> None:
-        """Raises ModuleNotFoundError for scipy.linalg while numba looks for it."""
-        if name == BLAS and ASKS_FOR_IT in sys.modules and not hasattr(sys.modules[ASKS_FOR_IT], ANSWER):
-            raise ModuleNotFoundError(f"{name} is hidden from {ASKS_FOR_IT}", name=name)
+        """Takes the docstrings out as soon as there is a class to write them."""
         if name.startswith(PICTURES) and hasattr(sys.modules.get(ARTISTS), "kwdoc"):
             _without_docstrings(sys.modules[ARTISTS])
 

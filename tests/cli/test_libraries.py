@@ -19,19 +19,6 @@ heavy = {"scipy.linalg", "scipy.special", "scipy.sparse", "scipy.optimize", "mat
 heavy |= {"numba.np.arraymath", "numba.np.linalg"}  # among what numba needs to compile
 print(*sorted(heavy & set(sys.modules)))
 """
-# In such a process, numba with the functions that it has of numpy, and of these one that asks for a BLAS
-MULTIPLIES = """
-import sys
-from frbcli.cli.process import prepare_libraries
-prepare_libraries()
-import numba, numpy
-one = numba.njit(lambda x: x + 1.0)
-assert one(1.0) == 2.0 and "scipy.linalg" not in sys.modules
-product = numba.njit(lambda a, b: a @ b)
-assert product(numpy.eye(2), numpy.full((2, 2), 3.0)).tolist() == [[3.0, 3.0], [3.0, 3.0]]
-import scipy.linalg
-assert scipy.linalg.eigh(numpy.eye(2))[0].tolist() == [1.0, 1.0]
-"""
 # In such a process, how matplotlib tells a class of its own to take its properties, and a picture
 DRAWS = """
 import sys
@@ -59,11 +46,6 @@ def test_a_run_whose_tables_are_kept_imports_no_library_that_it_does_not_use(tmp
     """The first run may make tables and modes of the film, which need scipy; the second finds them on the disk."""
     python(tmp_path, "-c", SCRIPT, *RUN)
     assert python(tmp_path, "-c", SCRIPT, *RUN).split() == []
-
-
-def test_scipy_is_there_for_all_but_the_start_of_numba(tmp_path: Path) -> None:
-    """A function that multiplies matrices finds its BLAS, and so does whoever imports scipy.linalg."""
-    python(tmp_path, "-c", MULTIPLIES)
 
 
 def test_matplotlib_draws_the_same_without_the_docstrings_of_its_classes(tmp_path: Path) -> None:
