@@ -341,6 +341,12 @@ def test_a_png_is_the_one_that_matplotlib_saves(run: Run) -> None:
     assert figure.dpi == theirs.dpi
 
 
+@pytest.mark.parametrize("window_s", [0.0, 1e-320, 1e-9])
+def test_a_window_without_samples_is_refused(run: Run, window_s: float) -> None:
+    with pytest.raises(InputError, match="does not fit the run"):
+        run_spectra(run, "journal", window_s, "x")
+
+
 def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
     before = dict(mpl.rcParams)
     summary_figure(run)

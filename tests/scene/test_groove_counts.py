@@ -20,7 +20,7 @@ from frbcli.scene.planning.plan import make_plan
 TURN = 2.0 * np.pi
 COUNTS = range(1, 13)
 DAMPED = "bearing.damper={width='20 mm', diameter='60 mm', clearance='90 um', ends='oil-bath', mass='1 kg', "
-DAMPED += "spring='5e6 N/m'}"
+DAMPED += "spring='5e6 N/m', cavitation='sommerfeld'}"
 # Machines with other films beside the one with grooves, and the table whose supply they have
 MACHINES = {
     "single": ("jeffcott", "bearing", ()),
@@ -108,7 +108,7 @@ def test_every_number_of_grooves_in_every_command(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     source, given = settings(machine, count)
-    words = [word for each in given for word in ("--set", each)]
+    words = [word for each in (*given, "accuracy.mesh=[4, 48]") for word in ("--set", each)]
     run = [word for each in RUN for word in ("--set", each)]
     for command in (["check", source], ["bearing", source, "--no-picture", "--speed", "30 Hz"],
                     ["stability", source, "--no-picture", "--speed", "30 Hz"],

@@ -126,12 +126,14 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
     begin, end = ends(run)
     if window_s is None:
         window_s = window_length(time_s, speed, _apart(run, signal))
-    if window_s > MOST_IN_WINDOW * (end - begin) / (len(run) - 1):
+    step = (end - begin) / (len(run) - 1)
+    if window_s > MOST_IN_WINDOW * step:
         raise refuse(run.path, f"has more than {MOST_IN_WINDOW} samples in a window.", "Shorten --window.")
     fastest = max(map(abs, extremes(speed, 0, len(run))))
     loads = (float(line.along(np.array(fastest))) for line in load_lines(run))
-    highest = max(ABOVE_SYNCHRONOUS * max([fastest, *loads]), FEWEST_LINES / window_s)
-    most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * window_s))))
+    length_s = max(window_s, step)  # shorter ones are refused below
+    highest = max(ABOVE_SYNCHRONOUS * max([fastest, *loads]), FEWEST_LINES / length_s)
+    most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * length_s))))
     length = clearance(run, bearing_of(run, signal)) if run.references else UNKNOWN_m
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
 
