@@ -257,7 +257,7 @@ def _differences(found: Ridges, measured: Ridges) -> list[Array]:
 
 
 def _reached(found: Array, measured: Array) -> Array:
-    """A computed ridge (n, ...) over the speeds; at the outermost ones that its windows do not reach, the measured one."""
+    """A computed ridge (n, ...) over the speeds; the measured one at the outermost ones that its windows miss."""
     filled, places = found.copy(), np.arange(len(found))
     known = np.flatnonzero(np.isfinite(found.reshape(len(found), -1)).all(axis=1))
     if len(known) and known[0] <= EDGE and known[-1] >= len(found) - 1 - EDGE:
