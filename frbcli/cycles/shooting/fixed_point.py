@@ -115,7 +115,8 @@ def fixed_point(
             return None
         x, p, before = x + dx, p + dp, image
         image = mapped(x, p)
-        space = taught(space, dx, image - before - space.by_parameters @ dp)
+        if float(np.linalg.norm(dx)) > NEW * size:  # else the change of the image is that of the parameters
+            space = taught(space, dx, image - before - space.by_parameters @ dp)
         sizes.append(size)
     return None
 
