@@ -76,8 +76,10 @@ class TurbochargerRotor(Model):
     file: Label = Field(
         default="", description="rotor file of the Python package ROSS, in place of [[shaft]]; from the case's folder"
     )
-    modes: Annotated[int, Count(2, 200, 6)] = Field(
-        default=6, description="modes kept in each plane, of the free rotor: translation, tilt, then bending"
+    modes: Annotated[int, Count(2, 200, 6)] | None = Field(
+        default=None,
+        description="modes of the free rotor kept in each plane: translation, tilt, then bending; by default as many "
+        "as `accuracy.target` needs, with static modes of bearings and disks",
     )
     cutoff: Speed | None = Field(default=None, description="in place of `modes`: keep those up to this frequency")
     modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode; does not turn")

@@ -47,6 +47,26 @@ class UnitOption(QuantityOption):
         return super().convert(f"1 {text}" if text[:1].isalpha() or text.startswith("1/") else value, param, ctx)
 
 
+@dataclass(frozen=True)
+class RangeOption(QuantityOption):
+    """Two quantities, as "8000..12000 rpm": a unit at the end is that of both."""
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The lower and the upper one in `unit`."""
+        if isinstance(value, tuple):
+            return value
+        low, dots, high = str(value).partition("..")
+        if not dots:
+            self.fail(f'{value!r} is no range. Write e.g. "{self.example}".', param, ctx)
+        unit = high.strip().lstrip("0123456789.eE+-")
+        bare = low.strip().lstrip("0123456789.eE+-") == ""
+        ends = [super(RangeOption, self).convert(end, param, ctx) for end in (low + unit if bare else low, high)]
+        if ends[0] > ends[1]:
+            self.fail(f'{value!r} does not ascend. Write e.g. "{self.example}".', param, ctx)
+        return ends[0], ends[1]
+
+
+OPERATING_OPTION = RangeOption("range", "Hz", "8000..12000 rpm")
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
 TIME_OPTION = QuantityOption("time", "s", "0.2 s", positive=False)
 LENGTH_OPTION = QuantityOption("length", "m", "35 um")

@@ -97,17 +97,25 @@ def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arra
 
 def state_matrix(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Array:
     """(2 n, 2 n) of the states (q, q'), as `linearised`, q without the angles of rings on which nothing depends."""
-    whole = first_order(*linearised(rotor, omega, stiffness, damping))
-    kept = np.delete(np.arange(len(whole)), rotor.turning)
-    return whole[np.ix_(kept, kept)]
+    return _states(linearised(rotor, omega, stiffness, damping), rotor.turning)
+
+
+def _states(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]) -> Array:
+    whole = first_order(*matrices)
+    kept = np.delete(np.arange(len(whole)), turning)
+    return np.asarray(whole[np.ix_(kept, kept)])
 
 
 def eigenpairs(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> tuple[Complex, Complex]:
     """(N,) eigenvalues in 1/s of a machine as `linearised`, and the motions (n, N) of all its degrees of freedom. The
     angles of rings on which nothing depends are no states of it."""
-    values, vectors = np.linalg.eig(state_matrix(rotor, omega, stiffness, damping))
-    motions = vectors[-rotor.size :].astype(complex)  # velocities, of which each degree of freedom has one
-    matrices = linearised(rotor, omega, stiffness, damping)
+    return small_motions(linearised(rotor, omega, stiffness, damping), rotor.turning)
+
+
+def small_motions(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]) -> tuple[Complex, Complex]:
+    """As eigenpairs, of mass, damping and stiffness (n, n). turning: see LinearRotor."""
+    values, vectors = np.linalg.eig(_states(matrices, turning))
+    motions = vectors[-len(matrices[0]) :].astype(complex)  # velocities, of which each degree of freedom has one
     found = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
     return found, motions
 
@@ -125,7 +133,7 @@ def _sensitivity(vectors: Complex, mass: Array) -> Array:
     def size(motions: Complex) -> Array:
         return np.asarray(np.sqrt(np.abs(np.einsum("in,ij,jn->n", motions.conj(), mass, motions))))
 
-    condition = 2.0 * size(vectors[-n:]) * size(left)  # 1 of a normal motion
+    condition: Array = np.multiply(2.0 * size(vectors[-n:]), size(left.astype(complex)))  # 1 of a normal motion
     return np.asarray(np.sqrt(np.maximum(condition**2 - 1.0, 0.0)))
 
 

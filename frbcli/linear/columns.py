@@ -224,6 +224,26 @@ RESPONSE_POINTS = (
     Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda found: np.array(found.validity)[:, None]),
 )  # fmt: skip
 
+# Of a CriticalSpeed
+PEAKS = (
+    Column("speed", "Hz", "speed of a peak of the response", attrgetter("speed_Hz"),
+           shown=(Shown("Hz", ".6g", table=RESPONSE),)),
+    Column("speed_uncertainty", "Hz", "expected error of the speed", attrgetter("speed_uncertainty_Hz"),
+           more="by the search and by the mesh of the films"),
+    Column("mode", "", "number of the mode that resonates, by frequency", shown=(Shown("mode", table=RESPONSE),)),
+    Column("direction", "", "`forward`, `backward` or `mixed`", shown=(Shown("whirl", table=RESPONSE),)),
+    Column("node", "", "point with the largest amplitude",
+           shown=(Shown("point", lambda name: name.replace("_", " "), table=RESPONSE),)),
+    Column("amplitude", "m", "larger semi-axis of its orbit", more="none without damping",
+           shown=(Shown("um", ".4g", "um", RESPONSE),)),
+    Column("amplification_factor", "", "speed over the width of the peak at 0.707 of its height",
+           shown=(Shown("factor", ".3g", table=RESPONSE),)),
+    Column("separation_margin", "", "distance from the operating range, over its nearer limit",
+           shown=(Shown("margin", ".1%", table=RESPONSE),)),
+    Column("logarithmic_decrement", "", "logarithmic decrement of the mode",
+           shown=(Shown("decrement", ".3g", table=RESPONSE),)),
+)  # fmt: skip
+
 _NAMES = replace(NAME, value=attrgetter("films"))
 
 # Of a Response, over speeds and films

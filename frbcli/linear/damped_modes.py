@@ -17,17 +17,15 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
-from frbcli.linear.response import larger_semi_axis
+from frbcli.linear.critical_speeds import larger_semi_axis, whirl_direction
 from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.order import EQUAL, first_largest, ranks
+from frbcli.rotor.order import first_largest, ranks
 from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
 
-FORWARD, BACKWARD, MIXED = "forward", "backward", "mixed"
 UNMOVED = 1e-12  # of a ring that turns on its pin, in m over rad, below which nothing else moves
-STILL = 1e-3  # of the largest motion: a point that moves less has no sense of whirl
 
 
 @dataclass(frozen=True)
@@ -131,7 +129,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
             there = shape.ravel()[first_largest(shape.ravel())]
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
             own = motion / unit
-            shapes.append(DampedMode(value, _direction(own), own, shape / unit, point.error_of(value)))
+            shapes.append(DampedMode(value, whirl_direction(own), own, shape / unit, point.error_of(value)))
     keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in shapes), strict=True)]
     shapes = [shapes[i] for i in np.lexsort(keys)] if shapes else []
     names = tuple(name for name, _ in rotor.points)
@@ -147,12 +145,3 @@ def _eigenvectors(rotor: LinearRotor, machine: MachineAtRest) -> list[tuple[comp
         return [(value, vector) for value, vector in machine.modes if oscillating(np.array([value]))[0]]
     values, motions = eigenpairs(rotor, machine.omega, *coefficients_of(machine.films))
     return [(complex(values[i]), motions[:, i]) for i in np.flatnonzero(oscillating(values))]
-
-
-def _direction(motion: Complex) -> str:
-    """The direction in which points with complex amplitudes (p, 2) whirl."""
-    forward, backward = np.abs(motion[:, 0] + 1j * motion[:, 1]), np.abs(motion[:, 0] - 1j * motion[:, 1])
-    moving = forward + backward > STILL * np.max(forward + backward)
-    moving &= np.abs(forward - backward) > EQUAL * (forward + backward)  # to and fro in a line: no sense
-    senses = set((forward > backward)[moving].tolist())
-    return MIXED if len(senses) != 1 else FORWARD if True in senses else BACKWARD

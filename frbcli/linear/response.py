@@ -20,6 +20,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
 
 import numpy as np
 
@@ -28,11 +29,23 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, spread_table
 from frbcli.equilibrium.coefficients import LEAST, coefficients_of
 from frbcli.equilibrium.linearised import linearised
+from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, input_error
-from frbcli.film.parabola import summit
 from frbcli.html import Tabular
 from frbcli.linear.columns import RESPONSE_POINTS
-from frbcli.linear.stability import stability_points
+from frbcli.linear.critical_speeds import (
+    CLOSE,
+    WIDTHS,
+    CriticalSpeed,
+    ResponsePeak,
+    SpeedModel,
+    amplification_factor,
+    larger_semi_axis,
+    moved,
+    peaks,
+    separation_margin,
+)
+from frbcli.linear.stability import check_machine, stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.nearest import did_you_mean
 from frbcli.rotor.linear import LinearRotor
@@ -45,7 +58,9 @@ from frbcli.scene.speeds import default_speeds
 
 UNBALANCE = "unbalance"  # as excitation
 SPEEDS = 120  # of the default sweep
-ROUND_OFF = 1e-9  # relative: what stands out by less, as where a stiff rotor turns about its centre of mass, is no peak
+ROUNDS = 4  # in which films are solved at their peaks
+SHARP = 1e-6  # relative error of the speed of a peak of given coefficients
+TURN = 2.0 * math.pi
 # Larger semi-axis over the gap that is left at rest, above which linear coefficients are doubtful. Against the
 # nonlinear synchronous response (cycles/unbalance) of jeffcott and rigid with short films and unbalances of 10 to 200 g
 # mm, the amplitudes of journals have errors of at most 4 % up to a tenth of that gap, 15 % up to this share, 26 % up to
@@ -62,10 +77,9 @@ class Response(Tabular):
     speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
     amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
     2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
-    where it is positive, the motion is not seen; critical_speeds_Hz: where the largest motion of any point has a peak;
-    resting: the resting positions; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the
-    clearance; clearances: (n, f) m, warm with heat; amplitude_error: (n, p) m, expected one of the amplitude by the
-    mesh of the films, and critical_speed_errors_Hz: those of the critical speeds; NaN where they are not known.
+    where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the resting positions; in_films:
+    (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances: (n, f) m, warm with
+    heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN where it is not known.
     excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
     """
 
@@ -77,13 +91,17 @@ class Response(Tabular):
     elements: tuple[str, ...]
     forces: Complex
     growth: Array
-    critical_speeds_Hz: tuple[float, ...]
+    critical_speeds: tuple[CriticalSpeed, ...]
     resting: tuple[StabilityPoint, ...]
     in_films: Complex
     clearances: Array
     amplitude_error: Array
-    critical_speed_errors_Hz: tuple[float, ...]
     excitation: str = UNBALANCE
+
+    @property
+    def critical_speeds_Hz(self) -> tuple[float, ...]:
+        """Speeds of the peaks, ascending."""
+        return tuple(peak.speed_Hz for peak in self.critical_speeds)
 
     @property
     def what(self) -> str:
@@ -175,6 +193,7 @@ def response(
     speeds_Hz: Sequence[float] | None = None,
     observe: Callable[[int, int], None] | None = None,
     excitation: str = UNBALANCE,
+    operating_Hz: tuple[float, float] | None = None,
 ) -> Response:
     """Compute the linear response of a case to its unbalance, or to another of its loads.
 
@@ -189,17 +208,19 @@ def response(
     excitation : str, optional
         Load that excites alone, such as "force 2" for the second force of the case; by default the unbalance with all
         loads of order 1.
+    operating_Hz : tuple of float, optional
+        Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin.
 
     Returns
     -------
     Response
-        Amplitudes in m and phases of all points, critical speeds in Hz.
+        Amplitudes in m and phases of all points, critical speeds.
 
     Raises
     ------
     InputError
-        If the case cannot be modelled, has films that eight coefficients do not describe, or rests nowhere, or if there
-        is no such load or a constant one.
+        If the case cannot be modelled, has films that eight coefficients do not describe, or rests nowhere, if there
+        is no such load or a constant one, or if the range of operation is none.
 
     Examples
     --------
@@ -209,37 +230,51 @@ def response(
     >>> len(found.points)
     2
     """
-    require(case, RANGE if speeds_Hz is None else FILMS, _excitation_faults(case, excitation))
+    faults = [*_excitation_faults(case, excitation), *_operating_faults(operating_Hz)]
+    require(case, RANGE if speeds_Hz is None else FILMS, faults)
     asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
-    system, points = stability_points(case, asked, observe, partial(_frequency, case, excitation))
+    check_machine(case, asked)
+    machines, frequency = StaticMachines(case, memory=True), partial(_frequency, case, excitation)
+    system, points = stability_points(case, asked, observe, frequency, machines)
     resting = [point for point in points if point.rests]
     if not resting:
         problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise input_error(case.name or "case", "speed", "", problem, "Choose other speeds.")
+
+    def solved(speeds: Sequence[float]) -> list[StabilityPoint]:
+        return [each for each in stability_points(case, speeds, None, frequency, machines)[1] if each.rests]
+
+    critical, known = critical_speeds_of(resting, excitation, operating_Hz, solved)
+    if speeds_Hz is None:
+        resting = known
     rotors = [point.rotor for point in resting if point.rotor is not None]
     found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
     motions, forces, journals = zip(*found, strict=True)
     clearances = np.array([(point.warm.system if point.warm else system).clearances for point in resting])
     motion = np.array(motions)
-    speeds = np.array([point.speed_Hz for point in resting])
-    peaks, others = peak_speeds(speeds, motion), _on_others(rotors, resting, excitation)
     return Response(
         case=case,
-        speeds_Hz=speeds,
+        speeds_Hz=np.array([point.speed_Hz for point in resting]),
         points=tuple(name for name, _ in system.rotor.points),
         motion=motion,
         films=system.names,
         elements=tuple(element.name for element in case.elements),
         forces=np.array(forces),
         growth=np.array([point.growth for point in resting]),
-        critical_speeds_Hz=peaks,
+        critical_speeds=critical,
         resting=tuple(resting),
         in_films=np.array(journals) / clearances[:, :, None],
         clearances=clearances,
-        amplitude_error=_amplitude_error(motion, others),
-        critical_speed_errors_Hz=_peak_errors(speeds, peaks, others),
+        amplitude_error=_amplitude_error(motion, _on_others(rotors, resting, excitation)),
         excitation=excitation,
     )
+
+
+def _operating_faults(operating_Hz: tuple[float, float] | None) -> Iterator[Fault]:
+    if operating_Hz is not None and not 0.0 < operating_Hz[0] <= operating_Hz[1] < math.inf:
+        named = "{:g}..{:g} Hz".format(*operating_Hz)
+        problem = "is no range of speeds above 0 from the lowest to the highest."
+        yield Fault("operating", named, None, problem, 'Write e.g. "8000..12000 rpm".')
 
 
 def _excitation_faults(case: Case, excitation: str) -> Iterator[Fault]:
@@ -276,11 +311,87 @@ def forced_motion(
     return np.asarray(np.linalg.solve(k + 1j * frequency * d - frequency**2 * mass, force))
 
 
-def larger_semi_axis(motion: Complex) -> Array:
-    """(...) of the ellipse that x and y with the complex amplitudes (..., 2) draw: its forward and its backward part
-    added up."""
-    x, y = motion[..., 0], motion[..., 1]
-    return np.asarray(0.5 * (np.abs(x + 1j * y) + np.abs(x - 1j * y)))
+def critical_speeds_of(
+    points: Sequence[StabilityPoint],
+    excitation: str,
+    operating_Hz: tuple[float, float] | None,
+    solved: Callable[[Sequence[float]], list[StabilityPoint]],
+) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint]]:
+    """The peaks of the response between points at ascending speeds, and those points with what was solved beside them.
+
+    solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are;
+    without films the points of a curve around each peak are."""
+    known, rounds = list(points), ROUNDS if points[0].films else 0
+    model = _model(known, excitation)
+    found = peaks(model)
+    for _ in range(rounds):
+        far = [peak.omega for peak in found if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
+        more = solved([omega / TURN for omega in far]) if far else []
+        if not more:
+            break
+        known = sorted([*known, *more], key=attrgetter("speed_Hz"))
+        model = _model(known, excitation)
+        found = peaks(model)
+    others = [(_model(known, excitation, number), share) for number, share in _shares(known)]
+    critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in found)
+    if not points[0].films:
+        bounded = [peak for peak in found if math.isfinite(peak.amplitude)]
+        curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded])
+        inside = curve[(curve > model.omegas[0]) & (curve < model.omegas[-1])] / TURN
+        known = sorted([*known, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
+    return critical, known
+
+
+def _model(points: Sequence[StabilityPoint], excitation: str, other: int | None = None) -> SpeedModel:
+    """The response between points, on their own films or on another mesh, by its number."""
+    rotors = [point.rotor for point in points if point.rotor is not None]
+    base, beside = rotors[0], []
+    for point, rotor in zip(points, rotors, strict=True) if points[0].films else ():
+        omega = TURN * point.speed_Hz
+        coefficients = coefficients_of(point.films) if other is None else point.others[other][:2]
+        _, damping, stiffness = linearised(rotor, omega, *coefficients)
+        here = base.at(omega)
+        beside.append(np.array([stiffness - here.stiffness, damping - here.damping - omega * here.gyroscopic]))
+    omegas = [TURN * point.speed_Hz for point in points]
+    places = np.array([place for _, place in base.points])
+    return SpeedModel(base, omegas, beside, lambda omega: excited(base, omega, excitation), places)
+
+
+def _shares(points: Sequence[StabilityPoint]) -> list[tuple[int, float]]:
+    """Numbers of the other meshes that all points have, with the shares of the difference that are errors."""
+    if len({len(point.others) for point in points}) > 1:
+        return []
+    return [(number, share) for number, (*_, share) in enumerate(points[0].others)]
+
+
+def _critical(
+    model: SpeedModel,
+    others: Sequence[tuple[SpeedModel, float]],
+    peak: ResponsePeak,
+    point: StabilityPoint,
+    operating_Hz: tuple[float, float] | None,
+) -> CriticalSpeed:
+    """A peak with what is known of it; others: the response on other meshes, with the shares of the difference that are
+    errors."""
+    speed, bounded = peak.omega / TURN, math.isfinite(peak.amplitude)
+    error = SHARP * speed
+    if point.films:
+        apart = [share * abs(moved(other, peak) - peak.omega) / TURN for other, share in others]
+        left = float(np.min(np.abs(model.omegas - peak.omega))) / TURN
+        error = max(LEAST * speed, left, *apart) if apart else math.nan
+    mode, direction, decrement = model.mode(peak.omega)
+    rotor = point.rotor
+    return CriticalSpeed(
+        speed_Hz=speed,
+        speed_uncertainty_Hz=error,
+        mode=mode,
+        direction=direction,
+        node="" if rotor is None else rotor.points[peak.point][0],
+        amplitude=peak.amplitude if bounded else None,
+        amplification_factor=amplification_factor(model, peak),
+        separation_margin=separation_margin(speed, operating_Hz),
+        logarithmic_decrement=decrement,
+    )
 
 
 def _at(
@@ -323,36 +434,3 @@ def _amplitude_error(motion: Complex, others: Sequence[tuple[Complex, float]]) -
         return np.full(own.shape, math.nan)
     apart = [share * np.abs(larger_semi_axis(other) - own) for other, share in others]
     return np.asarray(np.maximum(LEAST * own, np.max(apart, axis=0)))
-
-
-def _peak_errors(
-    speeds: Array, peaks: Sequence[float], others: Sequence[tuple[Complex, float]]
-) -> tuple[float, ...]:
-    """Errors of the peaks in Hz: the distance of each peak to the nearest one on the other meshes, times their shares;
-    NaN where another mesh has no peak within two steps of the speed."""
-    elsewhere = [(np.array(peak_speeds(speeds, motion)), share) for motion, share in others]
-    near = 2.0 * float(np.max(np.diff(speeds), initial=0.0))
-    errors = []
-    for peak in peaks:
-        apart = [(float(np.min(np.abs(found - peak), initial=np.inf)), share) for found, share in elsewhere]
-        known = bool(apart) and max(distance for distance, _ in apart) <= near
-        errors.append(max(LEAST * peak, *(share * distance for distance, share in apart)) if known else math.nan)
-    return tuple(errors)
-
-
-def peak_speeds(speeds: Array, motion: Complex) -> tuple[float, ...]:
-    """Speeds at which the larger semi-axis of a point has a peak, each by a parabola through three speeds; peaks of
-    several points within a step of the speed are one."""
-    found: list[float] = []
-    for own in larger_semi_axis(motion).T:
-        for i in range(1, len(speeds) - 1):
-            low, here, high = own[i - 1 : i + 2].tolist()
-            if here > low and here >= high and here - min(low, high) > ROUND_OFF * here:
-                before, behind = np.diff(speeds[i - 1 : i + 2]).tolist()
-                found.append(float(speeds[i]) + summit(low, here, high, before, behind)[0])
-    step = float(np.max(np.diff(speeds), initial=0.0))
-    kept: list[float] = []
-    for peak in sorted(found):
-        if not kept or peak - kept[-1] > step:
-            kept.append(peak)
-    return tuple(kept)

@@ -32,6 +32,7 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds
 
+NOT_SOUGHT = "Given speeds alone are computed: --threshold seeks the threshold of stability, too."
 SCOUTED = 4  # every which speed is tried on the coarsest mesh
 TRIED = 5  # speeds at which rest is sought before it is given up, where there is none at the highest one
 
@@ -41,7 +42,7 @@ class Stability(Tabular):
     """Linear stability of a case.
 
     points: at the speeds asked for; sweep: at all speeds that were computed, ascending; threshold: None if none lies
-    in the swept range; note then says why, and where the rotor is stable once more above it.
+    in the swept range or none was sought; note then says why, and where the rotor is stable once more above it.
     """
 
     case: Case
@@ -59,7 +60,10 @@ class Stability(Tabular):
 
 
 def stability(
-    case: Case, speeds_Hz: Sequence[float] | None = None, observe: Callable[[int, int], None] | None = None
+    case: Case,
+    speeds_Hz: Sequence[float] | None = None,
+    observe: Callable[[int, int], None] | None = None,
+    threshold: bool = False,
 ) -> Stability:
     """Compute resting positions, linear coefficients, eigenvalues, and the threshold of stability.
 
@@ -72,6 +76,8 @@ def stability(
         which is the speed range of the case.
     observe : callable, optional
         Called with each speed's number and their number.
+    threshold : bool
+        Whether the threshold is sought beside given speeds, too; without speeds it always is.
 
     Returns
     -------
@@ -93,7 +99,7 @@ def stability(
     """
     require(case, RANGE if speeds_Hz is None else FILMS)
     asked = default_speeds(case) if speeds_Hz is None else tuple(float(speed) for speed in speeds_Hz)
-    return _stability(case, asked, observe)
+    return _stability(case, asked, observe, threshold or speeds_Hz is None)
 
 
 def threshold_alone(case: Case) -> Stability:
@@ -147,15 +153,15 @@ def open_spans(points: Sequence[StabilityPoint]) -> list[tuple[float, float]]:
 
 
 def _stability(
-    case: Case, asked: Sequence[float], observe: Callable[[int, int], None] | None = None
+    case: Case, asked: Sequence[float], observe: Callable[[int, int], None] | None, with_threshold: bool
 ) -> Stability:
     _check_speeds(case, asked)
-    speeds = sorted(set(default_speeds(case)) | set(asked))
+    speeds = sorted(set(default_speeds(case) if with_threshold else ()) | set(asked))
     check_machine(case, speeds)
     machines = StaticMachines(case, memory=True)
     sweep = _sweep(case, machines, speeds, observe)
     found = {point.speed_Hz: point for point in sweep}
-    threshold, note = find_threshold(case, machines, sweep)
+    threshold, note = find_threshold(case, machines, sweep) if with_threshold else (None, NOT_SOUGHT)
     return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
 
 
@@ -164,15 +170,16 @@ def stability_points(
     speeds_Hz: Sequence[float],
     observe: Callable[[int, int], None] | None = None,
     frequency: Callable[[float], float] | None = None,
+    machines: StaticMachines | None = None,
 ) -> tuple[System, tuple[StabilityPoint, ...]]:
     """The machine, and its points at speeds_Hz, ascending.
 
     observe: called with each speed's number and their number; frequency: that of the motion in
-    rad/s, by the speed of the rotor in rad/s, see point_at_rest. Raises InputError if the case cannot be modelled, a
-    speed is not positive, or a film cannot be linearised.
+    rad/s, by the speed of the rotor in rad/s, see point_at_rest; machines: those of the case, where they are made
+    already. Raises InputError if the case cannot be modelled, a speed is not positive, or a film cannot be linearised.
     """
     check_machine(case, speeds_Hz)
-    machines = StaticMachines(case, memory=True)
+    machines = machines or StaticMachines(case, memory=True)
     return machines.system, _sweep(case, machines, speeds_Hz, observe, frequency)
 
 

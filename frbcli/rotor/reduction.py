@@ -10,10 +10,16 @@ is a symmetric eigenvalue problem, also where a rigid body can move freely:
     omega [w, e] = [[Omega G, B], [B^T, 0]] [w, e],    B B^T the stiffness, e = B^T u.
 
 omega > 0 is a forward whirl, omega < 0 a backward one.
+
+A force at a place also bends the rotor in the modes that a reduction leaves out, at once and by their static
+flexibility. Static modes of the places where bearings and unbalances act have this bending (residual attachment modes:
+MacNeal, Computers & Structures 1, 1971; Rubin, AIAA Journal 13, 1975). They are combined so that they look like further
+free modes: a rotor in soft bearings at its ends then needs few of these.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +32,11 @@ Array = NDArray[np.float64]
 
 RIGID = 2  # modes of a rigid body in one plane: translation, tilt
 STILL = 1e-9  # of the fastest mode: slower motions are none
+DEPENDENT = 1e-6  # size of a static mode over the largest, below which it is one of the others
+COUNTS = (2, 3, 4, 5, 6, 8, 10, 12, 16, 20, 24, 28)  # of free modes that a reduction is tried with
+EXACT = 40  # free modes of what reductions are compared with
+STIFFNESSES = np.logspace(-3.0, 2.0, 6)  # of a bearing, over that on which a rigid rotor has its top speed as frequency
+ABOVE = 1.2  # times the top speed: a mode a little above it is felt below
 COMPARED = 3  # whirling modes of each direction whose frequencies a reduction is judged by
 # Degrees of freedom of a plane whose modes are all computed; of more, the slowest MOST: dense matrices
 # of a thousand sections would take minutes.
@@ -76,6 +87,42 @@ class FreeModes:
     def below(self, cutoff: float) -> int:
         """How many modes are not faster than a cut-off in rad/s."""
         return int(np.count_nonzero(self.frequencies <= cutoff))
+
+
+@dataclass(frozen=True)
+class Places:
+    """Where a rotor is loaded: positions in m of its bearings, its wheels, and collars, which are held in tilt."""
+
+    bearings: tuple[float, ...]
+    wheels: tuple[float, ...]
+    collars: tuple[float, ...] = ()
+
+    def of(self, modes: FreeModes) -> Array:
+        """(p, n) displacements of modes at bearings and wheels, then their slopes at collars."""
+        slopes = [modes.slope_at(collar) for collar in self.collars]
+        return np.stack([*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes])
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """A reduced rotor: its modes, and the largest relative changes of its critical speeds and of the height of the
+    peaks there, in bearings of any stiffness."""
+
+    modes: FreeModes
+    free: int
+    frequency: float
+    amplitude: float
+
+    @property
+    def words(self) -> str:
+        """What it keeps, and what it changes."""
+        kept = len(self.modes.frequencies)
+        static = f" and {kept - self.free} static ones of bearings and disks" if kept > self.free else ""
+        speeds, peaks = (f"{float(f'{100.0 * each:.1g}'):g} %" for each in (self.frequency, self.amplitude))
+        return (
+            f"{self.free} free modes{static} of each plane: critical speeds are off by up to {speeds}, "
+            f"heights of peaks by up to {peaks}, on bearings of any stiffness"
+        )
 
 
 @dataclass(frozen=True)
@@ -168,18 +215,98 @@ def whirl_modes(modes: FreeModes, springs: Array, stiffness: Array, omega: float
     return WhirlModes(values[moving][order], coordinates / np.linalg.norm(coordinates, axis=0))
 
 
-def reduction_error(modes: FreeModes, count: int, springs: Array, stiffness: Array, omega: float) -> ReductionError:
-    """The error of keeping only the lowest `count` of all modes; the other arguments as in `whirl_modes`."""
-    left_out = springs[:, count:] / modes.frequencies[count:]
-    full = whirl_modes(modes, springs, stiffness, omega)
-    reduced = whirl_modes(modes.lowest(count), springs[:, :count], stiffness, omega)
-    pairs = [(full.directed(sign)[:COMPARED], reduced.directed(sign)[:COMPARED]) for sign in (1, -1)]
+def with_static_modes(modes: FreeModes, count: int, places: Places) -> FreeModes:
+    """The lowest `count` of all modes and the static modes of places, as far as they differ, as modes of unit mass."""
+    left = places.of(modes)[:, count:] / modes.frequencies[count:]  # by the energy of its bending
+    if left.shape[1] == 0:
+        return modes
+    shapes, sizes, _ = np.linalg.svd(left.T, full_matrices=False)
+    bent = shapes[:, sizes > DEPENDENT * sizes[0]] / modes.frequencies[count:, None]
+    squares, turns = np.linalg.eigh(bent.T @ bent)  # of the inverse frequencies, ascending
+    squares, turns = squares[::-1], turns[:, ::-1]
+    basis = np.zeros((len(modes.frequencies), count + len(squares)))
+    basis[:count, :count] = np.eye(count)
+    basis[count:, count:] = bent @ turns / np.sqrt(squares)
+    return FreeModes(
+        modes.positions,
+        np.append(modes.frequencies[:count], 1.0 / np.sqrt(squares)),
+        modes.shapes @ basis,
+        modes.slopes @ basis,
+        _symmetric(basis.T @ modes.polar @ basis),
+        _symmetric(basis.T @ modes.internal @ basis),
+        modes.weight @ basis,
+    )
+
+
+def reduction(modes: FreeModes, places: Places, top: float, target: float) -> Reduction:
+    """The smallest reduction with static modes whose changes are within a target, up to the speed `top` in rad/s."""
+    exact = with_static_modes(modes, min(EXACT, len(modes.frequencies)), places)
+    for count in COUNTS:
+        found = judged(with_static_modes(modes, min(count, len(modes.frequencies)), places), exact, places, top, count)
+        if max(found.frequency, found.amplitude) <= target:
+            break
+    return found
+
+
+def judged(
+    reduced: FreeModes, exact: FreeModes, places: Places, top: float, free: int, springs: Array | None = None
+) -> Reduction:
+    """A reduced rotor with its changes against one that is nearly exact: of critical speeds up to ABOVE times `top` in
+    rad/s, at least the lowest one, forward and backward. The peak at i by an unbalance at j in slightly damped bearings
+    is in proportion to u_i u_j over the work of the bearings, sum of s u_b^2. springs: (b,) N/m of the bearings, by
+    default any."""
+    changes = np.zeros(2)
+    if len(set(places.bearings)) < RIGID:
+        return Reduction(reduced, free, *changes.tolist())
+    usual = exact.weight[0] ** 2 * max(top, exact.frequencies[RIGID]) ** 2 / len(places.bearings)
+    for stiffness in np.outer(usual * STIFFNESSES, np.ones(len(places.bearings))) if springs is None else [springs]:
+        for sign in (-1.0, 1.0):
+            own, other = (_criticals(each, places, stiffness, sign) for each in (reduced, exact))
+            count = min(len(own[0]), max(1, int(np.count_nonzero(other[0] <= ABOVE * top))))
+            speeds = np.abs(own[0][:count] / other[0][:count] - 1.0)
+            sizes = np.abs(other[1][:count]).max(axis=(1, 2))
+            peaks = np.abs(own[1][:count] - other[1][:count]).max(axis=(1, 2)) / sizes
+            changes = np.maximum(changes, [speeds.max(), peaks.max()])
+    return Reduction(reduced, free, *changes.tolist())
+
+
+def _criticals(modes: FreeModes, places: Places, stiffness: Array, sign: float) -> tuple[Array, Array]:
+    """Critical speeds (r,) in rad/s, ascending, of forward (sign -1) or backward whirls on springs (b,) in N/m, and
+    what the height of a peak is in proportion to, (r, p, p)."""
+    from scipy.linalg import eigh
+
+    seen = places.of(modes)[: len(places.bearings) + len(places.wheels)]
+    held = seen[: len(places.bearings)]
+    inverse, motions = eigh(
+        np.eye(len(modes.frequencies)) + sign * modes.polar,
+        np.diag(modes.frequencies**2) + held.T @ (stiffness[:, None] * held),
+    )
+    order = np.flatnonzero(inverse > 0.0)[::-1]
+    moved = seen @ motions[:, order]
+    work = stiffness @ moved[: len(places.bearings)] ** 2
+    return 1.0 / np.sqrt(inverse[order]), np.einsum("ir,jr->rij", moved, moved) / work[:, None, None]
+
+
+def reduction_error(
+    modes: FreeModes, reduced: FreeModes, held: Callable[[FreeModes], Array], stiffness: Array, omega: float
+) -> ReductionError:
+    """The error of a reduction of all modes on springs. held: (b, n) displacements of modes at the springs; stiffness:
+    (b,) N/m, isotropic; omega: rad/s."""
+    springs, own = held(modes), held(reduced)
+    full, less = (whirl_modes(each, at, stiffness, omega) for each, at in ((modes, springs), (reduced, own)))
+    pairs = [(full.directed(sign)[:COMPARED], less.directed(sign)[:COMPARED]) for sign in (1, -1)]
     shortest = [min(len(a), len(b)) for a, b in pairs]
     return ReductionError(
-        left_out @ left_out.T,
+        _flexibility(modes, springs) - _flexibility(reduced, own),
         np.concatenate([a[:n] for (a, _), n in zip(pairs, shortest, strict=True)]),
         np.concatenate([b[:n] for (_, b), n in zip(pairs, shortest, strict=True)]),
     )
+
+
+def _flexibility(modes: FreeModes, springs: Array) -> Array:
+    """(b, b) m/N of the bending modes between places with displacements (b, n)."""
+    bent = springs[:, RIGID:] / modes.frequencies[RIGID:]
+    return np.asarray(bent @ bent.T)
 
 
 def _symmetric(matrix: Array) -> Array:

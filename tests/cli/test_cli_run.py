@@ -35,8 +35,8 @@ COST = {"cpu_s", "error_cpu_s", "compile_cpu_s", "predicted_cpu_s", "wall_s", "s
         "steps_per_revolution", "film_solves", "ms_per_film_solve", "simulated_ms_per_hour"}  # fmt: skip
 SECOND = {"second_run_cpu_s", "second_run_predicted_cpu_s"}  # of a run that has ended, the former if it was made
 ERROR = ["time_integration", "film_force_relative", "oil_balance_relative", "model_relative", "mesh_relative",
-         "coupling", "modal_reduction", "cells", "eccentricity", "displacement", "ring_speed",
-         "oil_fraction", "quiet_until_s"]  # fmt: skip
+         "coupling", "modal_reduction", "modal_reduction_amplitude", "cells", "eccentricity", "displacement",
+         "ring_speed", "oil_fraction", "quiet_until_s"]  # fmt: skip
 EVENT = ["kind", "film", "t_s", "speed_Hz", "frequency_Hz", "frequency_ratio", "point", "amplitude",
          "speed_uncertainty_Hz", "frequency_uncertainty_Hz", "amplitude_uncertainty", "certain", "reason"]  # fmt: skip
 

@@ -19,6 +19,8 @@ def test_command_emits_the_points_asked_for(
     monkeypatch.chdir(tmp_path)
     speeds = ["--speed", "25 Hz", "--speed", "6000 rpm", "--speed", "1e-4 Hz"]
     assert frb(["stability", "jeffcott", *speeds, "--json", "--quiet"]) == 0
+    assert json.loads(capsys.readouterr().out)["threshold"] is None
+    assert frb(["stability", "jeffcott", *speeds, "--threshold", "--json", "--quiet"]) == 0
     said = capsys.readouterr()
     assert said.err == ""
     document = json.loads(said.out)

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from frbcli.film.parabola import parabola_roots, share_within, summit
-from frbcli.linear.response import peak_speeds
 
 
 @pytest.mark.parametrize("curvature", [1e-17, -1e-17, 1e-9, -1e-9, 0.3, -2.0])
@@ -48,13 +47,3 @@ def test_the_summit_is_that_of_the_parabola_and_never_beyond_its_neighbours() ->
     place, value = summit(1.0 - 2.0**-52, 1.0, 1.0, 1.0, 1.0)
     assert abs(place) <= 0.5
     assert value == pytest.approx(1.0, rel=1e-15)
-
-
-def test_round_off_of_a_constant_motion_is_no_critical_speed() -> None:
-    """A stiff rotor far above its critical speed turns about its centre of mass: 5e-7 m at every speed."""
-    speeds = np.arange(1.0, 10.0)
-    noise = 1e-16 * np.array([0, 1, 0, 3, 0, 0, 2, 0, 0.0])
-    x = (5e-7 * (1.0 + noise))[:, None]
-    assert peak_speeds(speeds, np.stack([x, -1j * x], axis=-1).astype(complex)) == ()
-    x[4] *= 1.0 + 1e-6
-    assert peak_speeds(speeds, np.stack([x, -1j * x], axis=-1).astype(complex)) == (pytest.approx(5.0),)

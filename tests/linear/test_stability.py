@@ -321,7 +321,7 @@ def test_rotor_that_becomes_stable_again_is_told_beside_its_threshold(monkeypatc
 
 
 def test_speed_without_resting_position_is_reported_and_the_rest_computed() -> None:
-    found = stability(load_case("jeffcott"), [1e-4, 50.0])
+    found = stability(load_case("jeffcott"), [1e-4, 50.0], threshold=True)
     slow, fast = found.points
     assert (slow.status, fast.status) == ("not-converged", "resting")
     assert slow.films == ()
@@ -329,6 +329,16 @@ def test_speed_without_resting_position_is_reported_and_the_rest_computed() -> N
     assert math.isnan(slow.growth)
     assert "0.0001 Hz" in slow.problem
     assert found.threshold is not None
+
+
+def test_given_speeds_alone_are_computed() -> None:
+    """The sweep in which a threshold is sought takes minutes with rings and heat."""
+    asked: list[tuple[int, int]] = []
+    found = stability(load_case("jeffcott", ["film.theory=short"]), [100.0], lambda *told: asked.append(told))
+    assert [point.speed_Hz for point in found.sweep] == [100.0]
+    assert asked == [(1, 1)]
+    assert found.threshold is None
+    assert "--threshold" in found.note
 
 
 def test_rest_is_not_sought_at_all_speeds_where_there_is_none(monkeypatch: pytest.MonkeyPatch) -> None:

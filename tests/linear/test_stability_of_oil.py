@@ -12,7 +12,8 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import steady_solution
-from frbcli.linear.damped_modes import FORWARD, damped_modes
+from frbcli.linear.critical_speeds import FORWARD
+from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.stability_point import point_at_rest

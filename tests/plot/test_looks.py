@@ -101,7 +101,7 @@ def test_all_panels_of_a_picture_follow() -> None:
 def test_bars_of_a_campbell_diagram_are_the_errors_of_its_eigenvalues() -> None:
     """A bar for each dot, and none where the coefficients are given and their errors are not known."""
     case = frbcli.load_case("jeffcott", ["film.theory=short", "speed.from=150 Hz", "speed.to=200 Hz"])
-    found = frbcli.stability(case, [150.0])
+    found = frbcli.stability(case, [150.0], threshold=True)
     above, below = campbell_figure(found).axes
     told = [(point.speed_Hz, mode.error / (2.0 * np.pi)) for point in found.sweep for mode in point.modes_with_errors]
     assert found.threshold is not None
@@ -116,7 +116,7 @@ def test_bars_of_a_campbell_diagram_are_the_errors_of_its_eigenvalues() -> None:
 
 def test_growth_has_a_gap_where_no_position_of_rest_was_found() -> None:
     """And the edge of the diagram does not cut the dots at its last speed."""
-    found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]), [150.0])
+    found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
     lost = replace(found.sweep[5], films=(), eigenvalues=np.zeros(0, dtype=complex), problem="not found")
     above, below = campbell_figure(replace(found, sweep=(*found.sweep[:5], lost, *found.sweep[6:]))).axes
     assert np.flatnonzero(np.isnan(below.lines[0].get_ydata())).tolist() == [5]

@@ -13,7 +13,7 @@ from scipy.optimize import brentq
 
 from frbcli.rotor import reduction
 from frbcli.rotor.beam import BeamSection, Plane, beam
-from frbcli.rotor.reduction import MOST, free_modes, reduction_error, whirl_modes
+from frbcli.rotor.reduction import MOST, FreeModes, free_modes, reduction_error, whirl_modes
 from frbcli.rotor.turbocharger import Journal, Wheel, wheels_on_shaft
 
 Array = NDArray[np.float64]
@@ -173,11 +173,15 @@ def test_what_a_reduction_leaves_out() -> None:
     """All modes together have the flexibility of the shaft between its ends; the missing part is what the rest adds."""
     ends = [Journal("a", 0.0), Journal("b", 0.2)]
     modes = free_modes(wheels_on_shaft([THICK], [], ends))
-    springs = np.stack([modes.at(end.position) for end in ends])
-    none = reduction_error(modes, len(modes.frequencies), springs, np.full(2, 1e7), 100.0)
+
+    def held(some: FreeModes) -> np.ndarray:
+        return np.stack([some.at(end.position) for end in ends])
+
+    springs = held(modes)
+    none = reduction_error(modes, modes, held, np.full(2, 1e7), 100.0)
     assert none.frequency == 0.0
     assert not none.missing_flexibility.any()
-    few, more = (reduction_error(modes, count, springs, np.full(2, 1e7), 100.0) for count in (4, 8))
+    few, more = (reduction_error(modes, modes.lowest(count), held, np.full(2, 1e7), 100.0) for count in (4, 8))
     step = springs[:, 4:8] / modes.frequencies[4:8]
     assert few.missing_flexibility - more.missing_flexibility == pytest.approx(step @ step.T, rel=1e-9)
     assert 0 < more.frequency < few.frequency < 0.05

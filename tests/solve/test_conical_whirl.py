@@ -103,7 +103,7 @@ def threshold_in_run_up(case: Case, found: Threshold, whirl: Whirl, path: Path) 
 
 
 def agree(case: Case, speeds: list[float], whirl: Whirl, path: Path) -> None:
-    found = frbcli.stability(case, speeds).threshold
+    found = frbcli.stability(case, speeds, threshold=True).threshold
     assert found is not None
     assert threshold_in_run_up(case, found, whirl, path) == pytest.approx(found.speed_Hz, rel=1e-2)
 

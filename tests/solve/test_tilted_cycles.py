@@ -174,7 +174,7 @@ def test_a_diagram_agrees_with_stability_and_with_a_run(tmp_path: Path, monkeypa
     )  # fmt: skip
     found = frbcli.limit_cycles(case, [speed])
     (hopf,) = found.of("hopf")
-    threshold = frbcli.stability(case, [235.0, 250.0]).threshold
+    threshold = frbcli.stability(case, [235.0, 250.0], threshold=True).threshold
     assert threshold is not None
     assert hopf.speed_Hz == pytest.approx(threshold.speed_Hz, rel=5e-4)
     assert hopf.frequency_Hz == pytest.approx(threshold.frequency_Hz, rel=1e-3)

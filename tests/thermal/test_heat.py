@@ -299,12 +299,12 @@ def test_hotter_supply_thins_the_film_and_lowers_its_loss() -> None:
 def test_threshold_is_that_of_the_warm_machine() -> None:
     """The case at the viscosity that the film has at the threshold has the same threshold."""
     loaded = ["rotor.gravity=9.81", "thermal.supply_temperature=90 degC"]
-    found = stability(single(*loaded), [150.0]).threshold
+    found = stability(single(*loaded), [150.0], threshold=True).threshold
     assert found is not None
     film = warm_machine(single(*loaded), found.speed_Hz).films[0]
     viscosity = f"oil.viscosity={film.viscosity}"
     isothermal = load_case("jeffcott", [*SINGLE[6:], "oil.density=830 kg/m^3", "rotor.gravity=9.81", viscosity])
-    again = stability(isothermal, [150.0]).threshold
+    again = stability(isothermal, [150.0], threshold=True).threshold
     assert again is not None
     assert again.speed_Hz == pytest.approx(found.speed_Hz, rel=1e-4)
 

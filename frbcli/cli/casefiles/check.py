@@ -9,6 +9,7 @@ import click
 
 from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.machines.stability_table import reduction_document, tell_reduction
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
@@ -92,7 +93,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
         _document(case, listed, bare, decisions)
-        | {"findings": _told_findings(found), "remarks": doubts}
+        | {"findings": _told_findings(case, found), "remarks": doubts}
         | {"films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
         | ({} if kinematic or case.axial is None else {"axial": _axial(case)})
@@ -177,7 +178,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     return heat_document(warm)
 
 
-def _told_findings(found: Findings) -> dict[str, object]:
+def _told_findings(case: Case, found: Findings) -> dict[str, object]:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 
@@ -185,6 +186,7 @@ def _told_findings(found: Findings) -> dict[str, object]:
         "mass_kg": found.mass,
         "natural_frequencies_Hz": found.frequencies_Hz,
         "supported": found.supported,
+        "reduction": None if found.mass is None else reduction_document(case),
         "films": documents(FILM_LOADS, found.films),
         "tilts": documents(FILM_TILTS, found.tilts),
     }
@@ -255,6 +257,7 @@ def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
         frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
         natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
         terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
+        tell_reduction(terminal, case)
     if found.films:
         terminal.show("static loads, at the top speed", table_of(FILM_LOADS, found.films))
     if found.tilts:

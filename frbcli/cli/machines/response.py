@@ -11,8 +11,8 @@ import click
 from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
-from frbcli.cli.machines.stability_table import tell_coefficient_error
-from frbcli.cli.options import speeds_option
+from frbcli.cli.machines.stability_table import reduction_document, tell_coefficient_error, tell_reduction
+from frbcli.cli.options import OPERATING_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
@@ -43,6 +43,8 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 @click.option("--excitation", default="unbalance", metavar="LOAD",
               help='The one load that excites the rotor, e.g. "force 2". '
                    "[the unbalance and all loads of order 1]")  # fmt: skip
+@click.option("--operating", type=OPERATING_OPTION, metavar="RANGE",
+              help='Speeds of operation, which critical speeds keep off, e.g. "8000..12000 rpm".')  # fmt: skip
 @outputs_options("CASE-response.png, here")
 @output_options
 def command(
@@ -51,6 +53,7 @@ def command(
     run_file: Path | None,
     as_map: bool,
     excitation: str,
+    operating: tuple[float, float] | None,
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
@@ -59,7 +62,7 @@ def command(
     Loads of order 1 join the unbalance; --excitation takes any harmonic load alone.
     """
     from frbcli.columns import documents, spread_table
-    from frbcli.linear.columns import RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
+    from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.response import response
     from frbcli.results.store import read_run
 
@@ -68,7 +71,7 @@ def command(
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
     with computing(terminal, case, kernels="rest") as shown:
-        found = response(case, speeds or None, shown.counting(), excitation)
+        found = response(case, speeds or None, shown.counting(), excitation, operating)
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     _tell(terminal, found, bool(speeds))
     films = ((point, film) for point in found.resting for film in point.films)
@@ -81,8 +84,10 @@ def command(
             "forces": spread_table(RESPONSE_FORCES, found).documents(),
             "films": spread_table(RESPONSE_FILMS, found).documents(),
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
+            "reduction": reduction_document(case),
             "critical_speeds_Hz": found.critical_speeds_Hz,
-            "error": {"critical_speeds_Hz": found.critical_speed_errors_Hz},
+            "critical_speeds": documents(PEAKS, found.critical_speeds),
+            "error": {"critical_speeds_Hz": [peak.speed_uncertainty_Hz for peak in found.critical_speeds]},
             **places.write(terminal, found, picture=lambda: _figure(found, tracks, as_map)),
         }
     )
@@ -117,8 +122,8 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
 def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
     import numpy as np
 
-    from frbcli.columns import with_uncertainty
-    from frbcli.linear.columns import RESPONSE
+    from frbcli.columns import table_of, with_uncertainty
+    from frbcli.linear.columns import PEAKS, RESPONSE
 
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
@@ -136,13 +141,17 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     explanation = EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + "."
     terminal.result(explanation.format(angle=found.angle))
+    tell_reduction(terminal, found.case)
     for sentence in _excitation(found):
         terminal.sentence(sentence)
     for sentence in _doubts(found):
         terminal.sentence(sentence)
-    told = zip(found.critical_speeds_Hz, found.critical_speed_errors_Hz, strict=True)
-    peaks = ", ".join(with_uncertainty(speed, error, 1) for speed, error in told)
-    terminal.result(f"Peaks at {peaks} Hz." if peaks else "No peak in the range.")
+    told = [with_uncertainty(peak.speed_Hz, peak.speed_uncertainty_Hz, 3) for peak in found.critical_speeds]
+    terminal.result(f"Peaks at {', '.join(told)} Hz." if told else "No peak in the range.")
+    if told:
+        terminal.show("Critical speeds", table_of(PEAKS, found.critical_speeds), RESPONSE)
+    if any(peak.amplitude is None for peak in found.critical_speeds):
+        terminal.sentence("Without an amplitude: the mode is not damped, and nothing bounds the peak.")
     tell_coefficient_error(terminal, found.resting)
     largest = found.amplitude.max(axis=0)
     known = (largest > 0.0) & np.isfinite(found.amplitude_error).all(axis=0)

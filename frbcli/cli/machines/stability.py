@@ -12,7 +12,13 @@ from frbcli.cli.bearings.heat import heat_document, tell_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
 from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, tell_modes
-from frbcli.cli.machines.stability_table import tell_coefficient_error, tell_collar, tell_points
+from frbcli.cli.machines.stability_table import (
+    reduction_document,
+    tell_coefficient_error,
+    tell_collar,
+    tell_points,
+    tell_reduction,
+)
 from frbcli.cli.options import SPEED_OPTION, STIFFNESS_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
@@ -28,6 +34,8 @@ if TYPE_CHECKING:
 @click.command()
 @case_argument
 @speeds_option("60 over the range of CASE")
+@click.option("--threshold", "with_threshold", is_flag=True,
+              help="Seek the threshold over the range of CASE beside speeds of --speed, too.")  # fmt: skip
 @click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
@@ -37,6 +45,7 @@ if TYPE_CHECKING:
 def command(
     case: Case,
     speeds: tuple[float, ...],
+    with_threshold: bool,
     stiffness: float | None,
     shapes: float | None,
     outputs: OutputOptions,
@@ -62,7 +71,7 @@ def command(
         emit_modes(terminal, case, stiffness, speeds, places)
         return None
     with computing(terminal, case, kernels="rest") as shown:
-        found = stability(case, speeds or None, shown.counting())
+        found = stability(case, speeds or None, shown.counting(), with_threshold)
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
     _tell(terminal, found, kind, bool(speeds))
     written = places.write(terminal, found, "Campbell diagram")
@@ -82,6 +91,7 @@ def command(
             "threshold": found.threshold and asdict(found.threshold) | {"whirl_ratio": found.threshold.whirl_ratio},
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
+            "reduction": reduction_document(case),
             **written,
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
@@ -96,6 +106,7 @@ def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, ever
     tell_points(terminal, found, every_speed)
     tell_coefficient_error(terminal, found.points)
     terminal.sentence(_sentence(found))
+    tell_reduction(terminal, found.case)
     tell_collar(terminal, found)
     warmest = found.points[-1]
     if warmest.warm is not None:

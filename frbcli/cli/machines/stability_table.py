@@ -16,6 +16,7 @@ from frbcli.linear.thrust.columns import AXIAL
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
+    from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
@@ -91,6 +92,26 @@ def _speed(point: StabilityPoint) -> str:
 def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
     """The largest error of the coefficients of some points."""
     tell_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
+
+
+def tell_reduction(terminal: Terminal, case: Case) -> None:
+    """What the reduction of a shaft keeps, and what that changes."""
+    from frbcli.scene.shafts.table import shaft_of
+
+    if (reduction := shaft_of(case).reduction) is not None:
+        terminal.sentence(f"Reduction of the shaft to {reduction.words}.")
+
+
+def reduction_document(case: Case) -> dict[str, float] | None:
+    """The same in JSON, None for a shaft that is not reduced."""
+    from frbcli.scene.shafts.table import shaft_of
+
+    found = shaft_of(case).reduction
+    if found is None:
+        return None
+    static = len(found.modes.frequencies) - found.free
+    changes = {"frequency_relative": found.frequency, "amplitude_relative": found.amplitude}
+    return {"free_modes": found.free, "static_modes": static, **changes}
 
 
 def tell_collar(terminal: Terminal, found: Stability) -> None:

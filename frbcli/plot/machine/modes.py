@@ -10,7 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.linear.damped_modes import BACKWARD, FORWARD, DampedMode, DampedModes
+from frbcli.linear.critical_speeds import BACKWARD, FORWARD
+from frbcli.linear.damped_modes import DampedMode, DampedModes
 from frbcli.linear.modes import SHOWN, Mode, Modes
 from frbcli.plot.style import BAND, BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
 from frbcli.rotor.order import first_largest

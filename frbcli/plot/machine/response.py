@@ -12,7 +12,8 @@ from matplotlib.figure import Figure
 from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.arrays import Array
 from frbcli.linear.critical_map import CriticalMap
-from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response, larger_semi_axis
+from frbcli.linear.critical_speeds import larger_semi_axis
+from frbcli.linear.response import BEYOND_GAP, DOUBTFUL_MOTION, SOUND, UNBALANCE, Response
 from frbcli.plot.style import (
     BAND,
     BLACK,
@@ -103,9 +104,13 @@ def draw_amplitude(axes: Axes, found: Response) -> None:
         axes.fill_between(
             found.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
         )
-    for number, critical in enumerate(found.critical_speeds_Hz):
+    for number, peak in enumerate(found.critical_speeds):
         label = None if number else "critical speed"
-        axes.axvline(critical, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
+        axes.axvline(peak.speed_Hz, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
+        factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
+        axes.annotate(f"{peak.speed_Hz:.4g} Hz, {peak.direction}{factor}", (peak.speed_Hz, 1.0), (-2, -3),
+                      xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=6,
+                      ha="right", va="top", color=GREY)  # fmt: skip
     if set(found.validity) != {SOUND}:
         _doubts(axes, found, labelled=True)
         for number, clearance in enumerate(np.unique(found.clearances, axis=1).T):

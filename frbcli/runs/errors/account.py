@@ -139,6 +139,8 @@ def _error_rows(error: dict[str, Any]) -> list[tuple[str, str, str]]:
     ]
     if error.get("modal_reduction") is not None:
         rows.append(("error, modal reduction", f"{error['modal_reduction']:.1e}", "of the natural frequencies"))
+    if error.get("modal_reduction_amplitude") is not None:
+        rows.append(("", f"{error['modal_reduction_amplitude']:.1e}", "of the heights of peaks at critical speeds"))
     if error.get("eccentricity") is not None:
         until = f"total, until {error['quiet_until_s']:.3g} s{grows_late(error)}"
         rows.append(("error of the eccentricity", f"{error['eccentricity']:.1e}", until))

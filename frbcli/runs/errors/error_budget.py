@@ -62,7 +62,7 @@ def error_budget(
     eccentric, displaced = (_reach(system, quiet, parts) for parts in (_journals(system), _points(system)))
     by_films = system.films.reach * (films.relative(until) or force or 0.0)
     in_films, in_points = by_films * eccentric, by_films * max(eccentric, displaced)
-    cells = None if fewer is None else fewer.error(quiet, system)
+    cells, reduced = None if fewer is None else fewer.error(quiet, system), modal_reduction(case, system, samples)
     if cells is not None:
         in_films, in_points = cells.eccentricity, cells.displacement
     return {
@@ -70,7 +70,8 @@ def error_budget(
         "model_relative": force if short else None,
         "mesh_relative": None if short else force,
         "coupling": NEWTON_SHARE * plan.tolerance if coupling_named(plan.coupling).iterates else None,
-        "modal_reduction": modal_reduction(case, system, samples),
+        "modal_reduction": None if reduced is None else reduced[0],
+        "modal_reduction_amplitude": None if reduced is None else reduced[1],
         "cells": None if cells is None else cells.eccentricity,
         "eccentricity": fading + in_films if system.names else None,
         "displacement": LASTING * whole + in_points,
@@ -155,14 +156,15 @@ def quiet_until(events: Iterable[Mapping[str, Any]], end: float) -> float:
     return min([end, *(BEFORE_WHIRL * float(event["t_s"]) for event in events if event["kind"] in PARTING)])
 
 
-def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
-    """Relative error of the slowest natural frequencies by the rotor's modes that were left out, on springs as stiff as
-    the films in the middle of the run; None for a rotor that has no modes, or without a state whose films are stiff."""
+def modal_reduction(case: Case, system: System, samples: Array) -> tuple[float, float] | None:
+    """Relative errors by the rotor's modes that were left out, on springs as stiff as the films in the middle of the
+    run: of the slowest natural frequencies, and of the heights of peaks at critical speeds. None for a rotor that has
+    no modes, or without a state whose films are stiff."""
     if case.rotor.symmetric or not len(samples):
         return None
     free, middle = shaft_of(case).free(), samples[len(samples) // 2]
     if free.kept == len(free.modes.frequencies):
-        return 0.0
+        return 0.0, 0.0
     try:
         springs = _springs(case, system, middle)
     except NotConverged:
@@ -170,7 +172,9 @@ def modal_reduction(case: Case, system: System, samples: Array) -> float | None:
     if not np.all(springs > 0.0):
         return None
     springs = np.concatenate([springs, element_springs(case, float(middle[2 * system.rotor.size]))])
-    return free.reduction_error(springs, 2.0 * math.pi * max(case.speed.start, case.speed.end)).frequency
+    top = 2.0 * math.pi * max(case.speed.start, case.speed.end)
+    amplitude = free.reduced_on(np.maximum(springs[: len(free.journals)], 1e-300), top).amplitude
+    return free.reduction_error(springs, top).frequency, amplitude
 
 
 def _springs(case: Case, system: System, sample: Array) -> Array:

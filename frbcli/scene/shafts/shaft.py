@@ -14,6 +14,7 @@ from frbcli.rotor.body import Body
 from frbcli.rotor.linear import Array, LinearRotor
 
 if TYPE_CHECKING:
+    from frbcli.rotor.reduction import Reduction
     from frbcli.scene.shafts.turbocharger import FreeShaft
 
 
@@ -74,6 +75,11 @@ class Shaft(ABC):
     def beam_freedoms(self) -> int:
         """Degrees of freedom of a plane before the reduction to modes, 0 of a shaft that is not reduced."""
         return 0
+
+    @property
+    def reduction(self) -> Reduction | None:
+        """What it is reduced to, None of a shaft that is not. Raises InputError if it has no modes."""
+        return None
 
     @property
     @abstractmethod

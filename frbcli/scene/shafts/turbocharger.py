@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import ClassVar
 
 import numpy as np
@@ -15,33 +15,88 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.body import Body
 from frbcli.rotor.linear import Array, LinearRotor
-from frbcli.rotor.reduction import MOST, RIGID, FreeModes, ReductionError, free_modes, reduction_error
+from frbcli.rotor.reduction import (
+    EXACT,
+    MOST,
+    RIGID,
+    FreeModes,
+    Places,
+    Reduction,
+    ReductionError,
+    free_modes,
+    judged,
+    reduction,
+    reduction_error,
+    with_static_modes,
+)
 from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
 from frbcli.scene.shafts.shaft import STANDS, TURNS, Shaft, Stations
 
+USUAL = 4  # free modes of a reduction that is made for its target
 FREQUENCIES = 3  # bending modes that are shown
 
 
 @dataclass(frozen=True)
 class FreeShaft:
-    """A shaft in its free modes. modes: all of each plane; kept: how many of them its body has; journals: places of all
+    """A shaft in its free modes. modes: all of each plane; reduced: those of its body; journals: places of all
     bearings, those with a film first; wheels: its disks; collars: places that are held in tilt."""
 
     modes: FreeModes
-    kept: int
+    reduced: Reduction
     journals: tuple[Journal, ...]
     wheels: tuple[Wheel, ...]
     collars: tuple[Journal, ...] = ()
 
     @property
+    def kept(self) -> int:
+        """Modes of each plane that its body has."""
+        return len(self.reduced.modes.frequencies)
+
+    @property
     def held(self) -> Array:
         """(b, n) displacements of the modes at the bearings, then their slopes at the collars."""
-        slopes = [self.modes.slope_at(collar.position) for collar in self.collars]
-        return np.stack([*(self.modes.at(journal.position) for journal in self.journals), *slopes])
+        return self._held(self.modes)
+
+    def reduced_on(self, springs: Array, top: float) -> Reduction:
+        """The reduction with its changes on springs (b,) in N/m of the bearings, up to the speed `top` in rad/s."""
+        positions = (tuple(each.position for each in some) for some in (self.journals, self.wheels, self.collars))
+        return _judged(self.modes, self.reduced.modes, Places(*positions), top, self.reduced.free, springs)
+
+    def _held(self, modes: FreeModes) -> Array:
+        slopes = [modes.slope_at(collar.position) for collar in self.collars]
+        return np.stack([*(modes.at(journal.position) for journal in self.journals), *slopes])
 
     def reduction_error(self, springs: Array, omega: float) -> ReductionError:
-        """What the modes leave out that are not kept, on springs (b,) in N/m, or N m of collars, at omega rad/s."""
-        return reduction_error(self.modes, self.kept, self.held, springs, omega)
+        """What the reduction leaves out, on springs (b,) in N/m, or N m of collars, at omega rad/s."""
+        return reduction_error(self.modes, self.reduced.modes, self._held, springs, omega)
+
+
+@lru_cache(maxsize=8)
+def _free_shaft(
+    sections: tuple[BeamSection, ...],
+    wheels: tuple[Wheel, ...],
+    journals: tuple[Journal, ...],
+    collars: tuple[Journal, ...],
+    top: float,
+    asked: tuple[int | None, float | None, float],
+) -> FreeShaft:
+    """A shaft in the modes that are asked for: their number, or a cut-off in Hz, or as many as a target needs up to the
+    speed `top` in rad/s. A command makes its machine several times. Raises NotConverged."""
+    modes = free_modes(wheels_on_shaft(sections, wheels, (*journals, *collars)))
+    positions = (tuple(each.position for each in some) for some in (journals, wheels, collars))
+    places, (count, cutoff, target) = Places(*positions), asked
+    if count is None and cutoff is None:
+        return FreeShaft(modes, reduction(modes, places, top, target), journals, wheels, collars)
+    count = count or RIGID if cutoff is None else modes.below(2.0 * math.pi * cutoff)
+    kept = min(max(count, RIGID), len(modes.frequencies))
+    return FreeShaft(modes, _judged(modes, modes.lowest(kept), places, top, kept), journals, wheels, collars)
+
+
+def _judged(
+    modes: FreeModes, reduced: FreeModes, places: Places, top: float, free: int, springs: Array | None = None
+) -> Reduction:
+    exact = with_static_modes(modes, min(EXACT, len(modes.frequencies)), places)
+    return judged(reduced, exact, places, top, free, springs)
 
 
 @dataclass(frozen=True)
@@ -64,7 +119,7 @@ class TurbochargerShaft(Shaft):
 
     def body(self) -> Body:
         rotor, free = self.rotor, self.free()
-        modes = free.modes.lowest(free.kept)
+        modes = free.reduced.modes
         damping = rotor.modal_damping, rotor.external_damping
         return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.collars)
 
@@ -79,22 +134,25 @@ class TurbochargerShaft(Shaft):
 
     @cached_property
     def _free(self) -> FreeShaft:
-        case = self.case
-        sections = [BeamSection(**dict(part) | {"internal_damping": self._internal(part)}) for part in case.shaft]
+        case, rotor, speed = self.case, self.rotor, self.case.given_speed
+        sections = tuple(BeamSection(**dict(part) | {"internal_damping": self._internal(part)}) for part in case.shaft)
         bearings = (*case.bearings, *case.elements)
         journals = tuple(Journal(bearing.name, bearing.position or 0.0) for bearing in bearings)
         acting = case.thrust_bearings if case.axial is not None else ()
         collars = tuple(Journal(COLLAR, each.position or 0.0) for each in acting)
+        top = 0.0 if speed is None else 2.0 * math.pi * max(abs(speed.start), abs(speed.end))
+        asked = (rotor.modes, rotor.cutoff, case.accuracy.target)
         try:
-            modes = free_modes(wheels_on_shaft(sections, self._wheels, (*journals, *collars)))
+            return _free_shaft(sections, self._wheels, journals, collars, top, asked)
         except NotConverged as error:
             problem = f"is no shaft whose motion can be computed. {error}"
             remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
             fault = Fault("shaft", f"{len(sections)} sections", None, problem, remedy)
             raise InputError(case.name or "case", (fault,)) from None
-        cutoff = self.rotor.cutoff
-        count = self.rotor.modes if cutoff is None else modes.below(2 * math.pi * cutoff)
-        return FreeShaft(modes, min(max(count, RIGID), len(modes.frequencies)), journals, self._wheels, collars)
+
+    @property
+    def reduction(self) -> Reduction:
+        return self.free().reduced
 
     def _internal(self, part: ShaftSection) -> float:
         """The internal damping of a section over its stiffness, s."""
@@ -140,8 +198,10 @@ class TurbochargerShaft(Shaft):
         """See Shaft: below a cut-off as many modes of a plane as the shaft without its wheels has half waves at that
         frequency."""
         rotor = self.rotor
+        if rotor.modes is None and rotor.cutoff is None:
+            return 2 * min(USUAL + len(self.case.placed_bearings) + len(self.case.disks), self.beam_freedoms)
         if rotor.cutoff is None:
-            return 2 * min(rotor.modes, self.beam_freedoms)
+            return 2 * min(rotor.modes or RIGID, self.beam_freedoms)
         omega, waves = 2.0 * math.pi * rotor.cutoff, 0.0
         for part in self.case.shaft:
             gyration = math.hypot(part.diameter, part.inner_diameter) / 4.0
@@ -166,7 +226,7 @@ class TurbochargerShaft(Shaft):
     def stations(self, machine: LinearRotor) -> Stations:
         free = self.free()
         maps = np.zeros((len(free.modes.positions), 2, machine.size))
-        maps[:, 0, : free.kept] = maps[:, 1, free.kept : 2 * free.kept] = free.modes.shapes[:, : free.kept]
+        maps[:, 0, : free.kept] = maps[:, 1, free.kept : 2 * free.kept] = free.reduced.modes.shapes
         marks = [(bearing.name, bearing.position or 0.0) for bearing in self.case.placed_bearings]
         marks += [(disk.name, disk.position) for disk in self.case.disks]
         return Stations(free.modes.positions, maps, True, tuple(marks))

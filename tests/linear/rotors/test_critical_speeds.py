@@ -1,0 +1,195 @@
+"""Critical speeds of `response` against closed forms, and against the machine solved densely around them."""
+
+from __future__ import annotations
+
+import json
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import frbcli
+from frbcli.case.reading.load import case_from_dict
+from frbcli.cli.main import run as frb
+from frbcli.linear.critical_speeds import larger_semi_axis
+from frbcli.linear.response import CriticalSpeed
+
+TURN = 2.0 * math.pi
+K, M, U = 1e6, 2.0, 1e-6
+
+
+def rigid(damping: float, top: float = 300.0, stiffness: Any = None, **rotor: Any) -> frbcli.Case:
+    """A mass on two bearings: w^2 = 2 K / M."""
+    bearing = {"kind": "coefficients", "damping": f"{damping!r} N*s/m"}
+    bearing["stiffness"] = f"{K} N/m" if stiffness is None else stiffness
+    own = {"kind": "rigid", "mass": f"{M} kg", "unbalance": f"{U} kg*m", "gravity": 0} | rotor
+    speed = {"from": "0 Hz", "to": f"{top} Hz", "duration": "1 s"}
+    return case_from_dict({"rotor": own, "bearing": bearing, "speed": speed}, "rigid")
+
+
+def of_one_mass(ratio: float) -> tuple[float, float, float]:
+    """Speed over the natural frequency, amplitude over U / M, and factor of the response r^2 / |1 - r^2 + 2 i z r|."""
+    speed = 1.0 / math.sqrt(1.0 - 2.0 * ratio**2)
+    height = 1.0 / (2.0 * ratio * math.sqrt(1.0 - ratio**2))
+    # r^4 height^-2 2 = (1 - r^2)^2 + 4 z^2 r^2 at the half power
+    roots = np.sqrt(np.roots([1.0 - 2.0 / height**2, 4.0 * ratio**2 - 2.0, 1.0]).real)
+    return speed, height, speed / float(abs(roots[1] - roots[0]))
+
+
+@pytest.mark.parametrize("damping", [0.1, 1.0, 30.0, 300.0])
+def test_the_peak_of_a_mass_on_springs_is_that_of_the_closed_form(damping: float) -> None:
+    natural = math.sqrt(2.0 * K / M)
+    ratio = damping / (M * natural)
+    speed, height, factor = of_one_mass(ratio)
+    (peak,) = frbcli.response(rigid(damping)).critical_speeds
+    assert peak.speed_Hz == pytest.approx(speed * natural / TURN, rel=2e-6)
+    assert peak.amplitude == pytest.approx(height * U / M, rel=1e-6)
+    assert peak.amplification_factor == pytest.approx(factor, rel=1e-4)
+    assert peak.logarithmic_decrement == pytest.approx(TURN * ratio / math.sqrt(1.0 - ratio**2), rel=1e-9)
+    assert (peak.direction, peak.node) == ("forward", "journal")
+    assert 0.0 < peak.speed_uncertainty_Hz < 1e-4 * peak.speed_Hz
+
+
+def test_a_peak_is_found_from_given_speeds_which_stay_as_they_are() -> None:
+    found = frbcli.response(rigid(0.1), [100.0, 150.0, 250.0])
+    assert found.speeds_Hz.tolist() == [100.0, 150.0, 250.0]
+    assert found.critical_speeds_Hz == pytest.approx([math.sqrt(2.0 * K / M) / TURN], rel=1e-5)
+    assert frbcli.response(rigid(0.1), [100.0]).critical_speeds == ()
+
+
+def test_without_damping_a_critical_speed_has_no_height() -> None:
+    (peak,) = frbcli.response(rigid(0.0)).critical_speeds
+    assert peak.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / TURN, rel=1e-9)
+    assert (peak.amplitude, peak.amplification_factor, peak.logarithmic_decrement) == (None, None, 0.0)
+
+
+def test_directions_of_unlike_stiffness_have_two_and_close_ones_are_told_apart() -> None:
+    """To and fro in a line each: no sense of whirl."""
+    stiffness = [[f"{K} N/m", "0 N/m"], ["0 N/m", f"{1.01 * K} N/m"]]
+    expected = [math.sqrt(2.0 * each / M) / TURN for each in (K, 1.01 * K)]
+    for damping in (0.0, 0.1):
+        found = frbcli.response(rigid(damping, stiffness=stiffness)).critical_speeds
+        assert [peak.speed_Hz for peak in found] == pytest.approx(expected, rel=1e-5)
+        assert [peak.mode for peak in found] == [1, 2]
+        assert {peak.direction for peak in found} == {"mixed"}
+
+
+def test_a_rotor_that_turns_about_its_centre_of_mass_has_no_critical_speed() -> None:
+    """Far above its natural frequency, where the amplitude is U / M but for round-off."""
+    case = rigid(1.0)
+    assert frbcli.response(case, np.linspace(3000.0, 9000.0, 40).tolist()).critical_speeds == ()
+
+
+def two_disks(damping: float, stiffness: tuple[float, float] = (1e6, 0.8e6)) -> frbcli.Case:
+    """A shaft of 1.5 m with two disks in soft bearings of unlike stiffness."""
+    k = [[f"{stiffness[0]} N/m", "0 N/m"], ["0 N/m", f"{stiffness[1]} N/m"]]
+    disk = {"mass": "32.59 kg", "polar_inertia": "0.3296 kg*m^2", "diametral_inertia": "0.1781 kg*m^2"}
+    return case_from_dict(
+        {
+            "rotor": {"kind": "turbocharger", "modes": 16, "gravity": 0},
+            "shaft": [{"length": "1.5 m", "diameter": "50 mm", "density": "7810 kg/m^3", "youngs_modulus": "211 GPa"}],
+            "disk": [
+                {"name": "one", "position": "0.5 m", "unbalance": "10 g*mm", **disk},
+                {"name": "two", "position": "1 m", **disk},
+            ],
+            "bearing": [
+                {"kind": "coefficients", "name": name, "position": place, "stiffness": k,
+                 "damping": f"{damping} N*s/m"} for name, place in (("a", "0 m"), ("b", "1.5 m"))
+            ],
+            "speed": {"from": "0 Hz", "to": "150 Hz", "duration": "1 s"},
+        },
+        "two disks",
+    )  # fmt: skip
+
+
+def test_undamped_critical_speeds_are_where_a_whirl_has_the_frequency_of_the_rotor() -> None:
+    found = frbcli.response(two_disks(0.0)).critical_speeds
+    assert [round(peak.speed_Hz) for peak in found] == [15, 15, 43, 48, 101, 138]
+    assert [peak.mode for peak in found] == [1, 2, 3, 4, 5, 6]
+    assert [peak.direction for peak in found] == ["backward", "forward"] * 3
+    for peak in found:
+        modes = frbcli.damped_modes(two_disks(0.0), peak.speed_Hz).modes
+        assert min(abs(mode.frequency_Hz / peak.speed_Hz - 1.0) for mode in modes) < 1e-9
+        assert peak.amplitude is None
+
+
+def test_isotropic_bearings_leave_backward_whirls_at_rest() -> None:
+    found = frbcli.response(two_disks(0.0, (1e6, 1e6))).critical_speeds
+    assert {peak.direction for peak in found} == {"forward"}
+    assert len(found) == 3
+
+
+def test_every_peak_is_the_highest_speed_around_it() -> None:
+    """The same machine at many speeds beside each: 1e-4 in speed, 1e-3 in height."""
+    case = two_disks(100.0)
+    found = frbcli.response(case)
+    assert len(found.critical_speeds) >= 5
+    for peak in found.critical_speeds:
+        point = found.points.index(peak.node)
+        near = peak.speed_Hz * (1.0 + np.linspace(-2e-3, 2e-3, 81))
+        amplitude = frbcli.response(case, near.tolist()).amplitude[:, point]
+        top = int(np.argmax(amplitude))
+        assert near[top] == pytest.approx(peak.speed_Hz, rel=1e-4)
+        assert peak.amplitude == pytest.approx(amplitude[top], rel=1e-3)
+        assert float(found.amplitude[:, point].max()) >= peak.amplitude * (1.0 - 1e-6)  # the curve has its peaks
+
+
+def test_peaks_on_films_are_where_the_machine_solved_there_has_them() -> None:
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0.1 g*mm"])
+    found = frbcli.response(case)
+    for peak in found.critical_speeds:
+        point = found.points.index(peak.node)
+        near = peak.speed_Hz * (1.0 + np.linspace(-1e-2, 1e-2, 21))
+        amplitude = frbcli.response(case, near.tolist()).amplitude[:, point]
+        fit = np.polynomial.Polynomial.fit(near, amplitude, 4)
+        tops = [root.real for root in fit.deriv().roots() if abs(root.imag) < 1e-9 and near[0] < root.real < near[-1]]
+        top = max(tops, key=fit)
+        assert peak.speed_Hz == pytest.approx(top, rel=2e-4)
+        assert peak.amplitude == pytest.approx(float(fit(top)), rel=1e-3)
+
+
+def test_speeds_of_operation_have_a_margin(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    path = tmp_path / "mass.toml"
+    path.write_text(
+        f"""
+[rotor]
+kind = "rigid"
+mass = "{M} kg"
+unbalance = "1 g*mm"
+[[bearing]]
+kind = "coefficients"
+stiffness = "{K} N/m"
+damping = "10 N*s/m"
+[speed]
+from = "0 Hz"
+to = "300 Hz"
+duration = "1 s"
+""",
+        encoding="utf-8",
+    )
+    critical = 60.0 * math.sqrt(2.0 * K / M) / TURN  # rpm
+    for given, margin in (
+        ("12000..15000 rpm", 1.0 - critical / 12000.0), ("100 Hz..120 Hz", critical / 7200.0 - 1.0),
+        ("9000 rpm..200 Hz", 0.0),
+    ):  # fmt: skip
+        assert frb(["response", str(path), "--operating", given, "--no-picture", "--json"]) == 0
+        document = json.loads(capsys.readouterr().out)
+        (peak,) = document["critical_speeds"]
+        assert set(peak) == {
+            "speed_Hz", "speed_uncertainty_Hz", "mode", "direction", "node", "amplitude_m", "amplification_factor",
+            "separation_margin", "logarithmic_decrement",
+        }  # fmt: skip
+        assert document["critical_speeds_Hz"] == [peak["speed_Hz"]]
+        assert peak["separation_margin"] == pytest.approx(margin, abs=1e-4)
+    assert frb(["response", str(path), "--operating", "12000..15000 rpm", "--no-picture"]) == 0
+    assert "Critical speeds" in capsys.readouterr().out
+    assert frb(["response", str(path), "--operating", "15000..12000 rpm", "--no-picture"]) == 2
+    assert "does not ascend" in capsys.readouterr().err
+
+
+def test_amplitudes_are_those_of_the_larger_semi_axis() -> None:
+    """A circle one way of 2 and the other way of 1."""
+    assert larger_semi_axis(np.array([3.0 + 0j, -1j])) == pytest.approx(3.0)
+    assert CriticalSpeed.__dataclass_fields__["amplitude"].type == "float | None"
