@@ -52,7 +52,6 @@ from frbcli.studies.comparison_columns import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
 from frbcli.studies.hard.cases import HARD_CASE, HARD_RESULT
 from frbcli.studies.ladder import LADDER
-from frbcli.studies.onset_spread import ONSET_RUNS
 from frbcli.studies.sweep.sweep import point_columns
 
 
@@ -105,7 +104,6 @@ TABLES: dict[str, Columns] = {
     "fit": FITTED,
     "deviations": of_json(DEVIATIONS),
     "ridges": of_pandas(RIDGES),
-    "onset spread": ONSET_RUNS,
     "hard cases": HARD_CASE,
     "hard results": HARD_RESULT,
     "events": of_json(EVENTS),

@@ -26,7 +26,6 @@ if TYPE_CHECKING:
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer
     from frbcli.scene.costs.cost import ExpectedCost
-    from frbcli.studies.onset_spread import OnsetSpread
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -72,15 +71,12 @@ def run_options(function: Function) -> Function:
 @click.command()
 @case_argument
 @run_options
-@click.option("--onset-spread", is_flag=True,
-              help="Repeat the run with other ramps, steps and cells: the range of speeds in which a "
-                   "whirl begins.")  # fmt: skip
 @output_options
-def runup(case: Case, options: RunOptions, onset_spread: bool, terminal: Terminal) -> int:
+def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
     """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
     from frbcli.runs import run
 
-    return transient("runup", run.runup, case, options, terminal, onset_spread)
+    return transient("runup", run.runup, case, options, terminal)
 
 
 @click.command()
@@ -94,14 +90,7 @@ def rundown(case: Case, options: RunOptions, terminal: Terminal) -> int:
     return transient("rundown", run.rundown, case, options, terminal)
 
 
-def transient(
-    command: str,
-    run_case: Transient,
-    case: Case,
-    options: RunOptions,
-    terminal: Terminal,
-    spread: bool = False,
-) -> int:
+def transient(command: str, run_case: Transient, case: Case, options: RunOptions, terminal: Terminal) -> int:
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
     from frbcli.runs.errors.second_run import SECOND_RUN
@@ -126,7 +115,6 @@ def transient(
     _report(case, run, terminal)
     terminal.result(f"run: {path}")
     verified = _verified(case, run, terminal) if options.verify and run.status != "interrupted" else None
-    onset = spread_shown(case, run, terminal) if spread and run.status != "interrupted" else None
     explained = _explained(case, run, terminal) if options.explain and run.status != "interrupted" else None
     terminal.emit(
         {
@@ -137,7 +125,6 @@ def transient(
             "events": run.events,
             "cost": run.cost,
             "error": run.error if verified is None else {**run.error, "verified": verified},
-            **({} if onset is None else {"onset_spread": onset}),
             **({} if explained is None else {"explanations": explained}),
         }
     )
@@ -145,7 +132,7 @@ def transient(
         from frbcli.plot.run.summary import summary_figure
 
         draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
-    interrupted = any(again is not None and again["status"] == "interrupted" for again in (verified, onset))
+    interrupted = verified is not None and verified["status"] == "interrupted"
     return exit_code("interrupted" if interrupted else run.status)
 
 
@@ -247,45 +234,3 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
         for sentence in about_certainty(events, run.cost):
             terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))
-
-
-def spread_shown(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
-    """The ensemble as text, and as part of the JSON document."""
-    from frbcli.studies.onset_spread import onset_spread
-
-    try:
-        with display(terminal) as shown:
-
-            def watch(number: int, count: int, progress: Progress) -> None:
-                shown.redraw(f"run {number} of {count}\n{progress_line(progress)}")
-
-            found = onset_spread(case, run, watch)
-    except KeyboardInterrupt:
-        terminal.remark("Interrupted before all runs of the onset had ended.")
-        return {"status": "interrupted"}
-    if found is None:
-        terminal.result("No whirl begins in this run: its onset has no spread.")
-        return {"status": "no-onset"}
-    _show(found, terminal)
-    low, high = found.interval_Hz
-    return {
-        "status": "finished",
-        "onset_Hz": found.onset_Hz,
-        "threshold_Hz": found.threshold_Hz,
-        "lowest_Hz": low,
-        "highest_Hz": high,
-        "cpu_s": found.cpu_s,
-        "runs": found.table().documents(),
-    }
-
-
-def _show(found: OnsetSpread, terminal: Terminal) -> None:
-    low, high = found.interval_Hz
-    table = found.table()
-    rows = [("this run", f"{found.onset_Hz:.1f}"), *table.cells()]
-    if found.threshold_Hz is not None:
-        rows.append(("linear threshold of stability", f"{found.threshold_Hz:.1f}"))
-    terminal.table("onset of the first whirl", table.heads(), rows)
-    most = f"{high:.1f} Hz" if math.isfinite(high) else "the end of a run without one"
-    told = f"The onset lies between {low:.1f} Hz and {most} ({found.cpu_s:.3g} s of CPU time). {found.note}".strip()
-    terminal.sentence(told)
