@@ -82,6 +82,13 @@ def overloads(module: Module) -> Iterator[tuple[str, str]]:
                         yield name, ast.unparse(decorator.args[0])
 
 
+def parents(module: str) -> Iterator[str]:
+    """The packages of a module, which are imported before it."""
+    while "." in module:
+        module = module.rpartition(".")[0]
+        yield module
+
+
 def reached(modules: dict[str, Module], roots: list[Name]) -> set[Name]:
     found, waiting, awake = set[Name](), list(roots), set[str]()
     implementing = {
@@ -103,6 +110,7 @@ def reached(modules: dict[str, Module], roots: list[Name]) -> set[Name]:
         if here not in awake:
             awake.add(here)
             statements += module.always
+            waiting += [(package, "") for package in parents(here)]
         if (here, name) in implementing:
             waiting.append(implementing[here, name])
         for statement in statements:

@@ -95,12 +95,8 @@ def linearised(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arra
     return here.mass, d, k
 
 
-def state_matrix(rotor: LinearRotor, omega: float, stiffness: Array, damping: Array) -> Array:
-    """(2 n, 2 n) of the states (q, q'), as `linearised`, q without the angles of rings on which nothing depends."""
-    return _states(linearised(rotor, omega, stiffness, damping), rotor.turning)
-
-
-def _states(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]) -> Array:
+def states(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]) -> Array:
+    """(2 n, 2 n) of the states (q, q') of mass, damping and stiffness (n, n), without the angles of turning rings."""
     whole = first_order(*matrices)
     kept = np.delete(np.arange(len(whole)), turning)
     return np.asarray(whole[np.ix_(kept, kept)])
@@ -114,7 +110,7 @@ def eigenpairs(rotor: LinearRotor, omega: float, stiffness: Array, damping: Arra
 
 def small_motions(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]) -> tuple[Complex, Complex]:
     """As eigenpairs, of mass, damping and stiffness (n, n). turning: see LinearRotor."""
-    values, vectors = np.linalg.eig(_states(matrices, turning))
+    values, vectors = np.linalg.eig(states(matrices, turning))
     motions = vectors[-len(matrices[0]) :].astype(complex)  # velocities, of which each degree of freedom has one
     found = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
     return found, motions

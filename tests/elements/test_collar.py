@@ -15,7 +15,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.elements.collar.collar import NotCarried, collar_of
 from frbcli.elements.collar.thrust import ThrustElement
-from frbcli.equilibrium.linearised import state_matrix
+from frbcli.equilibrium.linearised import linearised, states
 from frbcli.errors import InputError
 from frbcli.linear.thrust.axial import axial_state
 from frbcli.scene.machine.elements import site_of
@@ -112,7 +112,7 @@ def test_conical_motion_of_a_rigid_shaft_has_its_closed_form(case: Case) -> None
     stiffness = 2.0 * SPRING * ARM**2 + complex(rest.tilt_stiffness[0, 0], rest.tilt_stiffness[1, 0])
     conical = np.roots([diametral, complex(rest.tilt_damping[0, 0], -SPEED * polar), stiffness])
     nothing = np.zeros((0, 2, 2))
-    found = np.linalg.eigvals(state_matrix(make_rotor(case), SPEED, nothing, nothing))
+    found = np.linalg.eigvals(states(linearised(make_rotor(case), SPEED, nothing, nothing), make_rotor(case).turning))
     for root in conical:
         assert np.abs(found - root).min() < 1e-9 * abs(root)
         assert np.abs(found - root.conjugate()).min() < 1e-9 * abs(root)

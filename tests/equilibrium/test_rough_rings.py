@@ -15,11 +15,12 @@ from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import film_loads, make_machine
 from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
-from frbcli.equilibrium.linearised import rotor_at_rest, state_matrix
+from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.film.roughness.asperities import make_asperities, rub
 from frbcli.film.roughness.rub_slopes import BY_V_X, BY_X, COLUMNS, VALUE
 from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.speed_profile import speed_profile
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
@@ -47,6 +48,10 @@ def coefficients(films: FilmsAtRest) -> tuple[np.ndarray, np.ndarray]:
         -np.array([getattr(film, name) for film in films.forces]) for name in ("by_displacement", "by_velocity")
     )
     return stiffness, damping
+
+
+def _matrix(rotor: LinearRotor, omega: float, stiffness: np.ndarray, damping: np.ndarray) -> np.ndarray:
+    return states(linearised(rotor, omega, stiffness, damping), rotor.turning)
 
 
 def rest_of(system: System, speed: float, stuck: bool) -> RestingPosition:
@@ -119,7 +124,7 @@ def test_the_machine_at_rest_has_the_eigenvalues_of_that_of_cycles(
         system = replace(system, asperities=None)
     rest = rest_of(system, speed, stuck)
     films = films_at_rest(system, omega, rest)
-    matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
+    matrix = _matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
     machine = make_machine(system, omega)
     u = at_rest(machine, rest)
     loads = film_loads(machine, u[None], np.zeros((1, machine.size)), omega)
@@ -151,7 +156,7 @@ def test_small_motions_grow_as_their_eigenvalue_has_it(
         system = replace(system, asperities=None)
     rest, n = rest_of(system, speed, stuck), system.rotor.size
     films = films_at_rest(system, omega, rest)
-    matrix = state_matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
+    matrix = _matrix(rotor_at_rest(system, omega, rest.ring_speeds, films), omega, *coefficients(films))
     values, vectors = np.linalg.eig(matrix)
     asked = (values.imag > 1e-6 * np.abs(values)) | (values.real > 0.0)
     own = int(np.argmax(np.where(asked, values.real, -np.inf)))

@@ -12,6 +12,7 @@ from pathlib import Path
 from paths import DOCS
 
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
+from frbcli.cli.casefiles.hard import HARD_CASE
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     MISSING,
@@ -50,7 +51,6 @@ from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.comparison_columns import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
-from frbcli.studies.hard.cases import HARD_CASE, HARD_RESULT
 from frbcli.studies.ladder import LADDER
 from frbcli.studies.sweep.sweep import point_columns
 
@@ -105,7 +105,6 @@ TABLES: dict[str, Columns] = {
     "deviations": of_json(DEVIATIONS),
     "ridges": of_pandas(RIDGES),
     "hard cases": HARD_CASE,
-    "hard results": HARD_RESULT,
     "events": of_json(EVENTS),
     "signals": MACHINE_SIGNALS + PART_SIGNALS,
     "warm films": of_json(WARM_FILMS),

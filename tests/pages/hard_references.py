@@ -12,13 +12,13 @@ from dataclasses import asdict, replace
 import numpy as np
 from numpy.typing import NDArray
 from paths import ROOT
+from studies.hard_runs.cases import REFERENCES, RUNS, Outcome, Reference, apart, outcome
 
-from frbcli.case.reading.hard import REFERENCES, HardCase, Reference, hard_cases
+from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.accuracy import planned_rung
-from frbcli.studies.hard.cases import RUNS, Outcome, apart, outcome
 
 FILE = ROOT / "cases" / "hard" / REFERENCES
 MOMENTS = 48  # times at which a run is compared with its reference

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import json
 import os
 import resource
 import signal
@@ -68,19 +67,6 @@ March.compile = second_is_slow
     assert "Not all models were run: interrupted" in out
     assert err == ""
 
-
-def test_ctrl_c_leaves_the_hard_cases_that_are_done() -> None:
-    words = ("cases", "--run-hard", "no-supply", "endless-whirl", "--json")
-    with process("", *words, start_new_session=True) as one:
-        assert one.stderr is not None
-        assert one.stderr.readline().startswith("1/2  ")
-        os.killpg(one.pid, signal.SIGINT)  # as a terminal does: the process beside it hears it, too
-        out, err = one.communicate(timeout=120.0)
-    assert one.returncode == 130
-    found = json.loads(out)
-    assert (found["status"], len(found["hard"])) == ("interrupted", 1)
-    assert "Interrupted: the other cases were not run." in err
-    assert "Traceback" not in err
 
 COMPILING = """
 import time, numba

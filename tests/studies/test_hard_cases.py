@@ -10,13 +10,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from studies.hard_runs.cases import HardResults, Reference, hard_case_result, references, run_hard_cases
+from studies.hard_runs.worker import DIED, HUNG, Worker
 
-from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.reading.hard import HardCase, hard_cases
 from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.studies.hard.cases import HardResults, hard_case_result, run_hard_cases
-from frbcli.studies.hard.worker import DIED, HUNG, Worker
 
 ALL = hard_cases()
 QUICK = [hard for hard in ALL if hard.quick]
@@ -78,7 +78,7 @@ def test_a_message_without_the_cause_is_seen() -> None:
 
 
 def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    import frbcli.studies.hard.cases as module
+    import studies.hard_runs.cases as module
 
     def broken(case: object, path: Path) -> object:
         run = real(case, path)
@@ -92,7 +92,7 @@ def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> 
 
 
 def test_a_bug_is_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    import frbcli.studies.hard.cases as module
+    import studies.hard_runs.cases as module
 
     def breaks(*_: object) -> object:
         raise ZeroDivisionError("somewhere")
@@ -124,7 +124,7 @@ def test_a_worker_that_hangs_or_dies_begins_anew() -> None:
 # --- on the command line ---
 
 
-def test_the_command_lists_shows_and_runs_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_the_command_lists_and_shows_them(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     assert frb(["cases", "--hard", "--json"]) == 0
     listed = json.loads(capsys.readouterr().out)["hard"]
     assert [entry["name"] for entry in listed] == [hard.name for hard in ALL]
@@ -134,18 +134,9 @@ def test_the_command_lists_shows_and_runs_them(capsys: pytest.CaptureFixture[str
     assert frb(["cases", "--hard", "no-speed", "-o", str(copy), "--quiet"]) == 0
     assert load_case_text(copy.read_text(encoding="utf-8")).speed.end == 0.0
 
-    capsys.readouterr()
-    assert frb(["cases", "--run-hard", "no-journal", "no-speed", "--json"]) == 0
-    said = capsys.readouterr()
-    found = json.loads(said.out)
-    assert found["ok"]
-    assert [case["status"] for case in found["hard"]] == ["input-error", "finished"]
-    assert "2 of 2 end as listed" in said.err
-    assert max(map(len, said.err.splitlines())) <= 80
-
 
 def test_names_that_there_are_not_are_wrong_input(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["cases", "--run-hard", "no-sped"]) == 2
+    assert frb(["cases", "--hard", "no-sped"]) == 2
     assert 'Did you mean "no-speed"?' in capsys.readouterr().err
     with pytest.raises(InputError):
         hard_cases(["no-speed", "nothing"])

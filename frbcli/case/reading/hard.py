@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 import shlex
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from importlib.resources.abc import Traversable
 from typing import Any
 
@@ -16,7 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.nearest import did_you_mean
 
-LIST, REFERENCES = "hard-cases.toml", "references.json"
+LIST = "hard-cases.toml"
 WITHIN_s = 600.0  # compilation included, where nothing is compiled yet
 
 
@@ -56,35 +55,15 @@ class HardCase:
         return load_case(self.base, (*self.settings, *(self.fine if fine else ())))
 
 
-@dataclass(frozen=True)
-class Reference:
-    """The result of the fine case. values: by name, at times_s of a run, one number each of a kinematic test; until_s:
-    end of the comparison of a run; cpu_s: CPU time; change: reference uncertainty, from a second reference on a coarser
-    mesh."""
-
-    status: str
-    values: dict[str, list[float]]
-    times_s: list[float] = field(default_factory=list)
-    until_s: float = 0.0
-    cpu_s: float = 0.0
-    change: float | None = None
-
-
 def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
     """The hard cases of these names, all of them for (). Raises InputError for unknown names."""
-    entries = tomllib.loads(_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
+    entries = tomllib.loads(hard_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
     found = {entry["name"]: _hard_case(entry) for entry in entries}
     unknown = [name for name in names if name not in found]
     if unknown:
         faults = (Fault("NAME", name, None, "is no hard case.", _nearest(name, found)) for name in unknown)
         raise InputError("hard cases", tuple(faults))
     return tuple(found[name] for name in names) if names else tuple(found.values())
-
-
-def references() -> dict[str, Reference]:
-    """The references of the hard cases that have one, by name."""
-    text = _folder().joinpath(REFERENCES).read_text(encoding="utf-8")
-    return {name: Reference(**entry) for name, entry in json.loads(text).items()}
 
 
 def _hard_case(entry: dict[str, Any]) -> HardCase:
@@ -96,5 +75,6 @@ def _nearest(name: str, found: dict[str, HardCase]) -> str:
     return did_you_mean(name, found, "`frb cases --hard` lists them.")
 
 
-def _folder() -> Traversable:
+def hard_folder() -> Traversable:
+    """Where the hard cases lie."""
     return shipped_folder().joinpath("hard")

@@ -17,18 +17,12 @@ from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
               help=f"{SETTING} Repeatable. [the text with its comments]")
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
 @click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
-@click.option("--run-hard", is_flag=True, help="Run the hard cases NAME..., or all, and report how each ended.")
 @force_option("Replace a file at -o.")
 @output_options
 def command(
-    names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, run_hard: bool,
-    terminal: Terminal,
-) -> int | None:  # fmt: skip
+    names: tuple[str, ...], settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal
+) -> None:
     """List the shipped cases; with NAME print that case's text, or copy it with -o FILE."""
-    if run_hard:
-        from frbcli.cli.studies.hard import run_hard as run_them
-
-        return run_them(names, terminal)
     if not names and (output is not None or settings):
         raise click.UsageError("-o and --set need the NAME of a case.")
     if len(names) > 1:
@@ -36,18 +30,17 @@ def command(
     if names:
         _show(names[0], settings, output, hard, terminal)
     elif hard:
-        from frbcli.cli.studies.hard import list_hard
+        from frbcli.cli.casefiles.hard import list_hard
 
         list_hard(terminal)
     else:
         _list(terminal)
-    return None
 
 
 def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal) -> None:
     """Print a case or copy it."""
     if hard:
-        from frbcli.cli.studies.hard import hard_text as text_of
+        from frbcli.cli.casefiles.hard import hard_text as text_of
     else:
         from frbcli.case.reading.shipped import find_shipped as text_of
     text = text_of(name)

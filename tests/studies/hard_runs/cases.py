@@ -2,45 +2,55 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from operator import attrgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
+from studies.hard_runs.worker import DIED, HUNG, Worker
 
 from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, whirl
-from frbcli.case.reading.hard import HardCase, Reference, hard_cases, references
+from frbcli.case.reading.hard import HardCase, hard_cases, hard_folder
 from frbcli.case.schema import Case
+from frbcli.cli.casefiles.hard import HARD_CASE
 from frbcli.columns import Column, Shown, Table, named, short_number, table_of
 from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
-from frbcli.studies.hard.worker import DIED, HUNG, Worker
 
 FINISHED, INPUT_ERROR, NOT_CONVERGED, ERROR = "finished", "input-error", "not-converged", "error"
 RUNS = {"runup": runup, "rundown": rundown}
 TESTS = {"rotation": rotation, "squeeze": squeeze, "whirl": whirl}
+REFERENCES = "references.json"  # beside the list of hard cases
 OIL_LOST = 1e-3  # share of the oil that may be unaccounted for
 
-LIST = "list"  # table of the terminal
+@dataclass(frozen=True)
+class Reference:
+    """The result of the fine case. values: by name, at times_s of a run, one number each of a kinematic test; until_s:
+    end of the comparison of a run; cpu_s: CPU time; change: reference uncertainty, from a second reference on a coarser
+    mesh."""
 
-# Of a HardCase
-HARD_CASE = (
-    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
-    Column("topic", "", "topic"),
-    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
-    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
-    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
-    Column("why", "", "cause of that end", flat=False),
-)
+    status: str
+    values: dict[str, list[float]]
+    times_s: list[float] = field(default_factory=list)
+    until_s: float = 0.0
+    cpu_s: float = 0.0
+    change: float | None = None
+
+
+def references() -> dict[str, Reference]:
+    """The references of the hard cases that have one, by name."""
+    text = hard_folder().joinpath(REFERENCES).read_text(encoding="utf-8")
+    return {name: Reference(**entry) for name, entry in json.loads(text).items()}
 
 
 @dataclass(frozen=True)
@@ -256,3 +266,8 @@ HARD_RESULT = (
     Column("problems", "", "deviations from the list", lambda result: "; ".join(result.problems), key=""),
     Column("problems", "", "deviations from the list, as a list", flat=False),
 )  # fmt: skip
+
+
+def cause_of(result: HardResult) -> str:
+    """Why a case ended early: its message, and the cause from the list."""
+    return "; ".join(text.rstrip(".") for text in (result.message, result.hard.why) if text)
