@@ -19,6 +19,7 @@ free modes: a rotor in soft bearings at its ends then needs few of these.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -118,6 +119,8 @@ class Reduction:
         """What it keeps, and what it changes."""
         kept = len(self.modes.frequencies)
         static = f" and {kept - self.free} static ones of bearings and disks" if kept > self.free else ""
+        if math.isnan(self.frequency):
+            return f"{self.free} free modes{static} of each plane, whose error is not known: nothing holds the shaft"
         speeds, peaks = (f"{float(f'{100.0 * each:.1g}'):g} %" for each in (self.frequency, self.amplitude))
         return (
             f"{self.free} free modes{static} of each plane: critical speeds are off by up to {speeds}, "
@@ -261,7 +264,10 @@ def judged(
     usual = exact.weight[0] ** 2 * max(top, exact.frequencies[RIGID]) ** 2 / len(places.bearings)
     for stiffness in np.outer(usual * STIFFNESSES, np.ones(len(places.bearings))) if springs is None else [springs]:
         for sign in (-1.0, 1.0):
-            own, other = (_criticals(each, places, stiffness, sign) for each in (reduced, exact))
+            try:
+                own, other = (_criticals(each, places, stiffness, sign) for each in (reduced, exact))
+            except np.linalg.LinAlgError:  # neither bearings nor shaft hold all modes
+                return Reduction(reduced, free, math.nan, math.nan)
             count = min(len(own[0]), max(1, int(np.count_nonzero(other[0] <= ABOVE * top))))
             speeds = np.abs(own[0][:count] / other[0][:count] - 1.0)
             sizes = np.abs(other[1][:count]).max(axis=(1, 2))

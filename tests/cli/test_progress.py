@@ -64,7 +64,7 @@ def test_without_a_terminal_what_takes_long_is_announced(
 def test_stability_is_told_speed_by_speed() -> None:
     seen: list[tuple[int, int]] = []
     case = frbcli.load_case("jeffcott", ["film.theory=short"])
-    frbcli.stability(case, [50.0], lambda *told: seen.append(told))
+    frbcli.stability(case, [50.0], lambda *told: seen.append(told), threshold=True)
     assert len(seen) > 1  # the speed asked for, and those that the threshold is looked for at
     assert seen == [(number, len(seen)) for number in range(1, len(seen) + 1)]
 

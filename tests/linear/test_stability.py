@@ -107,7 +107,7 @@ def test_growth_is_zero_at_the_threshold_and_changes_sign_there() -> None:
 
 def test_threshold_does_not_depend_on_the_speeds_asked_for() -> None:
     case = load_case("jeffcott", ["film.theory=short"])
-    asked = stability(case, [250.0, 25.0])
+    asked = stability(case, [250.0, 25.0], threshold=True)
     assert [point.speed_Hz for point in asked.points] == [250.0, 25.0]
     whole = stability(case).threshold
     assert asked.threshold is not None
@@ -149,7 +149,7 @@ def test_weightless_rigid_rotor_whirls_with_half_its_speed(cavitation: str) -> N
     m s^2 + 2 b (s - i omega/2) = 0. A section of width B has b = pi eta R B^3 / C^3 (a squeeze film damper), half of
     it where half of the ring is clipped; a bearing has two sections."""
     settings = ["rotor.gravity=0 m/s^2", "film.theory=short", f"film.cavitation={cavitation}"]
-    found = stability(load_case("rigid", settings), [2.0, 200.0])
+    found = stability(load_case("rigid", settings), [2.0, 200.0], threshold=True)
     section, radius, clearance, viscosity, mass = 10e-3, 12.5e-3, 35e-6, 12e-3, 6.1
     b = 2 * math.pi * viscosity * section**3 * radius / clearance**3 * (0.5 if "half" in cavitation else 1.0)
     for point in found.points:

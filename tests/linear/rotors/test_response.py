@@ -111,7 +111,8 @@ def test_the_command_writes_table_picture_and_document(
     assert {"speed_Hz", "node", "amplitude_m", "phase_deg"} <= set(document["points"][0])
     speeds = 120 + len(document["critical_speeds"])
     assert 2 * 120 < len(document["points"]) <= 2 * (speeds + 6)  # films are solved at their peaks, too
-    assert document["critical_speeds_Hz"] == pytest.approx([131.3, 141.8], abs=1.0)
+    # one resonance: of the disk at 142 Hz, of the journal at 131 Hz, and listed where more moves
+    assert document["critical_speeds_Hz"] == pytest.approx([141.8], abs=1.0)
     assert max(map(len, said.err.splitlines())) <= 80
     rows = list(csv.DictReader((tmp_path / "t.csv").read_text(encoding="utf-8").splitlines()))
     assert float(rows[-1]["amplitude_m"]) == pytest.approx(document["points"][-1]["amplitude_m"])
