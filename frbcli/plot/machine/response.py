@@ -38,6 +38,8 @@ DASHES = ("-", (0, (5, 2)), (0, (5, 1, 1, 1)))  # of more points than there are 
 FEW = 10  # speeds of films: they are marked, as fewer than two are no line
 FILM_DASHES = ("-", (0, (5, 2)), (0, (1, 1.5)))
 FILM_MARKS = ("o", "D", "^")
+APART = 0.04  # of the range of speeds: labels of critical speeds that are nearer stand below each other
+LABEL_LENGTH, LEVELS = 0.45, 2  # of the height of the axes
 
 
 def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
@@ -104,11 +106,14 @@ def draw_amplitude(axes: Axes, found: Response) -> None:
         axes.fill_between(
             found.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
         )
+    close = APART * float(np.ptp(found.speeds_Hz))
     for number, peak in enumerate(found.critical_speeds):
         label = None if number else "critical speed"
         axes.axvline(peak.speed_Hz, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
+        lower = sum(peak.speed_Hz - other.speed_Hz < close for other in found.critical_speeds[:number])
         factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
-        axes.annotate(f"{peak.speed_Hz:.4g} Hz, {peak.direction}{factor}", (peak.speed_Hz, 1.0), (-2, -3),
+        top = 1.0 - LABEL_LENGTH * (lower % LEVELS)
+        axes.annotate(f"{peak.speed_Hz:.4g} Hz, {peak.direction}{factor}", (peak.speed_Hz, top), (-2, -3),
                       xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=6,
                       ha="right", va="top", color=GREY)  # fmt: skip
     if set(found.validity) != {SOUND}:
