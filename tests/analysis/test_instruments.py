@@ -379,3 +379,53 @@ def test_a_wheel_with_uneven_teeth_misses_none() -> None:
     assert found.missing == found.double == 0
     inner = slice(2000, -2000)
     assert found.speed_Hz[inner] == pytest.approx(RISING_Hz[inner], rel=0.03)
+
+
+# --- heads of other instruments, written here ---
+
+DEWESOFT = (
+    "File name:\tC:\\data\\run1.dxd\nSample rate:\t2048 Hz\nEvents:\n\n"
+    "\tX probe (um)\tY probe (um)\tSpeed (rpm)\nTime (s)\tACT\tACT\tACT"
+)
+CATMAN = (
+    "HBM_CATMAN_DATAFILE_40\n\nT0 = 04.05.2023 09:51:39\nTime  1 - default sample rate\tX probe\tY probe\tn\n"
+    "s\tµm\tµm\tU/min\n2048 Hz\t2048 Hz\t2048 Hz\t2048 Hz"
+)
+LVM = (
+    "LabVIEW Measurement\t\nWriter_Version\t2\nSeparator\tTab\nX_Columns\tNo\n***End_of_Header***\t\n\t\n"
+    "Channels\t2\t\nSamples\t1000\t1000\nY_Unit_Label\tum\tum\nDelta_X\t4.8828125E-4\t4.8828125E-4\n***End_of_Header***\t\t\n"
+    "X_Value\tX probe\tY probe\tComment"
+)
+SIGLENT = (
+    "Record Length,Analog:1000\nSample Interval,0.00048828125\nVertical Units,V,V\nHorizontal Units,S\nSource,CH1,CH2\n"
+    "Second,Value,Value"
+)
+BENTLY = 'Machine,"Turbine, A"\n"Timestamp","X (mil pp)","Y (mil pp)","Speed (RPM)"'
+GERMAN = "Zeit;Weg x;Weg y;Drehzahl\ns;µm;µm;1/min\n;;;"
+
+
+@pytest.mark.parametrize(
+    ("suffix", "head", "row", "given"),
+    [
+        ("txt", DEWESOFT, "{t:.7f}\t{x:.5f}\t{y:.5f}\t1200",
+         Measurement("X probe", y="Y probe", time="Time", speed="Speed")),
+        ("asc", CATMAN, "{t:.7f}\t{x:.5f}\t{y:.5f}\t1200",
+         Measurement("X probe", y="Y probe", time="Time  1 - default sample rate", speed="n")),
+        ("lvm", LVM, "\t{x:.6f}\t{y:.6f}", Measurement("X probe", y="Y probe", speed_Hz=20.0)),
+        ("csv", SIGLENT, "{t:.9f},{v:.7f},{w:.7f}",
+         Measurement("CH1", y="CH2", time="Second", speed_Hz=20.0, unit_m=125e-6)),
+        ("csv", BENTLY, '"5/4/2023 9:51:39.{ticks:07d} AM",{mx:.6f},{my:.6f},1200',
+         Measurement("X", y="Y", time="Timestamp", speed="Speed")),
+        ("csv", GERMAN, "{t:.7f};{x:.5f};{y:.5f};1200", Measurement("Weg x", y="Weg y", time="Zeit", speed="Drehzahl")),
+        ("csv", "", "{k},{x:.5f},{y:.5f},0.1", Measurement("2", y="3", rate=2048.0, speed_Hz=20.0)),
+    ],
+    ids=["dewesoft", "catman", "lvm", "siglent", "bently", "german", "no head"],
+)  # fmt: skip
+def test_a_head_of_another_instrument(suffix: str, head: str, row: str, given: Measurement, tmp_path: Path) -> None:
+    lines = []
+    for k, (text, x, y, _) in enumerate(rows()):
+        t = float(text)
+        lines.append(
+            row.format(k=k, t=t, x=x, y=y, v=x / 125, w=y / 125, mx=x / 25.4, my=y / 25.4, ticks=round(1e7 * t))
+        )
+    is_the_motion(measured_run(table(tmp_path / f"a.{suffix}", head, lines), given))

@@ -20,7 +20,7 @@ LARGEST_FILE = 1024**3  # bytes
 # Units at the end of a name, such as time_ms, speed_rpm, journal_x_m; one letter counts behind an underscore alone
 _LONG = "ms|us|µs|sec|Hz|hz|kHz|rpm|RPM|krpm|rad/s|mm|um|µm|nm|cm|mil|mils|micron|microns"
 SUFFIX = re.compile(rf".+(?:_(?:in_)?({_LONG}|s|m)|\s({_LONG}))")
-ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm")  # names that are a unit
+ITSELF = re.compile(r"rpm|RPM|Hz|U/min|1/min|min-1|r/min|rev/min|cpm|krpm|[Ss]econds?")  # names that are a unit
 INTERVAL = re.compile(r"(?:dt|ts|t_?s|.*(?:increment|interval|delta[_ ]?[tx]|step|period).*)", re.IGNORECASE)
 
 

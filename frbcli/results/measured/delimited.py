@@ -25,6 +25,7 @@ DELIMITERS = ("\t", ";", ",", " ")  # a comma after the others, for it may be a 
 MOST_COLUMNS = 1000
 LOOKED_AT = 1000  # lines from which delimiter and decimal mark are found
 FEW_ROWS = 2  # whole rows that may stand above the names, such as numbers of channels
+HEAD_LINES = 100  # in which names are sought below whole rows
 UNITS = {  # that distinguish a line of units from a line of names
     "", "-", "1", "%", "s", "sec", "second", "seconds", "ms", "us", "µs", "min", "sequence", "samples",
     "m", "mm", "cm", "um", "µm", "nm", "micron", "microns", "mil", "mils", "in", "inch", "m/s", "mm/s", "m/s^2", "g",
@@ -217,11 +218,7 @@ def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str
     whole = [place for place, row in enumerate(rows[: LOOKED_AT * FEW_ROWS]) if layout.is_whole(row)]
     if not whole:
         raise ValueError("it holds no rows of numbers")
-    first = whole[0]
-    for place in range(first + 1, min(first + FEW_ROWS + 1, len(rows))):
-        if _are_words(rows[place], layout) and len(_without_end(rows[place])) >= layout.least:
-            first = next((later for later in whole if later > place), first)  # numbers of channels above their names
-            break
+    first = _first_row(rows, whole, layout)
     names_at, units_at = _names_at(rows[:first], layout), None
     if names_at is None:
         found = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
@@ -230,8 +227,8 @@ def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str
     else:
         units_at = _units_at(rows[:first], names_at, layout)
         begin = next(at for at in range(max(names_at, units_at or 0) + 1, first + 1)
-                     if at == first or not (layout.is_labelled(rows[at]) or _are_words(rows[at], layout)))  # fmt: skip
-        names = tuple(_without_end(rows[names_at]))
+                     if at == first or (layout.has_numbers(rows[at]) and not layout.is_labelled(rows[at])))  # fmt: skip
+        names = _single_names(rows, names_at)
         if len(names) == layout.width + 1 and names[-1].lower() == LEFT_OUT:
             names = names[:-1]
         units, numbers = _units_of(rows, units_at, names, layout)
@@ -240,6 +237,33 @@ def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str
         raise ValueError(f"it has {len(head.names)} columns, more than {MOST_COLUMNS}")
     named = tuple(name or str(number) for number, name in enumerate(head.names, start=1))
     return replace(head, names=named, numbers=_numbers_of(rows[: head.begin], layout) | dict(head.numbers))
+
+
+def _first_row(rows: Sequence[Sequence[str]], whole: Sequence[int], layout: _Layout) -> int:
+    """The first row of the table. whole: places of the rows that are whole; those above the last line of words, such as
+    numbers of channels, belong to the head if they are few, or have a word where others have nothing."""
+    words = [place for place, row in enumerate(rows[:HEAD_LINES])
+             if _are_words(row, layout) and len(_without_end(row)) >= layout.least]  # fmt: skip
+    above = [place for place in whole if words and place < words[-1]]
+    below = next((place for place in whole if words and place > words[-1]), None)
+    if below is None or not above:
+        return whole[0]
+    first = min(layout.numbers | layout.stamps)
+    labelled = all(any(rows[place][:first]) for place in above)
+    return below if len(above) <= FEW_ROWS or labelled else above[0]
+
+
+def _single_names(rows: Sequence[Sequence[str]], names_at: int) -> tuple[str, ...]:
+    """The names of a line; those that stand there several times are taken from the line above, where it has others."""
+    names = _without_end(rows[names_at])
+    above = _without_end(rows[names_at - 1]) if names_at else []
+    double = {name for name, count in Counter(names).items() if count > 1}
+    places = [place for place, name in enumerate(names) if name in double]
+    others = [above[place] for place in places] if len(above) == len(names) else []
+    if others and all(others) and len(set(others)) == len(others):
+        for place, other in zip(places, others, strict=True):
+            names[place] = other
+    return tuple(names)
 
 
 def _are_words(row: Sequence[str], layout: _Layout) -> bool:
