@@ -41,7 +41,7 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
     """Give the model of [film] the table of every law and bearing model that has keys and of no other, its `theory` the
     names of all theories, and its `cavitation`, and that of `others`, the names of all laws. Models that hold one of
     these have to be rebuilt by the caller."""
-    fields = film.__pydantic_fields__
+    fields = film.model_fields
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]
     for of in _with_keys():
@@ -52,7 +52,7 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
     theories: Any = Literal[(*THEORIES, *(model.name for model in models()))]
     fields[THEORY].annotation = theories
     for model in (film, *others):
-        its = model.__pydantic_fields__[CAVITATION]
+        its = model.model_fields[CAVITATION]
         all_laws: Any = Literal[names()]
         its.annotation = all_laws if its.default is not None else all_laws | None
         model.model_rebuild(force=True)

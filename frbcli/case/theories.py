@@ -28,7 +28,7 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
         )
     others = {
         name: field
-        for name, field in film.__pydantic_fields__.items()
+        for name, field in film.model_fields.items()
         if not isinstance(field.default, FilmTable)
     }  # fmt: skip
     taken = {*THEORIES, *law_names(), *others, *(field.alias for field in others.values())}

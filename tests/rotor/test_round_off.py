@@ -1,4 +1,4 @@
-"""The perturbed round-off of the tests in this folder and others, see tests/helpers/round_off.py."""
+"""The perturbed round-off of the tests in this folder and others, see tests/round_off.py."""
 
 from __future__ import annotations
 
