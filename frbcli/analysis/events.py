@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 
 from frbcli.analysis import signals
+from frbcli.analysis.orders.forced import without_forced
 from frbcli.analysis.orders.resonance import (
     FLOOR,
     beside,
@@ -32,7 +33,7 @@ from frbcli.analysis.spectra.spectrum import hann
 from frbcli.arrays import Array, Complex
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
-               "clearance-step"]  # fmt: skip
+               "clearance-step", "forced"]  # fmt: skip
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -91,7 +92,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
         bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film. Uses
         ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
-        critical_speed_1_Hz and so on. It may be of any length.
+        critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length. Motion with a frequency or
+        order of what forces the run is neither whirl nor resonance.
 
     Returns
     -------
@@ -107,6 +109,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     """
     if len(run) < 2:
         return ()
+    run = without_forced(run)
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
     if any(True for _ in signals.films(run.signals)):  # beside those in films there may be journals in none
         bearings = [name for name in bearings if signals.in_film(run, name)]
@@ -162,7 +165,7 @@ def growth(run: RunLike, event: Mapping[str, Any], known: float) -> float:
     room = signals.bearing_clearance(run, film)
     if event["kind"] != "onset" or film.endswith(SIDES) or room is None:
         return 0.0
-    turns, (motion,) = track(run, [Tracked("journal", film, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)])
+    turns, (motion,) = track(without_forced(run), [Tracked("journal", film, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)])
     middle = WHIRL_REVOLUTIONS * STEPS // 2
     before = np.abs(motion[: max(0, int(np.searchsorted(turns.time_s, event["t_s"])) - middle)]) / room
     unknown = np.flatnonzero(before < least)

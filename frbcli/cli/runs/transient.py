@@ -235,11 +235,11 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
-    from frbcli.runs.advice import accuracy_advice, run_advice, run_end
+    from frbcli.runs.advice import accuracy_advice, forced_advice, run_advice, run_end
     from frbcli.runs.errors.account import about_certainty, account
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
-    for sentence in (*run_advice(case, run_end(run)), *accuracy_advice(case, run)):
+    for sentence in (*run_advice(case, run_end(run)), *accuracy_advice(case, run), *forced_advice(case)):
         terminal.remark(wrapped(sentence))
     if run.events:
         events = with_whirl_names(run.events)
