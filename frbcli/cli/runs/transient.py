@@ -233,6 +233,7 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
     from frbcli.runs.advice import accuracy_advice, forced_advice, run_advice, run_end
@@ -246,6 +247,8 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
         terminal.show("events", table_of(EVENTS, events))
         for sentence in about_certainty(events, run.cost):
             terminal.sentence(sentence)
+    for sentence in about_critical_speeds(run, run.events):
+        terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))
 
 
