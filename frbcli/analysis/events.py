@@ -16,23 +16,28 @@ from typing import Any, Literal
 import numpy as np
 
 from frbcli.analysis import signals
+from frbcli.analysis.orders.forced import without_forced
 from frbcli.analysis.orders.resonance import (
     FLOOR,
+    LATE,
     beside,
-    critical_step,
+    critical_steps,
+    near,
+    passes,
     resonant,
     synchronous_amplitude,
+    told_apart,
     vibrations_beside,
 )
-from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked, track
-from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, window_step_s
+from frbcli.analysis.orders.revolutions import STEPS, Revolutions, START_s, Tracked, track
+from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, rings_out, window_step_s
 from frbcli.analysis.signals import RunLike, joined, pieces, points
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.spectrum import hann
 from frbcli.arrays import Array, Complex
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
-               "clearance-step"]  # fmt: skip
+               "clearance-step", "forced"]  # fmt: skip
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -91,7 +96,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
         bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film. Uses
         ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
-        critical_speed_1_Hz and so on. It may be of any length.
+        critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length. Motion with a frequency or
+        order of what forces the run is neither whirl nor resonance.
 
     Returns
     -------
@@ -107,6 +113,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     """
     if len(run) < 2:
         return ()
+    run = without_forced(run)
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
     if any(True for _ in signals.films(run.signals)):  # beside those in films there may be journals in none
         bearings = [name for name in bearings if signals.in_film(run, name)]
@@ -127,9 +134,9 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
             events += _whirl(run, whirls[plain.index(name)][0] / room, turns, name)
         else:
             events += _whirls_of_any_frequency(run, name, run.references.get("length_m", 0.0), turns, in_films=False)
-    before = min((event.t_s for event in events), default=np.inf)
     seen = [joined(*node) for node in nodes]
-    events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, before)
+    quiet = _quiet_spans(events, float(turns.time_s[-1]) if len(turns.time_s) else 0.0)
+    events += _near_the_speed(run, turns, dict(zip(seen, resonances, strict=True)), besides, quiet)
     named = list(signals.films(run.signals))
     last = {film: signals.piece(run, _nearest(run, film), len(run) - 1, len(run))[0] for film in named}
     touching = max(named, key=lambda film: float(last[film]), default="")
@@ -162,7 +169,7 @@ def growth(run: RunLike, event: Mapping[str, Any], known: float) -> float:
     room = signals.bearing_clearance(run, film)
     if event["kind"] != "onset" or film.endswith(SIDES) or room is None:
         return 0.0
-    turns, (motion,) = track(run, [Tracked("journal", film, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)])
+    turns, (motion,) = track(without_forced(run), [Tracked("journal", film, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS)])
     middle = WHIRL_REVOLUTIONS * STEPS // 2
     before = np.abs(motion[: max(0, int(np.searchsorted(turns.time_s, event["t_s"])) - middle)]) / room
     unknown = np.flatnonzero(before < least)
@@ -176,10 +183,12 @@ def _near_the_speed(
     turns: Revolutions,
     resonances: Mapping[str, Sequence[Complex]],
     besides: Sequence[Sequence[Complex]],
-    before_s: float,
+    quiet: Sequence[tuple[float, float]],
 ) -> Iterator[Event]:
-    """The critical speed and the first self-excited vibration before the first whirl, of all disks or else journals.
-    resonances: by point; besides: of the same points, or empty."""
+    """The critical speeds in all spans of time (begin, end) in s without whirl, and the first self-excited vibration
+    before the first whirl, of all disks or else journals. resonances: by point; besides: of the same points, or
+    empty."""
+    before_s = quiet[0][1] if quiet and quiet[0][0] <= 0.0 else 0.0
     without_films = run.references.get("length_m", 0.0)
     clearances = (length for name, length in run.references.items() if name.startswith("clearance_m"))
     room = min(clearances, default=without_films)
@@ -192,14 +201,71 @@ def _near_the_speed(
     ]
     vibrations = sorted(found, key=lambda each: each[0].time_s)
     own_frequencies = [vibration for vibration, _ in vibrations]
-    critical = critical_step(resonances.values(), turns, FLOOR * room, before_s, modes, own_frequencies)
-    if critical is not None:
-        point, step = list(resonances)[critical[0]], critical[1]
+    motions = list(resonances.values())
+    for number, step in critical_steps(motions, turns, FLOOR * room, quiet, modes, own_frequencies):
+        point = list(resonances)[number]
         its_speed, amplitude = float(turns.speed_Hz[step]), synchronous_amplitude(resonances[point], step) / room
         yield Event("critical-speed", None, float(turns.time_s[step]), its_speed, its_speed, 1.0, point, amplitude)
     for own, point in vibrations[:1]:
         ratio = own.frequency_Hz / abs(own.speed_Hz)
         yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio, point, own.amplitude)
+
+
+def about_critical_speeds(run: RunLike, events: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Sentences on critical speeds of the linearised machine that a run passes without an event, each way up and down,
+    with the reason; where they are not known, on the whirls during which none is sought. events: of the run."""
+    if len(run) < 2:
+        return []
+    found = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
+                                                     "frequency_ratio")}) for each in events]  # fmt: skip
+    time_s, speed = signals.course(signals.SignalOf(run, "time_s"), signals.SignalOf(run, "speed_Hz"))
+    quiet = _quiet_spans(found, float(time_s[-1]))
+    modes = signals.critical_speeds(run)
+    if modes is None:
+        begins, ends = [end for _, end in quiet], [*[begin for begin, _ in quiet[1:]], float(time_s[-1])]
+        hidden = [f"{signals.speed_at(run, begin):.4g} to {signals.speed_at(run, min(end, time_s[-1])):.4g} Hz"
+                  for begin, end in zip(begins, ends, strict=False) if begin < time_s[-1]]  # fmt: skip
+        return [f"During whirl no critical speed is sought: {', '.join(hidden)}."] if hidden else []
+    told: dict[tuple[str, str], list[str]] = {}
+    for first, last in passes(speed):
+        way = slice(first, min(last + 1, len(speed)))
+        t, size = time_s[way], np.abs(speed[way])
+        up = size[-1] > size[0]
+        ramp = float(np.ptp(size)) / max(float(np.ptp(t)), 1e-12)
+        seen = [abs(each.speed_Hz) for each in found if each.kind == "critical-speed" and t[0] <= each.t_s <= t[-1]]
+        for mode in told_apart(modes):
+            if not size.min() < mode < size.max() or near(mode, seen, LATE * ramp**0.5):
+                continue
+            when = float(np.interp(mode, size if up else size[::-1], t if up else t[::-1]))
+            left = abs(float(size[-1]) - mode)
+            reason = _why_not_found(when - float(time_s[0]), quiet, left < LATE * ramp**0.5)
+            told.setdefault(("up" if up else "down", reason), []).append(f"{mode:.4g}")
+    return [
+        f"No critical speed at {', '.join(names)} Hz on the way {way}: {reason}."
+        for (way, reason), names in told.items()
+    ]
+
+
+def _why_not_found(when_s: float, quiet: Sequence[tuple[float, float]], at_end: bool) -> str:
+    """Why a critical speed that is passed at a time is no event; at_end: whether the way ends before its peak does."""
+    if when_s < START_s:
+        return "the run settles when it passes it"
+    if not any(begin <= when_s <= end for begin, end in quiet):
+        return "none is sought during a whirl"
+    if at_end:
+        return "the speed turns or ends too near to it"
+    return "the synchronous motion has no clear peak there, for want of unbalance or by damping"
+
+
+def _quiet_spans(events: Sequence[Event], end_s: float) -> list[tuple[float, float]]:
+    """Spans of time in s between whirls; a whirl lasts from its onset to the next offset of its film."""
+    quiet, begin = list[tuple[float, float]](), 0.0
+    for onset in sorted((event for event in events if event.kind == "onset"), key=lambda event: event.t_s):
+        ends = [event.t_s for event in events if event.kind == "offset" and event.film == onset.film]
+        if onset.t_s > begin:
+            quiet.append((begin, onset.t_s))
+        begin = max(begin, min((t for t in ends if t > onset.t_s), default=np.inf))
+    return [*quiet, (begin, np.inf)] if begin < end_s else quiet
 
 
 def _clearance_steps(run: RunLike) -> Iterator[Event]:
@@ -219,6 +285,8 @@ def _whirls_of_any_frequency(
     seal, that has no film that would tell how fast; its room is the length of the machine."""
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
+        if whirl.rings_out and not in_films:
+            continue
         moments: dict[Kind, WhirlMoment | None] = {
             "onset": whirl.onset,
             "lock-in": whirl.lock_in,
@@ -242,6 +310,8 @@ def _whirl(run: RunLike, motion: Complex, turns: Revolutions, name: str) -> Iter
     for first, last in intervals_above(amplitude, WHIRL_BEGINS, WHIRL_ENDS, sustained):
         lasts = last == len(amplitude)
         if last - max(first, settled) < sustained and not (lasts and run.status == "contact"):
+            continue
+        if not lasts and rings_out(amplitude[max(first, settled) : last]):
             continue
         # An interval that the start of the run leads into began with the run.
         begun = _whirl_event("onset", run, name, turns, middle + crossing(amplitude, first, WHIRL_BEGINS, -1))

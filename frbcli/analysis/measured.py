@@ -9,7 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.analysis.events import find_events
+from frbcli.analysis.events import Event, find_events
+from frbcli.analysis.orders.forced import ForcedLine, constant_lines, forced_lines, forced_references
 from frbcli.analysis.orders.tacho import tacho_speed
 from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
@@ -140,8 +141,18 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         remarks=remarks,
     )
     if given.y is not None and given.clearance is not None:
-        run.events.extend(asdict(event) for event in find_events(run))
+        lines = constant_lines(run, given.clearance)
+        run.references.update(forced_references(lines))
+        events = [*(_forced(run, line) for line in lines), *find_events(run)]
+        run.events.extend(asdict(event) for event in events)
     return run
+
+
+def _forced(run: Run, line: ForcedLine) -> Event:
+    """A line that keeps its frequency at all rotor speeds, from the beginning of a measurement on."""
+    t_s, speed = float(run["time_s"][0]), float(run["speed_Hz"][0])
+    ratio = line.frequency_Hz / abs(speed) if speed else None
+    return Event("forced", None, t_s, speed, line.frequency_Hz, ratio, "journal", line.amplitude)
 
 
 def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
@@ -154,7 +165,8 @@ def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
         return []
     signals = {"time_s": run.signal("time_s"), "speed_Hz": run.signal("speed_Hz")}
     signals |= {f"journal_{axis}_m": run.signal(f"{seen}_{axis}_m") for axis in "xy"}
-    alone = replace(run, signals=signals, references={"clearance_m": clearance}, status="finished")
+    references = {"clearance_m": clearance, **forced_references(forced_lines(run))}
+    alone = replace(run, signals=signals, references=references, status="finished")
     return [asdict(replace(event, point=seen)) for event in find_events(alone)]
 
 

@@ -17,6 +17,7 @@ from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
 
 KINDS = ("journal", "disk", "ring", "shell", "support", "housing")  # of points
 END = "_x_m"
+FORCED = "forced"  # begins the names of the references that are frequencies and orders of what forces a run
 PIECE = 2**17  # samples of a signal that are looked at together: 1 MB
 CORNERS = 400  # intervals of a run in which its ramp is determined
 
@@ -200,6 +201,11 @@ def critical_speeds(run: RunLike) -> list[float] | None:
     numbers = range(1, int(run.references[CRITICAL_SPEEDS]) + 1)
     known = (run.references.get(f"{CRITICAL_SPEED}_{number}_Hz") for number in numbers)
     return sorted(speed for speed in known if speed is not None)
+
+
+def is_forced(name: str, kind: str) -> bool:
+    """Whether a reference is a frequency ("Hz") or an order ("order") of what forces a run."""
+    return name.startswith(f"{FORCED}_") and name.endswith(f"_{kind}")
 
 
 def clearance_steps(run: RunLike) -> list[float]:

@@ -54,8 +54,9 @@ EVENTS = (
     Column("event", "", "", event_name, shown=(Shown("event"),),
            key="", flat=False),
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
-           "`lift-off`, `clearance-step`",
-           more="touch and lift-off are those of asperities, or of a ring and its pin where `point` is a ring"),
+           "`lift-off`, `clearance-step`, `forced`",
+           more="forced is a line of a measurement that keeps its frequency at all rotor speeds; touch and lift-off "
+                "are those of asperities, or of a ring and its pin where `point` is a ring"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),

@@ -16,6 +16,7 @@ from frbcli.elements.collar.thrust import COLLAR
 from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
+from frbcli.runs.record.header import forcing
 from frbcli.runs.record.restored import number_of
 from frbcli.scene.clearance_steps import case_at, step_times
 from frbcli.scene.coupling import coupling_of
@@ -112,6 +113,13 @@ def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
     finer = target / FINER
     helps = choose_films(case, finer).error <= SMALLER * choose_films(case, target).error
     return (f"{told} For less, accuracy.target = {finer:g}." if helps else told,)
+
+
+def forced_advice(case: Case) -> tuple[str, ...]:
+    """A sentence on tables over time that shake a machine without distinct frequencies; may be none."""
+    names = forcing(case)[1]
+    told = f"The motion that {' and '.join(names)} force is not told apart from whirl in the events"
+    return (f"{told}: the table changes with no distinct frequencies.",) if names else ()
 
 
 def _starved(case: Case) -> tuple[str, ...]:

@@ -228,3 +228,42 @@ def test_options_that_do_not_fit_are_said(
 def test_options_that_tell_the_same_are_refused(twice: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["waterfall", "measured.csv", "--x", "x", "--clearance", "35 um", *twice]) == 2
     assert "give one of them" in capsys.readouterr().err
+
+
+def hum(folder: Path, rotor: Rotor, lines: dict[float, float]) -> list[tuple[str, float | None, float | None]]:
+    """(kind, frequency in Hz, amplitude) of the events of a measurement with lines of mains, by their frequency and
+    amplitude over the clearance, forward and half as much backward."""
+    found = signals(rotor)
+    time, motion = found["time_s"], found["journal_x_m"] + 1j * found["journal_y_m"]
+    for frequency, amplitude in lines.items():
+        turned = np.exp(2j * np.pi * frequency * time)
+        motion = motion + CLEARANCE * amplitude * (turned + 0.5 * np.conj(turned)) / 1.5
+    columns = {"t": time, "x": 1e6 * motion.real, "y": 1e6 * motion.imag, "n": found["speed_Hz"]}
+    pd.DataFrame(columns).to_csv(folder / "hum.csv", index=False)
+    events = measured_run(folder / "hum.csv", GIVEN).events
+    return [(event["kind"], event["frequency_Hz"], event["amplitude"]) for event in events]
+
+
+@pytest.mark.parametrize("noise", [0.0, 0.05])
+@pytest.mark.parametrize("speeds_Hz", [(0.0, 300.0), (110.0, 300.0), (20.0, 180.0, 20.0)])
+def test_a_line_of_constant_frequency_is_forced(speeds_Hz: tuple[float, ...], noise: float, tmp_path: Path) -> None:
+    rotor = Rotor(whirl_s=None, noise=noise, speeds_Hz=speeds_Hz, step_s=STEP_s, critical_Hz=None)
+    events = hum(tmp_path, rotor, {50.0: 0.12, 100.0: 0.06})
+    assert [kind for kind, *_ in events] == ["forced", "forced"]
+    assert [frequency for _, frequency, _ in events] == pytest.approx([50.0, 100.0], abs=1e-2)
+    assert [amplitude for *_, amplitude in events] == pytest.approx([0.12, 0.06], rel=0.03)
+
+
+def test_whirl_beside_hum_is_found_as_without_it(tmp_path: Path) -> None:
+    own, beside = (hum(tmp_path, Rotor(step_s=STEP_s), lines) for lines in ({}, {50.0: 0.12}))
+    assert [kind for kind, *_ in own] == ["critical-speed", "onset"]
+    assert beside[0][0] == "forced"
+    assert [kind for kind, *_ in beside[1:]] == [kind for kind, *_ in own]
+    for (_, frequency, _), (_, expected, _) in zip(beside[1:], own, strict=True):
+        assert frequency == pytest.approx(expected, rel=2e-3)
+
+
+@pytest.mark.parametrize("speeds_Hz", [(280.0, 300.0), (240.0, 400.0), (150.0, 150.0)])
+def test_a_whip_and_a_line_at_one_speed_are_not_forced(speeds_Hz: tuple[float, ...], tmp_path: Path) -> None:
+    rotor = Rotor(whirl_s=-1.0, speeds_Hz=speeds_Hz, step_s=STEP_s, critical_Hz=None)
+    assert [kind for kind, *_ in hum(tmp_path, rotor, {})] == ["onset"]

@@ -139,9 +139,7 @@ def test_a_run_settles_on_the_circle_of_the_closed_form(tmp_path: Path) -> None:
     late = run["time_s"] > 0.9 * run.t_end_s
     np.testing.assert_allclose(run["eccentricity_damper"][late], eccentricity, rtol=1e-4)
     np.testing.assert_allclose(np.hypot(run["journal_x_m"], run["journal_y_m"])[late], abs(rotor), rtol=1e-4)
-    np.testing.assert_allclose(
-        np.hypot(run["shell_x_m"], run["shell_y_m"])[late], eccentricity * CLEARANCE, rtol=1e-4
-    )
+    np.testing.assert_allclose(np.hypot(run["shell_x_m"], run["shell_y_m"])[late], eccentricity * CLEARANCE, rtol=1e-4)
 
 
 BISTABLE = """

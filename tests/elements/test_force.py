@@ -11,6 +11,7 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
+from frbcli.cli.main import run as frb
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response
@@ -241,3 +242,70 @@ def test_analyses_without_harmonic_forces_refuse_them() -> None:
         response(film, [50.0], excitation="force 2")
     with pytest.raises(InputError, match="has no effect"):
         load_case("bearing").with_settings({"force": [push()]})
+
+
+SLOW, SOFT = {"from": "10 Hz", "to": "200 Hz", "duration": "4 s"}, {"stiffness": "4e5 N/m", "damping": "150 N*s/m"}
+OWN_EVENTS = {"critical-speed"}  # of the rotor alone
+
+
+def _soft(folder: Path, **tables: object) -> tuple[set[str], list[float]]:
+    """Kinds of the events of a stable linear rotor, and its critical speeds."""
+    rotor = {"kind": "rigid", "mass": "6 kg", "unbalance": "3e-6 kg*m"}
+    data = {"rotor": rotor, "bearing": {"kind": "coefficients", **SOFT}, "speed": SLOW} | tables
+    run = runup(case_from_dict(data, "forced"), folder / "run.h5", force=True)
+    critical = [event["speed_Hz"] for event in run.events if event["kind"] == "critical-speed"]
+    return {event["kind"] for event in run.events}, critical
+
+
+@pytest.mark.parametrize(
+    "tables",
+    [{"force": [push(x=60.0, frequency="62 Hz")]},
+     {"force": [push(x=60.0, order=0.5)]},
+     {"force": [push(x=60.0, y=20.0, frequency="41 Hz"), push(x=40.0, frequency="-75 Hz", rotating=True)]},
+     {"base": {"acceleration": ["20 m/s^2", "0 m/s^2"], "order": 1, "speed": "62 Hz"}},
+     {"base": {"acceleration": ["20 m/s^2", "5 m/s^2"], "order": 2, "speed": "20 Hz"}}],
+    ids=["force", "order", "forces", "ground", "ground of an engine"],
+)  # fmt: skip
+def test_motion_that_is_forced_is_no_whirl(tables: dict[str, Any], tmp_path: Path) -> None:
+    """The rotor is linear and stable: its critical speed is that without the force."""
+    kinds, own = _soft(tmp_path)
+    assert kinds == OWN_EVENTS
+    kinds, critical = _soft(tmp_path, **tables)
+    assert kinds == OWN_EVENTS
+    assert critical == pytest.approx(own, rel=3e-3)
+
+
+@pytest.mark.parametrize("broad", [False, True])
+def test_the_lines_of_a_table_are_no_whirl(broad: bool, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    time = np.arange(0.0, 4.5, 1e-3)
+    x, y = 40.0 * np.cos(TURN * 62.0 * time), 25.0 * np.sin(TURN * 41.0 * time)
+    if broad:
+        x = np.random.default_rng(0).normal(0.0, 40.0, len(time))
+    rows = "\n".join(f"{t:.3f},{a:.9f},{b:.9f}" for t, a, b in zip(time, x, y, strict=True))
+    (tmp_path / "force.csv").write_text(f"time,x,y\n{rows}\n", encoding="utf-8")
+    (tmp_path / "case.toml").write_text(
+        'rotor = { kind = "rigid", mass = "6 kg", unbalance = "3 g*mm" }\n'
+        'bearing = { kind = "coefficients", stiffness = "4e5 N/m", damping = "150 N*s/m" }\n'
+        'speed = { from = "10 Hz", to = "200 Hz", duration = "4 s" }\n'
+        '[[force]]\nat = "journal"\nfile = "force.csv"\n', encoding="utf-8")  # fmt: skip
+    assert frb(["runup", str(tmp_path / "case.toml"), "-o", str(tmp_path / "run.h5")]) == 0
+    told = " ".join("".join(capfd.readouterr()).split())
+    assert ("not told apart from whirl" in told) is broad
+    if not broad:
+        assert {event["kind"] for event in frbcli.read_run(tmp_path / "run.h5").events} == OWN_EVENTS
+
+
+@pytest.mark.parametrize("frequency", [41, 62])
+def test_whirl_beside_a_force_is_that_without_it(frequency: int, tmp_path: Path) -> None:
+    """A small force moves the journal by its frequency, and the whirl of the film is found beside it."""
+    settings = ("film.theory=short", "speed.from=150 Hz", "speed.to=230 Hz", "speed.duration=4 s")
+    alone = load_case("jeffcott", settings)
+    pushed = load_case_text(
+        alone.source_text + f'\n[[force]]\nat = "disk"\nforce = ["4 N", "0 N"]\nfrequency = "{frequency} Hz"\n',
+        name="jeffcott",
+    )
+    found = [runup(case, tmp_path / f"{number}.h5").events for number, case in enumerate((alone, pushed))]
+    own, beside = ([event for event in events if event["kind"] in ("onset", "offset")] for events in found)
+    assert [event["kind"] for event in own] == [event["kind"] for event in beside] == ["onset"]
+    assert beside[0]["speed_Hz"] == pytest.approx(own[0]["speed_Hz"], rel=0.05)
+    assert beside[0]["frequency_Hz"] == pytest.approx(own[0]["frequency_Hz"], rel=0.05)

@@ -171,9 +171,7 @@ def test_modes_of_a_housing_are_those_of_the_body_that_has_them() -> None:
 
 def test_a_rigid_housing_joins_the_shaft_by_the_bearings_alone() -> None:
     """Its matrices beside those of the shaft, made here of planes, arms and bearings."""
-    machine, alone = (
-        make_rotor(case_from_dict(SHAFT | extra)) for extra in ({"housing": mounted()}, {})
-    )
+    machine, alone = (make_rotor(case_from_dict(SHAFT | extra)) for extra in ({"housing": mounted()}, {}))
     n, held = alone.size, dict(alone.points)
     bearings = sum(K * held[f"journal_{name}"].T @ held[f"journal_{name}"] for name in BEARINGS)
     expected = np.zeros((n + 4, n + 4))

@@ -7,13 +7,14 @@ stays constant while the rotor speed changes: this is not a critical speed, thou
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked
-from frbcli.analysis.spectra.peaks import Peak, intervals_above, prominent_peaks
+from frbcli.analysis.spectra.peaks import Peak, intervals_above, prominent_peaks, swings
 from frbcli.arrays import Array, Complex
 
 REVOLUTIONS = 8  # of the window: a resonance is passed in many more
@@ -30,6 +31,13 @@ FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a roto
 LAG = np.radians(30.0)
 NEAR = 0.15  # share of a frequency by which a resonance may lie beside a mode: films are not as full, nor as linear
 LATE = 1.5  # a ramp of r Hz/s passes a lightly damped mode by up to this times sqrt(r) before the motion is largest
+
+TURNS_BACK = 0.1  # share of the range of speeds by which a speed goes back where a pass ends
+LEAST_SWEPT = 2e-3  # share of the speed that passes in a resonance
+SAME = 0.02  # share of the speed within which peaks of several points are one resonance
+# A ramp of r Hz/s leaves a free vibration behind a resonance, which beats with the unbalance until this times sqrt(r)
+# further; its phase turns back between two of these beats.
+BEATS, TURNED = 6.0, np.radians(45.0)
 
 WIDE, NARROW = 4, 32  # revolutions: what the short window sees about the order 1 beside what the long one sees at it
 BESIDE = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
@@ -65,37 +73,115 @@ def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
     return any(abs(frequency - mode) <= NEAR * mode + late for mode in modes)
 
 
-def critical_step(
-    motions: Iterable[Sequence[Complex]],
+@dataclass(frozen=True)
+class _Found:
+    """A resonance at a step of the revolutions, in the motion of a point by its number; mode: the known critical speed
+    in Hz next to it, None if none is known; turn: by how much the phase turns from the lowest point before the
+    resonance to that behind it, rad."""
+
+    step: int
+    point: int
+    prominence: float
+    height: float
+    mode: float | None
+    turn: float
+
+
+def critical_steps(
+    motions: Sequence[Sequence[Complex]],
     turns: Revolutions,
     floor: float,
-    before_s: float,
+    quiet: Sequence[tuple[float, float]],
     modes: Sequence[float] | None,
     vibrations: Sequence[Vibration],
-) -> tuple[int, int] | None:
-    """Which of the points shows the clearest critical speed, and at which step of `turns`; None if there is none.
+) -> list[tuple[int, int]]:
+    """Which of the points shows each critical speed the clearest, and at which step of `turns`, in their order.
 
-    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; before_s: the time
-    of the first whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
-    that begins one of the vibrations is none then.
+    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; quiet: spans of time
+    in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
+    that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
     """
+    chosen: list[_Found] = []
+    modes = None if modes is None else told_apart(modes)
+    for pass_ in passes(turns.speed_Hz):
+        for span in quiet:
+            found = [
+                each
+                for point, tracked in enumerate(motions)
+                for each in _in_pass(tracked, turns, (floor, point), pass_, span, modes, vibrations)
+            ]
+            chosen += _distinct(found, turns, modes)
+    return [(each.point, each.step) for each in sorted(chosen, key=lambda each: each.step)]
+
+
+def passes(speed_Hz: Array) -> list[tuple[int, int]]:
+    """First and one past the last step of each way up or down of a speed (m,), which may scatter."""
+    size = np.abs(speed_Hz)
+    least = TURNS_BACK * float(np.ptp(size)) if len(size) else 0.0
+    ends = sorted([*swings(size, least), *swings(-size, least)]) if least > 0.0 else []
+    inner = [end for end in ends if 0 < end < len(size) - 1]
+    return list(itertools.pairwise([0, *inner, len(size)]))
+
+
+def told_apart(modes: Sequence[float]) -> list[float]:
+    """Critical speeds in Hz, ascending, one of those that a peak does not tell apart."""
+    kept: list[float] = []
+    for mode in modes:
+        if not kept or mode > (1.0 + SAME) * kept[-1]:
+            kept.append(mode)
+    return kept
+
+
+def _in_pass(
+    tracked: Sequence[Complex],
+    turns: Revolutions,
+    numbers: tuple[float, int],
+    pass_: tuple[int, int],
+    quiet: tuple[float, float],
+    modes: Sequence[float] | None,
+    vibrations: Sequence[Vibration],
+) -> Iterator[_Found]:
+    """The resonances of a point in one pass and one span of time without whirl. numbers: floor, and that of the
+    point; others: see critical_steps."""
     half = REVOLUTIONS * STEPS // 2
-    settled, whirls = turns.settled, int(np.searchsorted(turns.time_s, before_s))
-    best: tuple[float, int, int] | None = None
-    for point, tracked in enumerate(motions):
-        # A whirl may break out in the resonance, whose peak is over a window later.
-        motion = [each[settled : whirls + half] for each in tracked]
-        for place, prominence, low in _resonances(motion, floor, whirls - half - settled):
-            step = settled + place + half
-            if any(own.time_s <= turns.time_s[step] <= own.until_s for own in vibrations):
-                continue
-            speed = abs(float(turns.speed_Hz[step]))
-            late = LATE * np.sqrt(_ramp(turns, step))
-            own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
-            known = not low if modes is None else near(speed, modes, late)
-            if known and not own and (best is None or prominence > best[0]):
-                best = prominence, point, step
-    return None if best is None else best[1:]
+    floor, point = numbers
+    begins, ends = (int(step) for step in np.searchsorted(turns.time_s, quiet))
+    first = max(turns.settled, begins if begins else 0, pass_[0] - half)
+    # A whirl may break out in the resonance, whose peak is over a window later.
+    cut = pass_[1] < ends
+    last, until = (pass_[1] - half, pass_[1] - half) if cut else (ends + half, ends - half)
+    motion = [each[first:last] for each in tracked]
+    for peak in _resonances(motion, floor, until - first):
+        step = first + peak.place + half
+        if any(own.time_s <= turns.time_s[step] <= own.until_s for own in vibrations):
+            continue
+        speed, late = abs(float(turns.speed_Hz[step])), LATE * np.sqrt(_ramp(turns, step))
+        swept = abs(float(turns.speed_Hz[first + peak.after + half] - turns.speed_Hz[first + peak.before + half]))
+        if swept < LEAST_SWEPT * speed:  # the speed is held: no resonance is passed
+            continue
+        own = modes is None and near(speed, (vibration.frequency_Hz for vibration in vibrations), late)
+        known = not peak.low if modes is None else near(speed, modes, late)
+        if known and not own:
+            mode = None if modes is None else min(modes, key=lambda each: abs(each - speed))
+            yield _Found(step, point, peak.prominence, peak.height, mode, peak.turn)
+
+
+def _distinct(found: Sequence[_Found], turns: Revolutions, modes: Sequence[float] | None) -> list[_Found]:
+    """The clearest of the resonances of one pass that belong together: of several points, of one mode, and those that
+    the free vibration behind a resonance makes by beating with the unbalance, in which the phase turns back."""
+    kept: list[_Found] = []
+    for each in sorted(found, key=lambda each: -each.prominence):
+        speed, ramp = abs(float(turns.speed_Hz[each.step])), _ramp(turns, each.step)
+        same = max(SAME * speed, 0.0 if modes is not None else 2.0 * LATE * np.sqrt(ramp))
+        others = [abs(abs(float(turns.speed_Hz[other.step])) - speed) for other in kept]
+        if modes is not None and any(other.mode == each.mode for other in kept):
+            continue
+        if any(apart <= same for apart in others):
+            continue
+        if any(apart <= BEATS * np.sqrt(ramp) for apart in others) and each.turn < TURNED:
+            continue
+        kept.append(each)
+    return kept
 
 
 def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
@@ -104,9 +190,22 @@ def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
     return float(np.abs(motions[0][step - REVOLUTIONS * STEPS // 2]))
 
 
-def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[tuple[int, float, bool]]:
-    """Sample and prominence of each resonance with the unbalance up to a sample, and whether the prominence is so low
-    that only a known critical speed makes it one; motions (n,): those of `resonant`."""
+@dataclass(frozen=True)
+class _Resonance:
+    """A peak of the synchronous motion, see Peak. height: of it; low: whether its prominence is so low that only a
+    known critical speed makes it one; turn: see _Found."""
+
+    place: int
+    before: int
+    after: int
+    prominence: float
+    height: float
+    low: bool
+    turn: float
+
+
+def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[_Resonance]:
+    """The resonances with the unbalance up to a sample; motions (n,): those of `resonant`."""
     synchronous, background, whirl = motions
     amplitude: Array = np.abs(synchronous)
     if len(amplitude) == 0:
@@ -117,10 +216,22 @@ def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[tu
     whole = [peak for peak in peaks if peak.prominence >= PROMINENCE * amplitude[peak.place]]
     known = {peak.place for peak in whole}
     until_whirl = amplitude[: max(0, until + 1)]
-    more = [peak for peak in _cut_off(until_whirl, least) if peak.place not in known]
+    more = [
+        peak
+        for peak in _cut_off(until_whirl, least, max((peak.after for peak in whole), default=0))
+        if peak.place not in known
+    ]
     low = [] if whole + more else _low(until_whirl, least)
     return [
-        (peak.place, peak.prominence, bool(low))
+        _Resonance(
+            peak.place,
+            peak.before,
+            min(peak.after, len(amplitude) - 1),
+            peak.prominence,
+            float(amplitude[peak.place]),
+            bool(low),
+            _turned(amplitude, phase, peak.place),
+        )
         for peak in whole + more + low
         if peak.place < until
         and abs(whirl[peak.place]) <= amplitude[peak.place]  # whirl that is about to break out spills over
@@ -128,14 +239,28 @@ def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[tu
     ]
 
 
-def _cut_off(amplitude: Array, least: float) -> list[Peak]:
-    """The highest peak of a curve (n,) that ends with the run or the first whirl, which cuts off the far side of the
-    peak: its prominence is then how far it rises.
+def _turned(amplitude: Array, phase: Array, place: int) -> float:
+    """By how much the phase (n,) turns, to a whole turn, from the lowest point before a peak to that behind it, each
+    up to where the amplitude (n,) is higher than in the peak."""
+    height = amplitude[place]
+    higher = np.flatnonzero(amplitude > height)
+    left, right = higher[higher < place], higher[higher > place]
+    begin, end = int(left[-1]) if len(left) else 0, int(right[0]) if len(right) else len(amplitude) - 1
+    foot, beyond = (
+        begin + int(np.argmin(amplitude[begin : place + 1])),
+        place + int(np.argmin(amplitude[place : end + 1])),
+    )
+    return abs(float(np.angle(np.exp(1j * (phase[beyond] - phase[foot])))))
+
+
+def _cut_off(amplitude: Array, least: float, begin: int) -> list[Peak]:
+    """The highest peak, from a sample on, of a curve (n,) that ends with the run or a whirl, which cuts off the far side
+    of the peak: its prominence is then how far it rises.
 
     How far it would fall is not known, so its phase decides: where one mode moves, the amplitude goes with the cosine
     of the phase, and LAG between the middles of the flanks is a fall by 7 %.
     """
-    highest = int(np.argmax(amplitude)) if len(amplitude) else 0
+    highest = begin + int(np.argmax(amplitude[begin:])) if len(amplitude) > begin else 0
     return [
         replace(peak, prominence=peak.rise)
         for peak in prominent_peaks(amplitude, least)
@@ -159,7 +284,7 @@ def vibrations_beside(
     """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
 
     tracked: those of `beside` in m; clearance: m. A vibration with the frequency of a mode of the machine, see
-    critical_step, is the decay of a resonance.
+    critical_steps, is the decay of a resonance.
     """
     half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
     if len(tracked[1]) < 2:

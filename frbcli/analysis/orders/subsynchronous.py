@@ -43,6 +43,8 @@ FAINT = 0.12  # share of all others that a whirl exceeds at some time: nonlinear
 SAME_LINE = 0.5  # lines of the spectrum between two frequencies that are taken for one
 SHORTEST = 1.5  # windows; a shorter ridge is a transient
 SHORTEST_REVOLUTIONS = 20.0
+RINGS_OUT = 0.4  # share of its logarithmic decay that a free vibration has had half of its time later
+LEAST_FALL = np.log(1.5)  # of the amplitude in that time
 
 OUTER_UP_TO = 1.4  # times omega_F/2: inner films whirl with a multiple of it, whips included
 LEAVES_LINE = 0.95  # share of the frequency of a free whirl below which it is locked into a mode
@@ -59,13 +61,15 @@ class WhirlMoment:
 @dataclass(frozen=True)
 class Whirl:
     """A sub-synchronous motion; the film that drives it. lock_in, offset: None if it does not lock, or lasts up to the
-    end of the run; amplitude: the largest one, over the room of the journal."""
+    end of the run; amplitude: the largest one, over the room of the journal; rings_out: whether it dies as a free
+    vibration."""
 
     side: Side
     onset: WhirlMoment
     lock_in: WhirlMoment | None
     offset: WhirlMoment | None
     amplitude: float
+    rings_out: bool = False
 
 
 @dataclass
@@ -188,7 +192,7 @@ def find_whirls(run: RunLike, name: str, room: float, settled_s: float = 0.0) ->
         moment = partial(_moment, time_s=time, frequency_Hz=frequency)
         lock_in, offset = None if locks is None else moment(locks), None if lasts else moment(passed)
         onset = moment(crossing(amplitude, first, BEGINS, -1))
-        whirls.append(Whirl(side, onset, lock_in, offset, float(amplitude[at].max())))
+        whirls.append(Whirl(side, onset, lock_in, offset, float(amplitude[at].max()), rings_out(amplitude[at])))
     return tuple(sorted(whirls, key=lambda whirl: whirl.onset.time_s))
 
 
@@ -304,6 +308,16 @@ def _overtaken(ahead: Array, last: int) -> float:
     by how much."""
     here, beyond = float(ahead[last]), float(ahead[last + 1])
     return last + here / (here - beyond)
+
+
+def rings_out(amplitude: Array) -> bool:
+    """Whether a motion (n,) dies at one rate from its largest amplitude on, as a free vibration does that the start of
+    a run or a resonance leaves; a whirl keeps its amplitude, and then falls faster and faster."""
+    largest = int(np.argmax(amplitude))
+    falls = np.log(np.maximum(amplitude[largest:], 1e-300))
+    half = falls[0] - falls[len(falls) // 2]
+    fallen = falls[0] - falls[-1]
+    return len(falls) > len(amplitude) // 2 and bool(fallen >= LEAST_FALL and half >= RINGS_OUT * fallen)
 
 
 def _lock_in(at: NDArray[np.intp], over: Array) -> float | None:

@@ -54,7 +54,7 @@ def prominent_peaks(values: Array, least: float) -> list[Peak]:
     if len(values) < 3:
         return []
     found = []
-    for place in _swings(values, least):
+    for place in swings(values, least):
         height = values[place]
         left, right = _foot(values[:place][::-1], height), _foot(values[place + 1 :], height)
         prominence = float(height - max(left, right))
@@ -66,7 +66,7 @@ def prominent_peaks(values: Array, least: float) -> list[Peak]:
     return found
 
 
-def _swings(values: Array, least: float) -> list[int]:
+def swings(values: Array, least: float) -> list[int]:
     """The maxima from which `values` (n,) fall by `least` before they rise beyond them: few of many in noise."""
     turns = np.flatnonzero(np.diff(np.sign(np.diff(values)), prepend=0.0) != 0.0)
     swings: list[int] = []

@@ -82,6 +82,7 @@ def command(
 
     RUN is a run file, or a measurement as CSV, WAV, MAT or UFF, whose columns --x, --speed and so on name.
     """
+    from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
 
@@ -105,6 +106,8 @@ def command(
         told["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
+            for sentence in about_critical_speeds(run, run.events):
+                terminal.sentence(sentence)
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": view.direction, **told})
 

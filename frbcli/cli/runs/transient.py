@@ -220,17 +220,20 @@ def exit_code(status: str) -> int:
 
 def _report(case: Case, run: Run, terminal: Terminal) -> None:
     """Status with its cause and remedy, events, cost and error, as text."""
+    from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
     from frbcli.results.columns import EVENTS
-    from frbcli.runs.advice import accuracy_advice, run_advice, run_end
+    from frbcli.runs.advice import accuracy_advice, forced_advice, run_advice, run_end
     from frbcli.runs.errors.account import about_certainty, account
 
     terminal.result(f"{run.title}: {run.status} at {run.t_end_s:.4g} s")
-    for sentence in (*run_advice(case, run_end(run)), *accuracy_advice(case, run)):
+    for sentence in (*run_advice(case, run_end(run)), *accuracy_advice(case, run), *forced_advice(case)):
         terminal.remark(wrapped(sentence))
     if run.events:
         events = with_whirl_names(run.events)
         terminal.show("events", table_of(EVENTS, events))
         for sentence in about_certainty(events, run.cost):
             terminal.sentence(sentence)
+    for sentence in about_critical_speeds(run, run.events):
+        terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))

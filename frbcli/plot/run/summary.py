@@ -44,6 +44,7 @@ NAMES = {
     "lock-in": "lock-in",
     "contact": "contact",
     "clearance-step": "clearance step",
+    "forced": "forced",
 }
 
 

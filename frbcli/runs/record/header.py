@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import platform
 import sys
 from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
+from frbcli.analysis.orders.forced import ForcedLine, forced_references, lines_of_table
 from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
@@ -15,9 +17,11 @@ from frbcli.film.grid import Array
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.rotor.body import PLANE
+from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.bearing_model_films import model_record
+from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
 from frbcli.solve.pin import STIFFNESS
@@ -140,9 +144,24 @@ def header(
         | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
         | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}
+        | forced_references(forcing(case)[0])
         | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
         | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
     )
+
+
+def forcing(case: Case) -> tuple[list[ForcedLine], list[str]]:
+    """What forces the machine of a case beside its unbalance: harmonics but those of order 1, and the largest lines of
+    tables over time; and the names of tables whose lines do not hold nearly all of their change."""
+    found, broad = list[ForcedLine](), list[str]()
+    for _, load in element_parts(case).loads:
+        if isinstance(load, Tabulated):
+            frequencies, whole = lines_of_table(load.times, load.factors(load.times, load.times).T)
+            found += [ForcedLine(frequency_Hz=frequency) for frequency in frequencies]
+            broad += [] if whole else [load.name]
+        elif isinstance(load, Harmonic) and not load.synchronous:
+            found.append(ForcedLine(abs(load.frequency) / (2.0 * math.pi), abs(load.order)))
+    return list(dict.fromkeys(found)), list(dict.fromkeys(broad))
 
 
 @cache

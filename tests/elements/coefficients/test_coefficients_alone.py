@@ -33,13 +33,15 @@ from given_rotors import (
 from series_rotors import HEAVY
 
 import frbcli
+from frbcli.analysis.events import about_critical_speeds
+from frbcli.analysis.measured import events_at
 from frbcli.case.reading.load import case_from_dict, load_case_text
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.modes import natural_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.linear.stability_point import eigenvalues
-from frbcli.runs.run import runup
+from frbcli.runs.run import rundown, runup
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.plan import make_plan
 
@@ -288,3 +290,57 @@ def test_bearings_without_stiffness_do_not_hold_a_rotor() -> None:
     (point,) = stability(case, [100.0]).points
     assert point.status == "not-converged"
     assert "do not hold the rotor" in point.problem
+
+
+# ------------------------------------------------------------------- critical speeds of runs
+TWO_MODES = {"kind": "jeffcott", "mass": "6 kg", "journal_mass": "6 kg", "shaft_stiffness": "5e5 N/m",
+             "unbalance": "3e-5 kg*m", "external_damping": "30 N*s/m", "shaft_damping": "0 N*s/m"}  # fmt: skip
+SEAT = {"kind": "coefficients", "name": "seat", "stiffness": "2.07e5 N/m", "damping": "40 N*s/m"}
+
+
+def closed_form() -> list[float]:
+    """Natural frequencies in Hz of disk and journals, undamped: det(K - w^2 M) = 0 of two masses in series."""
+    a, b, c = 6.0 * 6.0, -(6.0 * (5e5 + 2 * 2.07e5) + 6.0 * 5e5), 5e5 * 2 * 2.07e5
+    return sorted(math.sqrt(root) / TURN for root in np.roots([a, b, c]).real)
+
+
+def passed(tmp_path: Path, low: float, high: float, run: Any = runup, **tables: object) -> tuple[list[float], Any]:
+    """Speeds in Hz of the critical speeds of a run, which has no other events, and the run."""
+    case = case_from_dict({"rotor": TWO_MODES, "bearing": SEAT, "speed": speed(low, high, 12.0)} | tables, "two")
+    found = run(case, tmp_path / "run.h5")
+    assert {event["kind"] for event in found.events} <= {"critical-speed"}
+    return [event["speed_Hz"] for event in found.events], found
+
+
+@pytest.mark.parametrize(("low", "high"), [(8.0, 105.0), (105.0, 8.0)], ids=["up", "down"])
+def test_a_run_has_both_critical_speeds(low: float, high: float, tmp_path: Path) -> None:
+    """A ramp of 8 Hz/s passes a mode a little late, by 1.5 sqrt(8) Hz at most."""
+    late = 1.5 * math.sqrt(8.0)
+    found, _ = passed(tmp_path, low, high)
+    assert closed_form() == pytest.approx([26.5, 72.6], abs=0.1)
+    assert sorted(found) == pytest.approx(closed_form(), abs=late)
+    assert found == sorted(found, reverse=low > high)
+
+
+def test_a_rundown_has_its_critical_speeds_both_ways(tmp_path: Path) -> None:
+    found, run = passed(tmp_path, 8.0, 105.0, rundown)
+    first, second = closed_form()
+    assert found == pytest.approx([first, second, second, first], abs=1.5 * math.sqrt(8.0))
+    assert found[0] > found[3]  # late on either way
+    seen = events_at(run, "disk", 1e-4)  # as of a measurement, which knows no modes
+    assert [event["speed_Hz"] for event in seen if event["kind"] == "critical-speed"] == pytest.approx(found, abs=0.5)
+
+
+def test_a_critical_speed_that_is_not_found_has_its_reason(tmp_path: Path) -> None:
+    """Without unbalance nothing excites the modes; a run that ends in the second one has no peak of it."""
+    none = {"rotor": TWO_MODES | {"unbalance": "0 kg*m", "gravity": 0.0}}
+    found, run = passed(tmp_path, 8.0, 105.0, **none)
+    assert found == []
+    (told,) = about_critical_speeds(run, run.events)
+    assert "want of unbalance" in told
+    assert "26.46, 72.59 Hz on the way up" in told
+    (tmp_path / "end").mkdir()
+    found, run = passed(tmp_path / "end", 8.0, closed_form()[1] + 1.0)
+    assert found == pytest.approx(closed_form()[:1], abs=5.0)
+    (told,) = about_critical_speeds(run, run.events)
+    assert "turns or ends too near" in told

@@ -156,9 +156,7 @@ def test_a_csv_is_linear_between_its_speeds_and_constant_beyond(tmp_path: Path) 
     assert load_case_text(case.source_text, name="rigid") == case
 
 
-@pytest.mark.parametrize(
-    ("column", "one"), [("speed_Hz", 1.0), ("speed_rpm", 60.0), ("speed_rad_s", TURN)]
-)
+@pytest.mark.parametrize(("column", "one"), [("speed_Hz", 1.0), ("speed_rpm", 60.0), ("speed_rad_s", TURN)])
 def test_a_table_states_the_unit_of_its_speeds(column: str, one: float, tmp_path: Path) -> None:
     (tmp_path / "seal.csv").write_text(CSV.replace("speed_Hz", column).replace("50,1e6", f"{50 * one!r},1e6")
                                        .replace("100,1.5e6", f"{100 * one!r},1.5e6"))  # fmt: skip
