@@ -216,7 +216,7 @@ def configuration(source: Path, target: Path) -> str:
     guides = ("terms", "case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements",
               "report", "bearing-sheet", "thrust", "rotors", "standards", "floating-rings", "gas-and-contact",
               "elements", "surroundings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
-    science = ("theory", "equations", "heat", "validation", "accuracy")
+    science = ("theory", "equations", "heat", "validation", "textbooks", "accuracy")
     development = ("architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method", "hard-cases")
 
     def entries(names: tuple[str, ...]) -> str:

@@ -16,6 +16,7 @@ from frbcli.case.quantities import (
     Angle,
     Count,
     Damping,
+    DampingRate,
     DampingTime,
     Density,
     Fraction,
@@ -106,6 +107,8 @@ class ShaftSection(Model):
     internal_damping: DampingTime | None = Field(
         default=None, description="of the section over its stiffness, in place of that of the rotor; turns with it"
     )
+    mass_damping: DampingRate = Field(default=0.0, description="of the section over its mass; does not turn")
+    stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")
 
 
 class Disk(Model):

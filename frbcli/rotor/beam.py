@@ -28,7 +28,8 @@ ELEMENTS = 80  # of a shaft, at least
 @dataclass(frozen=True)
 class BeamSection:
     """A cylindrical section of a shaft: lengths in m, density in kg/m^3, youngs_modulus in Pa; internal_damping in s,
-    over its stiffness."""
+    over its stiffness, turns with it; mass_damping in 1/s and stiffness_damping in s, over its mass and its stiffness,
+    do not turn."""
 
     length: float
     diameter: float
@@ -37,6 +38,8 @@ class BeamSection:
     youngs_modulus: float
     poisson_ratio: float
     internal_damping: float = 0.0
+    mass_damping: float = 0.0
+    stiffness_damping: float = 0.0
 
     @property
     def area(self) -> float:
@@ -66,8 +69,9 @@ class Plane:
     """A free rotor in one plane with the degrees of freedom v_1, psi_1, v_2, psi_2, ... of its k nodes.
 
     positions: (k,) m along the shaft, ascending. mass, stiffness, polar: (2 k, 2 k), sparse; polar is the inertia about
-    the axis of rotation that the slopes carry along, internal the damping that turns with the shaft:
-    M v'' - i Omega G v' + C (v' - i Omega v) + K v = f for v = x + i y.
+    the axis of rotation that the slopes carry along, internal the damping C that turns with the shaft,
+    mass_damping D_m and bending_damping D_b those that do not:
+    M v'' - i Omega G v' + C (v' - i Omega v) + (D_m + D_b) v' + K v = f for v = x + i y.
     """
 
     positions: Array
@@ -75,6 +79,8 @@ class Plane:
     stiffness: csc_array
     polar: csc_array
     internal: csc_array
+    mass_damping: csc_array
+    bending_damping: csc_array
 
     def node(self, position: float) -> int:
         """Index of the node at a position in m. Raises ValueError if there is none."""
@@ -144,8 +150,12 @@ def beam(sections: Sequence[BeamSection], stations: Sequence[float], elements: i
         np.array([owner.density * owner.area for owner in owners]),
         np.array([owner.density * owner.second_moment for owner in owners]),
     )
-    times = np.array([owner.internal_damping for owner in owners])
-    return Plane(positions, *map(_assembled, (*local, times[:, None, None] * local[1])))
+    turning, of_mass, of_stiffness = np.array(
+        [(owner.internal_damping, owner.mass_damping, owner.stiffness_damping) for owner in owners]
+    ).T[:, :, None, None]
+    mass, stiffness, _ = local
+    dampings = turning * stiffness, of_mass * mass, of_stiffness * stiffness
+    return Plane(positions, *map(_assembled, (*local, *dampings)))
 
 
 def _nodes(places: Array, length: float, elements: int) -> Array:

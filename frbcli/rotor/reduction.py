@@ -51,7 +51,7 @@ class FreeModes:
     positions: (k,) m; frequencies: (n,) rad/s, ascending, the first two zero; shapes: (k, n) displacements in
     1/sqrt(kg): the first a translation, the second a tilt about the centre of mass; slopes: (k, n) in 1/(m sqrt(kg));
     polar: (n, n) inertia about the axis of rotation in these modes, internal: (n, n) 1/s, damping that turns with the
-    shaft. weight: (n,) sqrt(kg), the modes' share of a uniform acceleration.
+    shaft, damping: (n, n) 1/s, that which does not. weight: (n,) sqrt(kg), the modes' share of a uniform acceleration.
     """
 
     positions: Array
@@ -60,6 +60,7 @@ class FreeModes:
     slopes: Array
     polar: Array
     internal: Array
+    damping: Array
     weight: Array
 
     def at(self, position: float) -> Array:
@@ -82,6 +83,7 @@ class FreeModes:
             self.slopes[:, :count],
             self.polar[:count, :count],
             self.internal[:count, :count],
+            self.damping[:count, :count],
             self.weight[:count],
         )
 
@@ -174,8 +176,9 @@ def free_modes(plane: Plane) -> FreeModes:
     # A solver finds the motions of the rigid body mixed and to round-off only; they are known.
     frequencies[:RIGID], vectors[:, :RIGID] = 0.0, _rigid_motions(plane)
     uniform = _uniform(plane)
-    internal = _symmetric(vectors.T @ (plane.internal @ vectors))
-    internal[:RIGID] = internal[:, :RIGID] = 0.0  # a motion that does not bend is not damped
+    internal, bending = (_symmetric(vectors.T @ (each @ vectors)) for each in (plane.internal, plane.bending_damping))
+    for each in (internal, bending):  # a motion that does not bend is not damped
+        each[:RIGID] = each[:, :RIGID] = 0.0
     return FreeModes(
         plane.positions,
         frequencies,
@@ -183,6 +186,7 @@ def free_modes(plane: Plane) -> FreeModes:
         np.asarray(vectors[1::2], dtype=np.float64),
         _symmetric(vectors.T @ (plane.polar @ vectors)),
         internal,
+        bending + _symmetric(vectors.T @ (plane.mass_damping @ vectors)),
         np.asarray(vectors.T @ (plane.mass @ uniform), dtype=np.float64),
     )
 
@@ -237,6 +241,7 @@ def with_static_modes(modes: FreeModes, count: int, places: Places) -> FreeModes
         modes.slopes @ basis,
         _symmetric(basis.T @ modes.polar @ basis),
         _symmetric(basis.T @ modes.internal @ basis),
+        _symmetric(basis.T @ modes.damping @ basis),
         modes.weight @ basis,
     )
 

@@ -70,7 +70,7 @@ def turbocharger_rotor(
     """
     n = len(modes.frequencies)
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
-    damping = np.diag(2 * modal_damping * modes.frequencies)
+    damping = modes.damping + np.diag(2 * modal_damping * modes.frequencies)
     unbalance_cos, unbalance_sin = np.zeros((2, n)), np.zeros((2, n))
     for wheel in wheels:
         shape = modes.at(wheel.position)

@@ -12,14 +12,15 @@ from pathlib import Path
 from typing import Any, get_args
 
 from frbcli.case.files.number_table import Refused, text_of
-from frbcli.case.quantities import Density, Inertia, InnerDiameter, Length, Mass, Modulus
+from frbcli.case.quantities import DampingRate, DampingTime, Density, Inertia, InnerDiameter, Length, Mass, Modulus
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.units import ValueFault
 
 SHAFT = ("ShaftElement", "ShaftElement6DoF")
 # What a case file demands of the same quantities.
 QUANTITIES = {"L": Length, "odl": Length, "odr": Length, "idl": InnerDiameter, "idr": InnerDiameter, "rho": Density,
-              "E": Modulus, "G_s": Modulus, "m": Mass, "Ip": Inertia, "Id": Inertia}  # fmt: skip
+              "E": Modulus, "G_s": Modulus, "m": Mass, "Ip": Inertia, "Id": Inertia,
+              "alpha": DampingRate, "beta": DampingTime}  # fmt: skip
 REMEDY = "Correct it in ROSS; values are in SI units."
 WRITE = "Write it with Rotor.save of ROSS, to .toml or .json."
 

@@ -3,7 +3,8 @@
 Such a file is a table of elements, named by class and tag: a shaft element carries its node `n`, length, outer and
 inner diameters at both ends and its material, a disk its node, mass and inertias, all in SI. Bearings and seals of the
 file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP.
-What an element specifies beside that is refused by its name, unless it has no effect.
+Its alpha and beta are damping over mass and over stiffness that does not turn. What an element specifies beside that is
+refused by its name, unless it has no effect.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ STEP, MOST_CYLINDERS = 0.025, 80  # of a cone: relative change of the diameter f
 DISK = ("DiskElement", "DiskElement6DoF")
 HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
 MASS = "PointMass"  # that bearings stand on
-TAKEN = ("L", "idl", "odl", "idr", "odr", "material", "n")
+TAKEN = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
+DAMPINGS = {"mass_damping": "alpha", "stiffness_damping": "beta"}  # C = alpha M + beta K of an element
 LABELS = ("tag", "color", "scale_factor", "kwargs")
 ALWAYS = {"shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper"}
 OF_DISK = ("n", "m", "Id", "Ip")
@@ -38,7 +40,8 @@ ALWAYS_WORDS = {
 
 KEY = ("rotor", "file")
 UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m^3", "youngs_modulus": "Pa",
-         "position": "m", "mass": "kg", "polar_inertia": "kg*m^2", "diametral_inertia": "kg*m^2"}  # fmt: skip
+         "position": "m", "mass": "kg", "polar_inertia": "kg*m^2", "diametral_inertia": "kg*m^2",
+         "mass_damping": "1/s", "stiffness_damping": "s"}  # fmt: skip
 
 
 def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
@@ -113,6 +116,7 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
     poisson = modulus / (2 * material.number("G_s")) - 1
     if not 0.0 <= poisson <= MOST_POISSON:
         raise Refused(f'has E and G_s in "{material.name}" that make a Poisson ratio of {poisson:.3g}.', REMEDY)
+    dampings = {key: element.number(name) for key, name in DAMPINGS.items() if element.values.get(name)}
     parts = _cylinders_of(outer, *growth)
     for part in range(parts):
         middle = (part + 0.5) / parts
@@ -123,6 +127,7 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
             "density": material.number("rho"),
             "youngs_modulus": modulus,
             "poisson_ratio": poisson,
+            **dampings,
         }
 
 

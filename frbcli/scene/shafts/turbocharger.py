@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import ClassVar
@@ -125,7 +126,8 @@ class TurbochargerShaft(Shaft):
 
     def undamped_body(self) -> Body:
         free = self.free()
-        undamped = replace(free.modes, internal=np.zeros_like(free.modes.internal))
+        none = np.zeros_like(free.modes.internal)
+        undamped = replace(free.modes, internal=none, damping=none)
         return turbocharger_rotor(undamped, free.wheels, free.journals, 0.0, 0.0, 0.0, free.collars)
 
     def free(self) -> FreeShaft:
@@ -160,13 +162,20 @@ class TurbochargerShaft(Shaft):
 
     @property
     def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
-        """See Shaft; of sections with internal dampings of their own the largest one."""
-        rotor, internal = self.rotor, [self._internal(part) for part in self.case.shaft]
-        largest = "" if len(set(internal)) == 1 else "; largest of the sections"
+        """See Shaft; of sections with dampings of their own the largest one."""
+        rotor, sections = self.rotor, self.case.shaft
+        internal = [self._internal(part) for part in sections]
+        of_mass, of_stiffness = zip(*((part.mass_damping, part.stiffness_damping) for part in sections), strict=True)
+
+        def over(what: str, each: Sequence[float], turns: str) -> str:
+            return f"of the shaft over its {what}{'' if len(set(each)) == 1 else '; largest of the sections'}; {turns}"
+
         return (
             ("external damping", rotor.external_damping, "N*s/m", "of each disk against the ground"),
             ("modal damping", rotor.modal_damping, "", f"ratio of every elastic mode; {STANDS}"),
-            ("internal damping", max(internal), "s", f"of the shaft over its stiffness{largest}; {TURNS}"),
+            ("internal damping", max(internal), "s", over("stiffness", internal, TURNS)),
+            ("mass damping", max(of_mass), "1/s", over("mass", of_mass, STANDS)),
+            ("stiffness damping", max(of_stiffness), "s", over("stiffness", of_stiffness, STANDS)),
         )
 
     @property

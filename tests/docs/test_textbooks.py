@@ -1,0 +1,38 @@
+"""The rows of docs/textbooks.md: frb has the figures of their sources within the bounds of the rows."""
+
+from __future__ import annotations
+
+import pytest
+from pages.textbook_bearings import FORMS, TABLES
+from pages.textbook_rotors import ROTORS
+from pages.textbook_rows import Bench
+from pages.textbooks_page import PAGE
+
+
+def hold(bench: Bench) -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    rows = bench()
+    assert rows
+    for row in rows:
+        assert row.holds, row.cells()
+        assert f"| {' | '.join(row.given)} |" in text
+
+
+@pytest.mark.parametrize("bench", ROTORS + FORMS, ids=lambda bench: bench.__name__)
+def test_rotors_and_short_films_of_textbooks(bench: Bench) -> None:
+    hold(bench)
+
+
+@pytest.mark.nightly  # films of finite length
+@pytest.mark.parametrize("bench", TABLES, ids=lambda bench: bench.__name__)
+def test_tables_of_bearings(bench: Bench) -> None:
+    hold(bench)
+
+
+def test_the_page_has_25_machines_and_says_why_figures_differ() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    rows = [line[2:-2].split(" | ") for line in text.splitlines() if line.startswith("| ") and "---" not in line]
+    assert len({row[0] for row in rows if row[0] != "machine"}) >= 25
+    reasons = text.partition("## Why figures differ")[2].partition("\n## ")[0]
+    for number in {row[8].strip(" |") for row in rows if len(row) > 8} - {"", "why"}:
+        assert f"\n{number}. " in reasons
