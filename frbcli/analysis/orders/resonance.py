@@ -254,8 +254,8 @@ def _turned(amplitude: Array, phase: Array, place: int) -> float:
 
 
 def _cut_off(amplitude: Array, least: float, begin: int) -> list[Peak]:
-    """The highest peak, from a sample on, of a curve (n,) that ends with the run or a whirl, which cuts off the far side
-    of the peak: its prominence is how far it rises.
+    """The highest peak, from a sample on, of a curve (n,) that ends with the run or a whirl, which cuts off the far
+    side of the peak: its prominence is how far it rises.
 
     How far it would fall is not known, so its phase decides: where one mode moves, the amplitude goes with the cosine
     of the phase, and LAG between the middles of the flanks is a fall by 7 %.
