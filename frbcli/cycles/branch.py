@@ -165,9 +165,7 @@ def _kind_of(multiplier: complex) -> str:
     return FLIP if multiplier.real < 0.0 else ""
 
 
-def _crossing(
-    follower: Follower, place: Place, length: float, ends: tuple[Multipliers, Multipliers]
-) -> Place | None:
+def _crossing(follower: Follower, place: Place, length: float, ends: tuple[Multipliers, Multipliers]) -> Place | None:
     """Where a multiplier crosses the unit circle within a step, between those at its ends."""
     number, asked = max(found.unstable for found in ends) - 1, follower.equations(place)
     known = {0.0: ends[0].growth(number), length: ends[1].growth(number)}

@@ -162,7 +162,9 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
     return (
         Column("kind", "", "`hopf`, `fold`, `flip` or `torus`", shown=(Shown("point"),)),
         Column("branch", "", "number of the branch, from 0; none where none was followed"),
-        Column("branch", "", "", lambda point: None if point.branch is None else point.branch + 1,
+        Column("synchronous", "", "whether it is of the synchronous response"),
+        Column("branch", "", "",
+               lambda point: "synchronous" if point.synchronous else None if point.branch is None else point.branch + 1,
                shown=(Shown("branch"),), key="", flat=False),
         VALUE,
         _in_last_digits("Hz", 2, "value", own) if along_speed else value,

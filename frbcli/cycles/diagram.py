@@ -109,23 +109,26 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
     )
 
 
-def special_cycles(branches: Sequence[CycleBranch]) -> Iterator[SpecialPoint]:
-    """The folds, flips and torus points of branches."""
-    for number, branch in enumerate(branches):
-        for point in branch.points:
-            if point.kind in (FOLD, FLIP, TORUS):
-                yield SpecialPoint(
-                    kind=point.kind,
-                    branch=number,
-                    value=point.value,
-                    speed_Hz=point.speed_Hz,
-                    frequency_Hz=point.frequency_Hz,
-                    eccentricity_max=point.eccentricity_max,
-                    value_uncertainty=point.value_uncertainty,
-                    frequency_uncertainty_Hz=point.frequency_uncertainty_Hz,
-                    eccentricity_max_uncertainty=point.eccentricity_max_uncertainty,
-                    certain=_certain(point),
-                )
+def special_cycles(branches: Sequence[CycleBranch], response: Sequence[CyclePoint] = ()) -> Iterator[SpecialPoint]:
+    """The folds, flips and torus points of branches and of the synchronous response."""
+    numbered: list[tuple[int | None, CyclePoint]] = [
+        (number, point) for number, branch in enumerate(branches) for point in branch.points
+    ]
+    for number, point in [*numbered, *((None, point) for point in response)]:
+        if point.kind in (FOLD, FLIP, TORUS):
+            yield SpecialPoint(
+                kind=point.kind,
+                branch=number,
+                value=point.value,
+                speed_Hz=point.speed_Hz,
+                frequency_Hz=point.frequency_Hz,
+                eccentricity_max=point.eccentricity_max,
+                value_uncertainty=point.value_uncertainty,
+                frequency_uncertainty_Hz=point.frequency_uncertainty_Hz,
+                eccentricity_max_uncertainty=point.eccentricity_max_uncertainty,
+                certain=_certain(point),
+                synchronous=number is None,
+            )
 
 
 def _certain(point: CyclePoint) -> bool | None:
@@ -165,7 +168,7 @@ def with_response(found: LimitCycles, walk: Walk, response: Branch | None) -> Li
     cost = replace(found.cost, cycles=found.cost.cycles + len(points))
     if not response.note.startswith(LEFT):
         found = replace(found, notes=(*found.notes, f"Synchronous response: {response.note}"))
-    return replace(found, synchronous=points, cost=cost)
+    return replace(found, synchronous=points, special=(*found.special, *special_cycles((), points)), cost=cost)
 
 
 def _notes(case: Case, walk: Walk) -> list[str]:

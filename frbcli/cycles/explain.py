@@ -21,7 +21,7 @@ def explanations(found: LimitCycles, events: Sequence[Mapping[str, Any]]) -> tup
             continue
         seen = f"{event['kind'].capitalize()} at {event['speed_Hz']:.1f} Hz"
         starts = event["kind"] == "onset"
-        causes = [point for point in found.special if point.kind in (HOPF, FOLD)]
+        causes = [point for point in found.special if point.kind in (HOPF, FOLD) and not point.synchronous]
         if starts:
             causes = [point for point in causes if point.speed_Hz <= AHEAD * event["speed_Hz"]]
         if not causes:

@@ -141,9 +141,9 @@ class HeatOfMotions:
         """(free, free) W/K while power and flow stay."""
         free = self.free
         ahead, behind = (
-            np.column_stack([
-                self._rates(t + sign * DIFFERENCE * one, found.power, found.flow) for one in np.eye(len(t))[free]
-            ])
+            np.column_stack(
+                [self._rates(t + sign * DIFFERENCE * one, found.power, found.flow) for one in np.eye(len(t))[free]]
+            )
             for sign in (1.0, -1.0)
         )
         return np.asarray((ahead - behind)[free] / (2.0 * DIFFERENCE))

@@ -138,7 +138,7 @@ class SpecialPoint:
     criticality.py; eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and
     folds and of the frequency, by the mesh of the films;
     eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a fold was found on films of another mesh,
-    None of others and where it was not sought.
+    None of others and where it was not sought; synchronous: whether it is of the synchronous response.
     """
 
     kind: str
@@ -154,6 +154,7 @@ class SpecialPoint:
     frequency_uncertainty_Hz: float = math.nan
     eccentricity_max_uncertainty: Array | None = None
     certain: bool | None = None
+    synchronous: bool = False
 
 
 @dataclass(frozen=True)
@@ -186,8 +187,8 @@ class LimitCycles(Tabular):
         return any(len(point.end_eccentricity) for point in self.equilibria)
 
     def of(self, kind: str) -> tuple[SpecialPoint, ...]:
-        """The special points of a kind."""
-        return tuple(point for point in self.special if point.kind == kind)
+        """The special points of a kind, without those of the synchronous response."""
+        return tuple(point for point in self.special if point.kind == kind and not point.synchronous)
 
     def table(self) -> Table:
         """One row per resting position and cycle, and per whirl with unbalance, if they were asked for."""

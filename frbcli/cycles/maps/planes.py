@@ -34,9 +34,7 @@ class MapPlane(ABC):
     by_difference: ClassVar[tuple[int, ...]]
     shaded: ClassVar[int]
 
-    def __init__(
-        self, over: str, unit: str, scale: float, second: Family, corners: tuple[Array, Array]
-    ) -> None:
+    def __init__(self, over: str, unit: str, scale: float, second: Family, corners: tuple[Array, Array]) -> None:
         self.over, self.unit, self.scale, self.second, self.corners = over, unit, scale, second, corners
 
     @abstractmethod

@@ -80,9 +80,7 @@ def limit_cycles_by_shooting(
         branches.append(CycleBranch(len(special) - 1, points, _with_cells(flow, note, shots)))
         if with_unbalance:
             branches[-1] = whirls_of_branch(shooting, branches[-1], shots, fastest - slowest, observe)
-    response, remarks = (
-        _response(shooting, rests, (slowest, fastest), asked, tell) if with_unbalance else ((), [])
-    )
+    response, remarks = _response(shooting, rests, (slowest, fastest), asked, tell) if with_unbalance else ((), [])
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -90,7 +88,7 @@ def limit_cycles_by_shooting(
         films=flow.system.names,
         equilibria=tuple(_rest(shooting, rest) for rest in rests),
         branches=tuple(branches),
-        special=(*special, *special_cycles(branches)),
+        special=(*special, *special_cycles(branches, response)),
         notes=(*_notes(shooting, other, rests, hopf), *remarks),
         cost=Cost(working_time().cpu_s - begun, told.count),
         synchronous=response,

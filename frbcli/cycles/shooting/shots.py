@@ -305,9 +305,7 @@ class Shooting:
             return ()
         asked.settle(found.x)
         first = found.p, asked.passage.displacements
-        others = (
-            self._elsewhere(place, asked, found.p, found.space, conditions, close) for place in self.flow.places
-        )
+        others = (self._elsewhere(place, asked, found.p, found.space, conditions, close) for place in self.flow.places)
         return (first, *(each for each in others if each is not None))
 
     def _elsewhere(

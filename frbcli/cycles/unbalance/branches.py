@@ -102,17 +102,45 @@ def of_no_whirl(found: LimitCycles) -> LimitCycles:
 
 
 def _synchronous(found: LimitCycles) -> list[str]:
-    """Where the synchronous motion is stable, in words."""
-    points = sorted(found.synchronous, key=lambda point: point.speed_Hz)
-    if not points:
+    """Where the synchronous motion is stable, in words: each of the branches between its folds by itself."""
+    pieces = between_folds(found.synchronous)
+    if not pieces:
         return []
-    spans: list[tuple[bool, list[float]]] = []
+    if len(pieces) == 1:
+        return [f"The synchronous motion is {_stability(pieces[0])}, where it was computed."]
+    folds = " and ".join(f"{point.speed_Hz:.6g} Hz" for point in found.synchronous if point.kind == FOLD)
+    told = [f"The synchronous motion has {len(pieces)} branches, which meet in folds at {folds}."]
+    return told + [
+        f"Branch {number} of the synchronous motion is {_stability(piece)}, with eccentricities of "
+        f"{min(sizes):.3g} to {max(sizes):.3g}."
+        for number, piece in enumerate(pieces, start=1)
+        for sizes in [[float(point.eccentricity_max.max()) for point in piece]]
+    ]
+
+
+def between_folds(points: Sequence[CyclePoint]) -> list[list[CyclePoint]]:
+    """The branches of a response, whose points are in their order along it, between its folds: each passes a speed
+    once."""
+    pieces: list[list[CyclePoint]] = [[]]
     for point in points:
+        if point.kind == FOLD:
+            pieces.append([])
+            continue
+        here, speed = pieces[-1], point.speed_Hz
+        if len(here) > 1 and (speed - here[-1].speed_Hz) * (here[-1].speed_Hz - here[-2].speed_Hz) < 0.0:
+            pieces.append([])  # a fold that was not located
+        pieces[-1].append(point)
+    return [piece for piece in pieces if piece]
+
+
+def _stability(points: Sequence[CyclePoint]) -> str:
+    """Where a branch that passes each speed once is stable, in words."""
+    spans: list[tuple[bool, list[float]]] = []
+    for point in sorted(points, key=lambda each: each.speed_Hz):
         if not spans or spans[-1][0] != point.stable:
             spans.append((point.stable, []))
         spans[-1][1].append(point.speed_Hz)
-    told = [f"{'stable' if stable else 'unstable'} {_span(speeds)}" for stable, speeds in spans]
-    return [f"The synchronous motion is {', '.join(told)}, where it was computed."]
+    return ", ".join(f"{'stable' if stable else 'unstable'} {_span(speeds)}" for stable, speeds in spans)
 
 
 def _span(speeds: Sequence[float]) -> str:

@@ -62,9 +62,7 @@ class Chain:
         stable = is_stable(machine, reduced_space(machine), torus, cycle)
         return WhirlFound(free_whirl(machine, torus, stable), torus, cycle)
 
-    def _settled(
-        self, machine: Machine, motion: Complex, nu: float, omega: float
-    ) -> tuple[Machine, Torus | None]:
+    def _settled(self, machine: Machine, motion: Complex, nu: float, omega: float) -> tuple[Machine, Torus | None]:
         """The machine, with heat at the temperatures of the motion that it then has, and this; None if it has locked
         in. Temperatures and motion are found in turn: they hardly change each other. Raises Unreachable."""
         if self.at_its_heat is None:

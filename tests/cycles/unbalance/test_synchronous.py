@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import frbcli
+from frbcli.cli.main import run as frb
 
 
 @pytest.mark.nightly  # 7 s; of a force: test_two_frequencies.py
@@ -38,3 +42,23 @@ def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ign
     assert response[0].speed_Hz == pytest.approx(130.0)
     assert response[0].stable
     assert response[0].eccentricity_max[0] == pytest.approx(seen.max(), abs=2e-4)
+
+
+def test_a_bistable_damper_has_branches_that_meet_in_folds(capfd: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """Three motions at one speed between the folds, of which the middle one is unstable."""
+    settings = {"bearing.damper.centred": "true", "film.theory": "short", "bearing.damper.spring": "2e7 N/m",
+                "oil.viscosity": "3 mPa*s", "rotor.unbalance": "800 g*mm"}  # fmt: skip
+    command = ["limit-cycles", "squeeze-film-damper", "--with-unbalance", "-o", str(tmp_path / "it.png")]
+    command += [word for key, value in settings.items() for word in ("--set", f"{key}={value}")]
+    assert frb([*command, "--json"]) == 0
+    document = json.loads(capfd.readouterr().out)
+    folds = [point for point in document["special"] if point["kind"] == "fold"]
+    assert [(fold["synchronous"], fold["branch"]) for fold in folds] == [(True, None)] * 2
+    lower, upper = sorted(fold["speed_Hz"] for fold in folds)
+    between = [point for point in document["synchronous"] if lower < point["speed_Hz"] < upper and not point["kind"]]
+    assert {point["stable"] for point in between} == {True, False}
+    at_once = [note for note in document["notes"] if "synchronous motion" in note]
+    assert len(at_once) == 4  # that there are three branches, and each of them
+    told = " and ".join(f"{fold['speed_Hz']:.6g} Hz" for fold in folds)
+    assert f"3 branches, which meet in folds at {told}." in at_once[0]
+    assert [("unstable" in note, note.count("stable")) for note in at_once[1:]] == [(False, 1), (True, 1), (False, 1)]
