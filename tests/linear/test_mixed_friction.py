@@ -37,14 +37,19 @@ def mixed(state: FilmState) -> MixedFriction:
     return state.mixed
 
 
-def test_a_shaft_that_stands_still_rests_on_its_summits() -> None:
-    case = rigid()
+@pytest.mark.parametrize("settings", [(), ("contact.mean_height=1.5 um",)])
+def test_a_shaft_that_stands_still_rests_on_its_summits(settings: tuple[str, ...]) -> None:
+    case = rigid(*settings)
     system = make_system(case, make_plan(case))
     place = resting_position(system, 0.0).journals[0]
     assert place[0] == pytest.approx(0.0, abs=1e-12 * system.clearances[0])
     assert system.asperities is not None
     _, radial = plain_touch(system.asperities, 0, system.clearances[0], -float(place[1]))
     assert radial == pytest.approx(LOAD, rel=1e-6)
+    if settings:
+        lower = make_system(rigid(), make_plan(rigid()))
+        gaps = [each.clearances[0] + resting_position(each, 0.0).journals[0][1] for each in (system, lower)]
+        assert gaps[0] - gaps[1] == pytest.approx(1.5e-6, rel=0.02)  # and a stripe that is as much narrower
 
 
 def test_thin_oil_leaves_boundary_friction() -> None:
@@ -127,6 +132,7 @@ def test_stiffness_is_the_slope_of_the_load_with_friction_and_film() -> None:
     ("settings", "key", "problem"),
     [
         (("contact.roughness=5 um", "contact.summit_density=1e9 1/m^2"), "contact.roughness", "meet all around"),
+        (("contact.mean_height=32 um",), "contact.mean_height", "meet all around"),
         (("bearing.lobes={count=3, preload=0.5}",), "bearing.lobes", "plain cylinder"),
         (("contact.flow_factors=true", "film.solution=table"), "film.solution", "flow factors change with the gap"),
         (

@@ -40,8 +40,6 @@ OPEN = """\
 - Tilting pads (Fillon, Bligoud, Frene 1992; Someya 1989, p. 83 and 107): a bearing with pads that tilt is not modelled.
 - Porous aerostatic bearings (Miettinen et al. 2024) and labyrinth seals: not modelled. A seal of known coefficients is
   an [element](elements.md).
-- Friction in mixed lubrication (Sander, Allmaier, Priebsch, Witt, Skiadas): a test bearing and two supports under 10
-  MPa at 150 rpm have 1.71 N m there, frb 0.46. The height of the summits over the mean plane, 0.6 um there, is no key.
 """
 
 

@@ -15,6 +15,7 @@ from frbcli.case.quantities import (
     Roughness,
     Stiffness,
     SummitDensity,
+    SummitHeight,
     WearCoefficient,
 )
 from frbcli.units import NUMBER, display
@@ -42,6 +43,9 @@ class Contact(Model):
     )
     summit_radius: Length | None = Field(default=None, description="of asperities, mean one of curvature")
     summit_density: SummitDensity | None = Field(default=None, description="of asperities, number over the area")
+    mean_height: SummitHeight = Field(
+        default=0.0, description="of the asperities' summits over the mean plane, the sum of both surfaces"
+    )
     modulus: Modulus = Field(
         default=COMPOSITE_MODULUS,
         description="of asperities, composite: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; steel on steel",
@@ -72,7 +76,7 @@ class Contact(Model):
         """The line of the plan on rough surfaces: their roughness, and what they do; None between smooth ones."""
         if self.roughness is None:
             return None
-        close = display(FEW_TOUCH * self.roughness, "m")
+        close = display(self.mean_height + FEW_TOUCH * self.roughness, "m")
         reason = f"asperities carry beside the film in gaps below some {close}, with friction {self.friction:g}"
         if self.flow_factors:
             reason += "; the film flows between them with flow factors"

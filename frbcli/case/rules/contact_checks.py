@@ -10,7 +10,9 @@ from frbcli.case.reading.tables import Breach, number, table
 
 OF_SPRING = ("policy", "stiffness")
 OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
-WITH_DEFAULT = ("modulus", "hardness", "friction", "wear", "flow_factors", "journal_roughness")  # of asperities, too
+WITH_DEFAULT = (  # of asperities, too
+    "mean_height", "modulus", "hardness", "friction", "wear", "flow_factors", "journal_roughness",
+)  # fmt: skip
 STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
 MOST_CROWDED = math.sqrt(2.0) / math.pi  # density, radius and roughness: all of the area, pi^2 N^2 b^2 s^2 F_2(0) = 1
 

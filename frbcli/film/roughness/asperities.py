@@ -23,7 +23,7 @@ SLOW = 1e-3  # m/s: friction is fully developed at some times this sliding speed
 class Asperities(NamedTuple):
     """Rough surfaces of all films. roughness: combined, in m; elastic: Pa, pressure of elastic summits over F_5/2;
     plastic: Pa, the same of summits that yield over F_2, infinite if they never do; friction: coefficient; radii,
-    widths: (films,) m of the bearings."""
+    widths: (films,) m of the bearings; mean_height: of the summits of both surfaces over their mean planes, m."""
 
     roughness: float
     elastic: float
@@ -31,18 +31,19 @@ class Asperities(NamedTuple):
     friction: float
     radii: Array
     widths: Array
+    mean_height: float = 0.0
 
 
 def make_asperities(
     roughness: float, summit_radius: float, summit_density: float, modulus: float, hardness: float | None,
-    friction: float, radii: Array, widths: Array,
+    friction: float, radii: Array, widths: Array, mean_height: float = 0.0,
 ) -> Asperities:  # fmt: skip
     """Asperities of Hertzian summits: pairs that meet by s - x touch with (32/15) pi E (radius/2)^(1/2) radius
     (s - x)^(5/2) of force and pi^2 radius^2 (s - x)^2 of area, by the density of both surfaces. SI units."""
     crowd = summit_density * summit_radius * roughness
     elastic = 16.0 * math.sqrt(2.0) * math.pi / 15.0 * crowd**2 * math.sqrt(roughness / summit_radius) * modulus
     plastic = math.inf if hardness is None else math.pi**2 * crowd**2 * hardness
-    return Asperities(roughness, elastic, plastic, friction, radii, widths)
+    return Asperities(roughness, elastic, plastic, friction, radii, widths, mean_height)
 
 
 class Touch(NamedTuple):
@@ -96,22 +97,30 @@ def summit_pressure(x: float, elastic: float, plastic: float) -> tuple[float, fl
 
 
 @compiled()
+def reach(asperities: Asperities) -> float:
+    """Distance of the mean planes in m from which on no summits meet."""
+    return asperities.mean_height + LAST * asperities.roughness
+
+
+@compiled()
 def meets(asperities: Asperities, clearance: float, eccentricity: float) -> bool:
     """Whether any summits meet; eccentricity in m."""
-    return clearance - eccentricity < LAST * asperities.roughness
+    return clearance - eccentricity < reach(asperities)
 
 
 @compiled()
 def touch(asperities: Asperities, f: int, clearance: float, eccentricity: float) -> Touch:
     """The integrals of film f at an eccentricity in m, where summits meet."""
     roughness = asperities.roughness
-    end = (clearance - LAST * roughness) / eccentricity if eccentricity > 0.0 else -1.0
+    end = (clearance - reach(asperities)) / eccentricity if eccentricity > 0.0 else -1.0
     arc = math.acos(max(-1.0, min(1.0, end)))
     normal = radial = normal_slope = radial_slope = 0.0
     for k in range(POINTS + 1):
         along = math.cos(k * arc / POINTS)
         pressure, slope = summit_pressure(
-            (clearance - eccentricity * along) / roughness, asperities.elastic, asperities.plastic
+            (clearance - eccentricity * along - asperities.mean_height) / roughness,
+            asperities.elastic,
+            asperities.plastic,
         )
         weight = 0.5 if k in (0, POINTS) else 1.0
         normal += weight * pressure
@@ -178,7 +187,7 @@ def standing_eccentricity(asperities: Asperities, f: int, clearance: float, load
     """Eccentricity in m at which the summits of film f carry a load in N alone, without sliding."""
     if load <= 0.0:
         return 0.0
-    low, high = clearance - LAST * asperities.roughness, clearance
+    low, high = clearance - reach(asperities), clearance
     while touch(asperities, f, clearance, high).radial < load:
         high += clearance
     for _ in range(HALVINGS):
@@ -206,7 +215,7 @@ def wear_along(
         path = scale * abs(asperities.radii[f] * slip + radial / normal * across)
         for j in range(depths.shape[0]):
             phi = 2.0 * math.pi * j / depths.shape[0]
-            gap = clearances[k] + e_x * math.sin(phi) - e_y * math.cos(phi)
+            gap = clearances[k] + e_x * math.sin(phi) - e_y * math.cos(phi) - asperities.mean_height
             depths[j] += path * summit_pressure(gap / asperities.roughness, asperities.elastic, asperities.plastic)[0]
 
 

@@ -6,13 +6,13 @@ import math
 
 from scipy.integrate import quad
 
-from frbcli.film.roughness.asperities import Asperities
+from frbcli.film.roughness.asperities import Asperities, reach
 from frbcli.film.roughness.summits import LAST, summit_integral
 
 
 def plain_pressure(asperities: Asperities, gap: float) -> float:
     """Pressure in Pa of the summits over a gap in m."""
-    x = gap / asperities.roughness
+    x = (gap - asperities.mean_height) / asperities.roughness
     if x >= LAST:
         return 0.0
     elastic = asperities.elastic * summit_integral(2.5, x)
@@ -22,7 +22,7 @@ def plain_pressure(asperities: Asperities, gap: float) -> float:
 def plain_touch(asperities: Asperities, f: int, clearance: float, eccentricity: float) -> tuple[float, float]:
     """Integrals in N of the pressure over a bearing, and of its part along the line of centres."""
     area = 2.0 * asperities.radii[f] * asperities.widths[f]
-    arc = math.acos(max(-1.0, min(1.0, (clearance - LAST * asperities.roughness) / eccentricity)))
+    arc = math.acos(max(-1.0, min(1.0, (clearance - reach(asperities)) / eccentricity)))
 
     def along(power: int) -> float:
         def density(theta: float) -> float:

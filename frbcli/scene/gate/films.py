@@ -212,10 +212,13 @@ def rough_faults(case: Case) -> Iterator[Fault]:
         if film.lobes is not None:
             problem = "is not modelled with asperities, whose gap is that of a plain cylinder."
             yield Fault(f"{key}.lobes", f"{film.lobes.count}", None, problem, f"{SMOOTH}, or leave them out.")
+        problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
         if LAST * contact.roughness >= film.clearance:
-            problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
             remedy = f"Give less than {display(film.clearance / LAST, 'm')}."
             yield Fault("contact.roughness", display(contact.roughness, "m"), None, problem, remedy)
+        elif (room := film.clearance - LAST * contact.roughness) <= contact.mean_height:
+            remedy = f"Give less than {display(room, 'm')}."
+            yield Fault("contact.mean_height", display(contact.mean_height, "m"), None, problem, remedy)
     if contact.flow_factors and (form := form_of(case)) not in (CELLS, TILTED, INCLINED):
         problem = f"changes the flow of films on cells, and this one is: {form}."
         yield Fault("contact.flow_factors", "true", None, problem, "Write false.")

@@ -180,6 +180,7 @@ def rough_surfaces(case: Case) -> Asperities | None:
     return make_asperities(
         contact.roughness, contact.summit_radius, contact.summit_density, contact.modulus, contact.hardness,
         contact.friction, 0.5 * np.array([film.diameter for film in films]), np.array([film.width for film in films]),
+        contact.mean_height,
     )  # fmt: skip
 
 

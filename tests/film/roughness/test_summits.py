@@ -29,6 +29,18 @@ def test_summits_carry_a_load_or_stand_nowhere() -> None:
     assert weak.standing(30.0) == stands.standing(0.0) == 0.0
 
 
+@pytest.mark.parametrize("height", [0.3e-6, 2e-6])
+def test_high_summits_meet_as_in_a_smaller_clearance(height: float) -> None:
+    """Of the same displacement: the gap less the mean height, all around."""
+    own, high = surfaces(), surfaces()._replace(mean_height=height)
+    for e in (0.9 * C, 0.97 * C, C):
+        assert touch(high, 0, C, e) == pytest.approx(touch(own, 0, C - height, e), rel=1e-12)
+        assert touch(high, 0, C, e)[:2] == pytest.approx(plain_touch(high, 0, C, e), rel=1e-6)
+    stands = Rubbing(high, 0, C).standing(30.0)
+    assert stands == pytest.approx(Rubbing(own, 0, C - height).standing(30.0), rel=1e-12)
+    assert C - stands > height
+
+
 def test_integral_gives_the_printed_table() -> None:
     assert {x: round(summit_integral(2.5, x), 4) for x in PRINTED} == PRINTED
 
