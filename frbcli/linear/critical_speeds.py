@@ -41,6 +41,7 @@ FORWARD, BACKWARD, MIXED = "forward", "backward", "mixed"
 STILL = 1e-3  # of the largest motion: a point that moves less has no sense of whirl
 ALIKE = 1e-7  # relative: poles and eigenvalues that are nearer to each other are one
 CLOSE = 1e-4  # relative, of the speed of a peak
+SLENDER = 1e-6  # half width of a peak over its speed, below which an eigenvalue may have it from round-off alone
 UNDAMPED = 1e-10  # half width of a peak over its speed, below which it has no height
 SETTLINGS = 8  # steps that bring a pole to the coefficients at its own speed
 PLACES = 200  # speeds at which the response is evaluated, beside those around its poles
@@ -177,6 +178,17 @@ class SpeedModel:
         found = middle + half * found[np.abs(found.real) <= reach]
         return np.asarray(found[(np.abs(found.imag) < DAMPED * np.abs(found)) & (found.real > 0.0)])
 
+    def half_width(self, pole: complex) -> float:
+        """Half of the width of a peak in rad/s, of a slender one by the work of the damping on the undamped motion:
+        eigenvalues of a stiff machine have the round-off of its largest one."""
+        omega = pole.real
+        if abs(pole.imag) > SLENDER * omega:
+            return abs(pole.imag)
+        here, below, above = (self.dynamic(omega * (1.0 + share * CLOSE)) for share in (0.0, -1.0, 1.0))
+        motion = np.linalg.svd(here)[2][-1].conj()
+        work = 0.5 * abs(motion.conj() @ (here - here.conj().T) @ motion)
+        return float(work * 2.0 * CLOSE * omega / abs(motion.conj() @ (above - below) @ motion))
+
     def _settled(self, pole: complex) -> complex:
         """A pole with the coefficients at its own speed."""
         low, high = float(self.omegas[0]), float(self.omegas[-1])
@@ -205,7 +217,7 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
 
     low, high = float(model.omegas[0]), float(model.omegas[-1])
     poles = model.poles() if high > low else np.zeros(0, dtype=complex)
-    undamped = np.abs(poles.imag) <= UNDAMPED * poles.real
+    undamped = np.array([model.half_width(pole) <= UNDAMPED * pole.real for pole in poles.tolist()], dtype=bool)
     found = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
     around = poles[~undamped, None].real + np.abs(poles[~undamped, None].imag) * WIDTHS
     beside = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))

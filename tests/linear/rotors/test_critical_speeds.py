@@ -15,6 +15,7 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
 from frbcli.linear.critical_speeds import larger_semi_axis
 from frbcli.linear.response import CriticalSpeed
+from frbcli.rotor.beam import BeamSection
 
 TURN = 2.0 * math.pi
 K, M, U = 1e6, 2.0, 1e-6
@@ -63,6 +64,42 @@ def test_without_damping_a_critical_speed_has_no_height() -> None:
     (peak,) = frbcli.response(rigid(0.0)).critical_speeds
     assert peak.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / TURN, rel=1e-9)
     assert (peak.amplitude, peak.amplification_factor, peak.logarithmic_decrement) == (None, None, 0.0)
+
+
+@pytest.mark.parametrize("inner", [0.0, 0.03])
+@pytest.mark.parametrize(("polar", "diametral"), [(0.3, 0.16), (0.05, 0.2)])
+def test_an_undamped_overhung_disk_in_stiff_bearings_has_its_forward_whirls_alone(
+    inner: float, polar: float, diametral: float
+) -> None:
+    """Round-off of the stiffest motion is no damping, and excites no backward whirl: the flexibility of a massless
+    overhang with its shear has as many critical speeds as I_d - I_p allows, all without a height."""
+    span, over, mass = 0.3, 0.25, 15.0
+    own = BeamSection(span + over, 0.04, inner, 1.0, 211e9, 0.3)
+    bending, shear = own.youngs_modulus * own.second_moment, own.shear_stiffness
+    both = over * (2 * span + 3 * over) / (6 * bending) + over / (span * shear)
+    tip = over**2 * (span + over) / (3 * bending) + (over**2 / span + over) / shear
+    stiffness = np.linalg.inv([[tip, both], [both, (span + 3 * over) / (3 * bending) + 1.0 / (span * shear)]])
+    squares = np.linalg.eigvals(np.linalg.solve(np.diag([mass, diametral - polar]), stiffness)).real
+    part = {"length": span + over, "diameter": 0.04, "inner_diameter": inner, "density": 1.0, "youngs_modulus": 211e9}
+    disk = {"name": "disk", "position": span + over, "mass": mass, "polar_inertia": polar,
+            "diametral_inertia": diametral, "unbalance": U}  # fmt: skip
+    places = (("a", 0.0), ("b", span))
+    found = frbcli.response(
+        case_from_dict(
+            {
+                "rotor": {"kind": "turbocharger", "gravity": 0},
+                "shaft": [part],
+                "disk": [disk],
+                "bearing": [{"kind": "coefficients", "name": n, "position": p, "stiffness": 1e12} for n, p in places],
+                "speed": {"from": 0.0, "to": 800.0, "duration": 1.0},
+            },
+            "overhung",
+        )
+    ).critical_speeds
+    expected = sorted(np.sqrt(squares[squares > 0.0]) / TURN)
+    assert [peak.speed_Hz for peak in found] == pytest.approx(expected, rel=2e-5)
+    assert {peak.direction for peak in found} == {"forward"}
+    assert {(peak.amplitude, peak.amplification_factor) for peak in found} == {(None, None)}
 
 
 def test_directions_of_unlike_stiffness_have_two_and_close_ones_are_told_apart() -> None:
