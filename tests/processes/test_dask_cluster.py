@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import os
 import signal
 import subprocess
@@ -101,6 +102,7 @@ def test_a_wrong_address_is_wrong_input(address: str, monkeypatch: pytest.Monkey
 
 
 def test_a_cluster_without_certificates_is_remarked(caplog: pytest.LogCaptureFixture, tmp_path: Path) -> None:
+    caplog.set_level(logging.WARNING, logger="frbcli")  # a quiet command of another test leaves errors alone
     with distributed.LocalCluster(
         n_workers=1, processes=False, dashboard_address=None, protocol="tcp", local_directory=str(tmp_path)
     ) as cluster, _client(Workers("dask", scheduler=cluster.scheduler_address)):

@@ -326,7 +326,7 @@ def test_a_directory_of_another_sweep_is_left_alone(case: Case, tmp_path: Path) 
         sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path, "runup", workers=TWO)
     (tmp_path / "foreign").mkdir()
     (tmp_path / "foreign" / LOG).write_bytes(b"\x93PNG not a log")
-    with pytest.raises(InputError, match="cannot be used"):
+    with pytest.raises(InputError, match="is no UTF-8 text"):
         sweep(case, {"oil.viscosity": VISCOSITIES}, tmp_path / "foreign", "stability", workers=TWO)
     assert (tmp_path / LOG).read_bytes() == before
     assert (tmp_path / "foreign" / LOG).read_bytes() == b"\x93PNG not a log"

@@ -1,8 +1,8 @@
 """What tells files that frb has written from those of others: a text in their metadata, a checksum in tables as CSV.
 
 A table as CSV has no place for a text that other programs do not take for data. Its checksum stands behind the digits
-of a number in its last line, so far behind that the number stays the same to the last bit. A table that somebody has
-changed does not fit its checksum any more, and is theirs.
+of its last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
+not fit its checksum any more, and is theirs.
 """
 
 from __future__ import annotations
@@ -33,43 +33,48 @@ def has_mark(path: Path) -> bool:
 
 
 def mark_table(path: Path) -> None:
-    """Put the checksum of a table as CSV into its last line; a line without a number that takes it stays as it is.
-    Raises OSError."""
+    """Put the checksum of a table as CSV into its last number with a point; a table without one stays as it is. Raises
+    OSError."""
     with path.open("r+b") as file:
-        begin, line = _last_line(file)
-        for number in _numbers(line):
+        begin, tail = _tail(file)
+        for at, number in _numbers(tail):
             digits, exponent = number[1], number[2] or b""
             if float(digits + b"0" * ZEROS + b"9" * DIGITS + exponent) == float(digits + exponent):
-                checksum = _checksum(file, begin + len(line))
-                file.seek(begin + number.end(1))
-                file.write(b"0" * ZEROS + b"%0*d" % (DIGITS, checksum) + line[number.end(1) :])
+                checksum, end = _checksum(file, begin + len(tail)), at + number.end(1)
+                file.seek(begin + end)
+                file.write(b"0" * ZEROS + b"%0*d" % (DIGITS, checksum) + tail[end:])
                 return
 
 
 def has_checksum(path: Path) -> bool:
     """Whether a table as CSV is as `mark_table` has left it. Raises OSError."""
     with path.open("rb") as file:
-        begin, line = _last_line(file)
-        for number in _numbers(line):
+        begin, tail = _tail(file)
+        for at, number in _numbers(tail):
             if found := _CHECKSUM.search(number[1]):
-                before = _checksum(file, begin + number.start(1) + found.start())
-                return zlib.crc32(line[number.end(1) :], before) == int(found[1])
+                before = _checksum(file, begin + at + number.start(1) + found.start())
+                return zlib.crc32(tail[at + number.end(1) :], before) == int(found[1])
     return False
 
 
-def _last_line(file: BinaryIO) -> tuple[int, bytes]:
-    """Where the last line of a file begins, and the line; empty if it does not end, or is longer than ENDS."""
+def _tail(file: BinaryIO) -> tuple[int, bytes]:
+    """Where the last whole lines of a file begin, without its head, and these lines; empty if the last one does not
+    end."""
     size = os.fstat(file.fileno()).st_size
     file.seek(max(0, size - ENDS))
     tail = file.read(ENDS)
-    begin = tail.rfind(b"\n", 0, -1) + 1
-    line = tail[begin:]
-    return size - len(line), line if begin and line.endswith(b"\n") else b""
+    tail = tail[tail.find(b"\n") + 1 :] if tail.endswith(b"\n") else b""
+    return size - len(tail), tail
 
 
-def _numbers(line: bytes) -> Iterator[re.Match[bytes]]:
-    """The numbers with a point in front of any text in quotes."""
-    return _NUMBER.finditer(line.partition(b'"')[0])
+def _numbers(tail: bytes) -> Iterator[tuple[int, re.Match[bytes]]]:
+    """(where a line begins, a number with a point in it in front of any text in quotes), from the last line upwards."""
+    end = len(tail)
+    while end > 0:
+        begin = tail.rfind(b"\n", 0, end - 1) + 1
+        for number in _NUMBER.finditer(tail[begin:end].partition(b'"')[0]):
+            yield begin, number
+        end = begin
 
 
 def _checksum(file: BinaryIO, length: int) -> int:
