@@ -16,7 +16,7 @@ from frbcli.results.files.lock import locked
 from frbcli.results.store import Header, Run, RunWriter, check_output
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.runs.errors.error_budget import quiet_until
-from frbcli.runs.errors.fewer_cells import on_fewer_cells
+from frbcli.runs.errors.fewer_cells import in_finer_steps, on_fewer_cells
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, with_second_run
 from frbcli.runs.march import March, Progress
 from frbcli.runs.record.header import header
@@ -209,6 +209,8 @@ def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: flo
     events = [asdict(event) for event in find_events(so_far)]
     until, begun = quiet_until(events, march.time), working_time()
     error = march.error(until, on_fewer_cells(march, until, observe))
+    if (of_steps := in_finer_steps(march, so_far, until, observe)) is not None:
+        error |= dict(zip(("time_integration", "displacement"), of_steps, strict=True))
     error_s = working_time().cpu_s - begun.cpu_s
     cost = {**march.cost(), "error_cpu_s": error_s, SECOND_RUN_PREDICTED: second_s}
     return writer.finish(ended, cost, error, events, march.time)

@@ -65,7 +65,8 @@ def error_budget(
     cells, reduced = None if fewer is None else fewer.error(quiet, system), modal_reduction(case, system, samples)
     if cells is not None:
         in_films, in_points = cells.eccentricity, cells.displacement
-    return {
+    of_steps = {} if system.names else {"time_integration": LASTING * whole}
+    return of_steps | {
         "film_force_relative": force,
         "model_relative": force if short else None,
         "mesh_relative": None if short else force,

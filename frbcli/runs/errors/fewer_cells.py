@@ -14,10 +14,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
+
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
+from frbcli.results.store import Run
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.march import March, Progress
+from frbcli.scene.costs.course import ERROR_ORDERS
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import FRONT_ORDER, cells_of
 from frbcli.scene.machine.system import System
@@ -30,6 +34,8 @@ Observer = Callable[[Progress], None]
 # Errors differ from those of the shipped cases, beside openings (grooves, slots, pockets, feed holes) by their order,
 # too; most of all those of rings at rest beside a journal that turns.
 SAFETY, SAFETY_OF_OPENINGS, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST = 1.5, 2.0, 2.5, 4.0
+QUARTER = 0.25  # of the steps of a run without films, in the run that tells its error
+LONG_s = 20.0  # CPU time of a run without films above which its error is that of all local errors, which is larger
 LEAST = 0.5  # of the error that these cells were expected to make, which is 1.3 to 7 times the true one
 
 
@@ -54,6 +60,45 @@ def on_fewer_cells(march: March, until: float, observe: Observer | None = None) 
             observe(other.progress(until))
     safety = _safety(march.case, march.system)
     return FewerCells(safety * own / (others - own), other.samples, LEAST * own, march.plan.eccentricity)
+
+
+def in_finer_steps(march: March, run: Run, until: float, observe: Observer | None = None) -> tuple[float, float] | None:
+    """The largest error of the displacements of a run without films, over the length of the plan, of the whole run and
+    until a time in s, from the same run in steps of a quarter; None for a run with films, a long one, and where the
+    other one does not get as far. run: what the march has recorded.
+
+    Nothing damps a vibration of such a rotor but what the case gives, so that no sum of local errors bounds its error.
+    Errors fall at least as the steps do: those of the other run are a quarter at most, and the error is at most 4/3 of
+    the difference.
+    """
+    plan = march.plan
+    if march.system.names or march.cost()["cpu_s"] > LONG_s:
+        return None
+    tolerance = plan.tolerance * QUARTER ** ERROR_ORDERS[plan.method]
+    try:
+        other = march.again(
+            replace(plan, tolerance=tolerance, steps_per_revolution=plan.steps_per_revolution / QUARTER)
+        )
+    except NotConverged:
+        return None
+    status, first, points = RUNNING, 0, [name.removesuffix("_x_m") for name in run.signals if name.endswith("_x_m")]
+    largest = [0.0, 0.0]
+    while status == RUNNING and first < len(run):
+        status, signals = other.chunk()
+        last = min(first + len(signals["time_s"]), len(run))
+        for point in points:
+            apart = (signals[f"{point}_{axis}_m"][: last - first] - run.read(f"{point}_{axis}_m", first, last)
+                     for axis in "xy")  # fmt: skip
+            off = np.hypot(*apart)
+            quiet = signals["time_s"][: last - first] <= until
+            largest = [max(largest[0], off.max(initial=0.0)), max(largest[1], off[quiet].max(initial=0.0))]
+        first = last
+        if observe is not None:
+            observe(other.progress(march.time))
+    if first < len(run):
+        return None
+    whole, before = (float(size) / march.system.length / (1.0 - QUARTER) for size in largest)
+    return whole, before
 
 
 def _looser(case: Case, coarser: float) -> float:

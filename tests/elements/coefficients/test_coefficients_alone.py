@@ -344,3 +344,32 @@ def test_a_critical_speed_that_is_not_found_has_its_reason(tmp_path: Path) -> No
     assert found == pytest.approx(closed_form()[:1], abs=5.0)
     (told,) = about_critical_speeds(run, run.events)
     assert "turns or ends too near" in told
+
+
+LIGHT = TWO_MODES | {"external_damping": "1 N*s/m"}
+
+
+@pytest.mark.parametrize(
+    ("rotor", "stiffness", "damping"),
+    [({"kind": "rigid", "mass": "6 kg", "unbalance": "3e-6 kg*m"}, 1e6, 300.0),
+     ({"kind": "rigid", "mass": "6 kg", "unbalance": "3e-6 kg*m"}, 4e5, 15.0), (TWO_MODES, 2.07e5, 40.0),
+     (LIGHT, 2.07e5, 2.0)],
+    ids=["rigid", "light rigid", "two modes", "light"],
+)  # fmt: skip
+def test_the_error_of_a_run_without_films_is_the_true_one(
+    rotor: dict[str, Any], stiffness: float, damping: float, tmp_path: Path
+) -> None:
+    """Beside the same run in sixteenths of its steps, whose own error is 4^-4 of it or less."""
+    seat = {"kind": "coefficients", "stiffness": f"{stiffness!r} N/m", "damping": f"{damping!r} N*s/m"}
+    case = case_from_dict({"rotor": rotor, "bearing": seat, "speed": speed(10.0, 105.0, 2.0)}, "two")
+    plan = make_plan(case)
+    finer = {"accuracy.tolerance": 16.0**-4 * plan.tolerance,
+             "accuracy.steps_per_revolution": round(16.0 * plan.steps_per_revolution)}  # fmt: skip
+    run, fine = (
+        runup(each, tmp_path / f"{number}.h5") for number, each in enumerate((case, case.with_settings(finer)))
+    )
+    points = {name.removesuffix("_x_m") for name in run.signals if name.endswith("_x_m")}
+    off = [np.hypot(*(run[f"{point}_{axis}_m"] - fine[f"{point}_{axis}_m"] for axis in "xy")) for point in points]
+    true = float(np.max(off)) / run.references["length_m"]
+    for key in ("time_integration", "displacement"):
+        assert true <= run.error[key] <= 1.5 * true
