@@ -110,11 +110,11 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
 
 
 def special_cycles(branches: Sequence[CycleBranch], response: Sequence[CyclePoint] = ()) -> Iterator[SpecialPoint]:
-    """The folds, flips and torus points of branches and of the synchronous response."""
+    """The folds, flips and torus points of branches, and the folds of the synchronous response."""
     numbered: list[tuple[int | None, CyclePoint]] = [
         (number, point) for number, branch in enumerate(branches) for point in branch.points
     ]
-    for number, point in [*numbered, *((None, point) for point in response)]:
+    for number, point in [*numbered, *((None, point) for point in response if point.kind == FOLD)]:
         if point.kind in (FOLD, FLIP, TORUS):
             yield SpecialPoint(
                 kind=point.kind,
