@@ -66,12 +66,22 @@ class RangeOption(QuantityOption):
         return ends[0], ends[1]
 
 
+@dataclass(frozen=True)
+class SupportOption(QuantityOption):
+    """What a rotor lies in: "free", "bearings", those of the case, or a stiffness."""
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """The word, or the stiffness in `unit`."""
+        return value if value in ("free", "bearings") else super().convert(value, param, ctx)
+
+
 OPERATING_OPTION = RangeOption("range", "Hz", "8000..12000 rpm")
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
+REST_OPTION = QuantityOption("speed", "Hz", "25 Hz", positive=False)
 TIME_OPTION = QuantityOption("time", "s", "0.2 s", positive=False)
 LENGTH_OPTION = QuantityOption("length", "m", "35 um")
 LOAD_OPTION = QuantityOption("load", "N", "30 N")
-STIFFNESS_OPTION = QuantityOption("stiffness", "N/m", "5e6 N/m")
+STIFFNESS_OPTION = SupportOption("stiffness", "N/m", "5e6 N/m")
 
 
 class Names(click.ParamType[tuple[str, ...]]):
@@ -114,10 +124,10 @@ def theory_option(default: str) -> Callable[[Function], Function]:
     return _models("--theory", "Film theories", default)
 
 
-def speeds_option(default: str) -> Callable[[Function], Function]:
+def speeds_option(default: str, kind: QuantityOption = SPEED_OPTION) -> Callable[[Function], Function]:
     """Give a command the option --speed, which may be repeated; default: the speeds without it, for the help."""
     words = f'Rotor speed, e.g. "25 Hz". Repeatable. [{default}]'
-    return click.option("--speed", "speeds", multiple=True, type=SPEED_OPTION, metavar="SPEED", help=words)
+    return click.option("--speed", "speeds", multiple=True, type=kind, metavar="SPEED", help=words)
 
 
 def signal_option(default: str | None = "journal") -> Callable[[Function], Function]:

@@ -1,4 +1,4 @@
-"""Natural frequencies and shapes of a turbocharger's rotor, free or on isotropic springs, over its speed.
+"""Natural frequencies and shapes of a rotor, free or on isotropic springs, over its speed.
 
 The rotor is undamped and not reduced; bearings are springs, without any film.
 """
@@ -7,20 +7,21 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from operator import itemgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, named, table_of
+from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.order import first_largest, ranks
-from frbcli.rotor.reduction import RIGID, FreeModes, ReductionError, whirl_modes
+from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_springs, support_faults
@@ -28,10 +29,12 @@ from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:
     from frbcli.equilibrium.coefficients import RestingFilm
+    from frbcli.linear.stability_point import StabilityPoint
 
 SPEEDS = 25  # of the default sweep
 SHOWN = 4  # slowest modes of each direction
 NO_STIFFNESS = 1e-9  # direct over largest stiffness of a film that is round-off
+TINY = 1e-300  # N/m
 RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion is that of a rigid body
 
 
@@ -48,10 +51,12 @@ class Mode:
 
 @dataclass(frozen=True)
 class ModesAtSpeed:
-    """The slowest modes of each direction at a rotor speed, ascending in frequency."""
+    """The slowest modes of each direction at a rotor speed, ascending in frequency; still: motions of a rigid body that
+    nothing holds, of 0 Hz, which are none of them."""
 
     speed_Hz: float
     modes: tuple[Mode, ...]
+    still: int = 0
 
     def directed(self, direction: str) -> tuple[Mode, ...]:
         """The "forward" or "backward" modes."""
@@ -86,17 +91,20 @@ class Modes(Tabular):
 
 
 def natural_modes(
-    case: Case, stiffness: float | Sequence[float] | None = None, speeds_Hz: Sequence[float] | None = None
+    case: Case,
+    stiffness: float | Sequence[float] | Literal["bearings"] | None = None,
+    speeds_Hz: Sequence[float] | None = None,
 ) -> Modes:
-    """Compute the undamped natural modes of the rotor of a turbocharger.
+    """Compute the undamped natural modes of a rotor, without bearings or on springs.
 
     Parameters
     ----------
     case : Case
         The machine, see `load_case`.
-    stiffness : float or sequence of float, optional
-        Stiffness in N/m of each bearing with a film, or of all alike, the same in all directions; elements without a
-        film are springs of their own. None leaves the rotor free.
+    stiffness : float or sequence of float or "bearings", optional
+        Stiffness in N/m of each bearing with a film, or of all alike, the same in all directions. Bearings of given
+        coefficients are springs of their own, but where no bearing has a film the stiffness replaces them; "bearings"
+        takes theirs. None leaves the rotor free, and its rings are apart.
     speeds_Hz : sequence of float, optional
         Rotor speeds in Hz; by default from standstill to the highest speed of the case.
 
@@ -108,8 +116,9 @@ def natural_modes(
     Raises
     ------
     InputError
-        If the case has another rotor or, with a stiffness, bearings on supports, if a speed is negative, if a stiffness
-        is not greater than 0, or if there are not as many as bearings.
+        With a stiffness: if bearings have supports, if it is not greater than 0, or if there are not as many as
+        bearings; with "bearings" if these have films or a stiffness that differs with the direction. If a speed is
+        negative.
 
     Examples
     --------
@@ -121,30 +130,47 @@ def natural_modes(
     remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
     if stiffness is not None and (faults := support_faults(case, what, remedy)):
         raise InputError(case.name or "case", tuple(faults))
-    free = shaft_of(case).free()
+    if stiffness == "bearings":
+        _check_own(case)
+        stiffness = []
+    shaft = shaft_of(case)
     speeds = np.linspace(0.0, max(case.speed.start, case.speed.end), SPEEDS) if speeds_Hz is None else speeds_Hz
     springs = _springs(case, stiffness)
     _check(case, springs, speeds)
-    modes = free.modes
-    held = np.zeros((0, len(modes.frequencies))) if stiffness is None else free.held
+    modes, reduced = shaft.free_modes(), shaft.reduction
+    held = np.zeros((0, len(modes.frequencies))) if stiffness is None else shaft.held
+    bending = modes.frequencies[modes.frequencies > 0.0]
+    bearings, disks = _places(case, modes)
 
     def on(omega: float) -> Array:
         """(b,) N/m of all bearings."""
-        return springs if stiffness is None else np.concatenate([springs, element_springs(case, omega)])
+        if stiffness is None:
+            return springs
+        return np.concatenate([springs, element_springs(case, omega)[max(0, len(springs) - len(case.bearings)) :]])
 
     omega = 2 * math.pi * np.asarray(speeds, dtype=np.float64)
+    top = float(np.max(omega))
     return Modes(
         case,
-        tuple(on(float(np.max(omega)))[: len(free.journals)].tolist()),
+        tuple(on(top)[: len(case.placed_bearings)].tolist()),
         modes.positions,
-        tuple((journal.name, journal.position) for journal in free.journals),
-        tuple((wheel.name, wheel.position) for wheel in free.wheels),
-        float(modes.weight[0] ** 2),
-        tuple((modes.frequencies[RIGID : RIGID + SHOWN] / (2 * math.pi)).tolist()),
-        free.kept,
+        bearings,
+        disks,
+        shaft.mass,
+        tuple((bending[:SHOWN] / (2 * math.pi)).tolist()),
+        len(modes.frequencies if reduced is None else reduced.modes.frequencies),
         tuple(_at_speed(modes, held, on(float(value)), value) for value in omega),
-        free.reduction_error(on(float(np.max(omega))), float(np.max(omega))) if len(held) else None,
+        shaft.free().reduction_error(on(top), top) if len(held) and reduced is not None else None,
     )
+
+
+def _places(case: Case, modes: FreeModes) -> tuple[tuple[tuple[str, float], ...], tuple[tuple[str, float], ...]]:
+    """Names and positions of bearings and of disks, on a symmetric rotor over its length."""
+    if case.rotor.symmetric:
+        middle = (("disk", 0.5),) if len(modes.positions) > 2 else ()
+        return (("bearing", 0.0), ("bearing", 1.0)), middle
+    disks = ((disk.name or str(number), disk.position) for number, disk in enumerate(case.disks, start=1))
+    return tuple((each.name, each.position or 0.0) for each in case.placed_bearings), tuple(disks)
 
 
 def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
@@ -163,15 +189,54 @@ def direct_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...
     return bearing_springs(case, some)
 
 
+def own_reduction(case: Case, points: Sequence[StabilityPoint]) -> Reduction | None:
+    """The reduction of a shaft with its changes on the bearings of its case: given coefficients and films at rest, at
+    the slowest, the middle and the fastest of some speeds. The stiffness of a film is its largest in any direction,
+    which counts the cross-coupled one. On bearings of any stiffness where none is known; None for a shaft that is not
+    reduced."""
+    shaft = shaft_of(case)
+    if shaft.reduction is None:
+        return None
+    free, known = shaft.free(), [point for point in points if point.rests and len(point.films) >= len(case.films)]
+    top = 2.0 * math.pi * max([point.speed_Hz for point in points], default=0.0)
+    found: list[Reduction] = []
+    for point in {id(each): each for each in (*known[:1], *known[len(known) // 2 :][:1], *known[-1:])}.values():
+        sizes = bearing_springs(case, [max(float(np.linalg.norm(film.stiffness, 2)), TINY) for film in point.films])
+        springs = np.concatenate([sizes, element_springs(case, 2.0 * math.pi * point.speed_Hz)])
+        each = free.reduced_on(springs[: len(free.journals)], top)
+        if not math.isnan(each.frequency):
+            found.append(each)
+    if not found:
+        return shaft.reduction
+    frequency, amplitude = max(each.frequency for each in found), max(each.amplitude for each in found)
+    own = "the stiffness of its own bearings"
+    return replace(shaft.reduction, frequency=frequency, amplitude=amplitude, bearings=own)
+
+
 def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:
-    """(b,) N/m, empty for a free rotor."""
+    """(b,) N/m of the bearings with films, or of all where none has one; empty for a free rotor, or on its own."""
     given = [] if stiffness is None else [stiffness] if isinstance(stiffness, int | float) else list(stiffness)
+    count = len(case.bearings or case.elements)
     if len(given) == 1:
-        given *= len(case.bearings)
-    if len(given) not in (0, len(case.bearings)):
+        given *= count
+    if len(given) not in (0, count):
         fault = Fault("stiffness", f"{len(given)} values", None, "are not as many as bearings.", "Give one for each.")
         raise InputError(case.name or "case", (fault,))
     return np.array(given, dtype=np.float64)
+
+
+def _check_own(case: Case) -> None:
+    """Raises InputError where the bearings of a case are no springs that are the same in all directions."""
+    remedy = "Take the damped modes, frb stability --shapes SPEED, or give a stiffness."
+    if case.bearings:
+        problem = "has films, whose stiffness follows from the resting position."
+        fault = Fault(f"{case.bearing_keys[0]}.kind", case.placed_bearings[0].kind, None, problem, remedy)
+        raise InputError(case.name or "case", (fault,))
+    for element in GivenCoefficients.of(case):
+        k = element.linear.stiffness
+        if not np.allclose(k, 0.5 * np.trace(k, axis1=1, axis2=2)[:, None, None] * np.eye(2), rtol=1e-9):
+            problem = "differs with the direction or is cross-coupled: natural modes are those on isotropic springs."
+            raise InputError(case.name or "case", (Fault(f"{element.key}.stiffness", "", None, problem, remedy),))
 
 
 def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> ModesAtSpeed:
@@ -182,15 +247,19 @@ def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) 
             coordinates = found.coordinates[:, index]
             shape = modes.shapes @ coordinates
             frequency = abs(float(found.frequencies[index])) / (2 * math.pi)
-            kind = _kind(coordinates, shape)
+            kind = _kind(modes.frequencies, coordinates, shape)
             shown.append(Mode(frequency, direction, kind, shape / shape[first_largest(shape)]))
     frequencies = ranks(np.array([mode.frequency_Hz for mode in shown]))  # forward before backward where both are equal
-    return ModesAtSpeed(omega / (2 * math.pi), tuple(shown[i] for i in np.argsort(frequencies, kind="stable")))
+    still = 2 * len(modes.frequencies) - len(found.frequencies)
+    ordered = tuple(shown[i] for i in np.argsort(frequencies, kind="stable"))
+    return ModesAtSpeed(omega / (2 * math.pi), ordered, still)
 
 
-def _kind(coordinates: Array, shape: Array) -> str:
-    """The kind of a motion of unit length in the free modes with this shape; a conical one has a node on the shaft."""
-    if coordinates[:RIGID] @ coordinates[:RIGID] < RIGID_SHARE:
+def _kind(frequencies: Array, coordinates: Array, shape: Array) -> str:
+    """The kind of a motion of unit length in free modes with these frequencies and this shape; a conical one has a node
+    on the shaft."""
+    rigid = coordinates[frequencies == 0.0]
+    if rigid @ rigid < RIGID_SHARE:
         return "bending"
     return "conical" if shape.min() < 0 < shape.max() else "cylindrical"
 

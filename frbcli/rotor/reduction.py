@@ -109,12 +109,13 @@ class Places:
 @dataclass(frozen=True)
 class Reduction:
     """A reduced rotor: its modes, and the largest relative changes of its critical speeds and of the height of the
-    peaks there, in bearings of any stiffness."""
+    peaks there; bearings: the stiffness of the bearings for which this holds, in words."""
 
     modes: FreeModes
     free: int
     frequency: float
     amplitude: float
+    bearings: str = "bearings of any stiffness"
 
     @property
     def words(self) -> str:
@@ -125,8 +126,8 @@ class Reduction:
             return f"{self.free} free modes{static} of each plane, whose error is not known: nothing holds the shaft"
         speeds, peaks = (f"{float(f'{100.0 * each:.1g}'):g} %" for each in (self.frequency, self.amplitude))
         return (
-            f"{self.free} free modes{static} of each plane: critical speeds are off by up to {speeds}, "
-            f"heights of peaks by up to {peaks}, on bearings of any stiffness"
+            f"{self.free} free modes{static} of each plane: critical speeds are off by at most {speeds}, "
+            f"heights of peaks by at most {peaks}, on {self.bearings}"
         )
 
 
@@ -191,6 +192,17 @@ def free_modes(plane: Plane) -> FreeModes:
     )
 
 
+def modes_of_plane(mass: Array, stiffness: Array, positions: Array, places: Array) -> FreeModes:
+    """The modes of a rotor that does not tilt: mass, stiffness (n, n) of one plane, places (k, n) its displacements."""
+    from scipy.linalg import eigh
+
+    squares, vectors = eigh(stiffness, mass)
+    squares[squares < STILL * squares.max(initial=0.0)] = 0.0
+    shapes, none = np.asarray(places @ vectors, dtype=np.float64), np.zeros_like(mass)
+    weight = np.abs(vectors.T @ mass @ np.ones(len(mass)))
+    return FreeModes(positions, np.sqrt(np.maximum(squares, 0.0)), shapes, np.zeros_like(shapes), none, none, weight)
+
+
 def _slowest(plane: Plane) -> tuple[Array, Array]:
     """Squares of the frequencies (MOST,), ascending, and the modes (2 k, MOST), by Lanczos' method around a negative
     square: there the matrix of a free rotor is not singular."""
@@ -208,7 +220,7 @@ def _slowest(plane: Plane) -> tuple[Array, Array]:
 def whirl_modes(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> WhirlModes:
     """Whirling modes at omega rad/s. springs: (b, n) the modes' displacements there; stiffness: (b,) N/m, isotropic."""
     n = len(modes.frequencies)
-    elastic = np.diag(modes.frequencies)[:, RIGID:]
+    elastic = np.diag(modes.frequencies)[:, modes.frequencies > 0.0]
     root = np.hstack([elastic, (np.sqrt(stiffness)[:, None] * springs).T])
     size = n + root.shape[1]
     matrix = np.zeros((size, size))
@@ -265,7 +277,7 @@ def judged(
     default any."""
     changes = np.zeros(2)
     if len(set(places.bearings)) < RIGID:
-        return Reduction(reduced, free, *changes.tolist())
+        return Reduction(reduced, free, float(changes[0]), float(changes[1]))
     usual = exact.weight[0] ** 2 * max(top, exact.frequencies[RIGID]) ** 2 / len(places.bearings)
     for stiffness in np.outer(usual * STIFFNESSES, np.ones(len(places.bearings))) if springs is None else [springs]:
         for sign in (-1.0, 1.0):
@@ -278,7 +290,7 @@ def judged(
             sizes = np.abs(other[1][:count]).max(axis=(1, 2))
             peaks = np.abs(own[1][:count] - other[1][:count]).max(axis=(1, 2)) / sizes
             changes = np.maximum(changes, [speeds.max(), peaks.max()])
-    return Reduction(reduced, free, *changes.tolist())
+    return Reduction(reduced, free, float(changes[0]), float(changes[1]))
 
 
 def _criticals(modes: FreeModes, places: Places, stiffness: Array, sign: float) -> tuple[Array, Array]:

@@ -6,6 +6,7 @@ import json
 import math
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from scipy.linalg import expm
 from scipy.optimize import brentq
 
 from frbcli.case.bearing import FloatingRingBearing
-from frbcli.case.reading.load import load_case
+from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.coefficients import RestingFilm
@@ -143,8 +144,6 @@ def test_modes_table_and_faults(heavy: Case) -> None:
     for stiffness, speeds in ((0.0, [1.0]), (math.inf, [1.0]), (1e6, []), (1e6, [-1.0]), (1e6, [math.nan])):
         with pytest.raises(InputError):
             natural_modes(heavy, stiffness, speeds)
-    with pytest.raises(InputError, match="no shaft"):
-        natural_modes(load_case("jeffcott"))
 
 
 @pytest.mark.parametrize("stiffness", [None, SPRING])
@@ -353,6 +352,44 @@ def test_command_refuses_a_stiffness(stiffness: str, capsys: pytest.CaptureFixtu
     assert stiffness.split()[0] in capsys.readouterr().err
 
 
-def test_command_refuses_another_rotor(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["stability", "jeffcott", "--no-picture", "--stiffness", "1e6"]) == 2
-    assert "no shaft of sections" in capsys.readouterr().err
+def test_one_option_has_the_modes_of_any_rotor(capsys: pytest.CaptureFixture[str]) -> None:
+    """Closed forms: sqrt(2 k / m) of a rigid rotor, two masses and springs in a row of a Jeffcott rotor, at 0 Hz."""
+    rigid, jeffcott = load_case("rigid").rotor, load_case("jeffcott").rotor
+    k = 1e6
+    m, j, c = jeffcott.mass, jeffcott.journal_mass, jeffcott.shaft_stiffness  # type: ignore[union-attr]
+    row = np.sort(np.roots([m * j, -(m * (c + 2 * k) + j * c), 2 * k * c]))
+    exact = {"rigid": [2 * k / rigid.mass], "jeffcott": row.tolist()}  # type: ignore[union-attr]
+    for name, squares in exact.items():
+        assert frb(["stability", name, "--no-picture", "--modes", "1e6 N/m", "--speed", "0 Hz", "--json"]) == 0
+        _, held = json.loads(capsys.readouterr().out)["natural_frequencies"]
+        found = [mode["frequency_Hz"] for mode in held["points"][0]["modes"] if mode["direction"] == "forward"]
+        assert found == pytest.approx(np.sqrt(squares) / (2 * math.pi), rel=1e-9)
+    assert frb(["stability", "jeffcott", "--no-picture", "--modes", "free", "--json"]) == 0
+    free, _ = json.loads(capsys.readouterr().out)["natural_frequencies"]
+    assert free["free_bending_Hz"] == pytest.approx([math.sqrt(c * (1 / m + 1 / j)) / (2 * math.pi)], rel=1e-9)
+
+
+def test_rings_of_a_free_rotor_are_apart(capsys: pytest.CaptureFixture[str]) -> None:
+    assert frb(["stability", "turbocharger-heavy", "--no-picture", "--modes", "free", "--speed", "0 Hz"]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "4 rigid-body motions of 0 Hz, and its 2 rings are apart" in told
+
+
+def test_bearings_of_given_coefficients_are_springs_of_the_modes() -> None:
+    def rigid(stiffness: Any) -> Case:
+        tables = {
+            "rotor": {"kind": "rigid", "mass": "4 kg"},
+            "bearing": {"kind": "coefficients", "stiffness": stiffness},
+            "speed": {"from": "0 Hz", "to": "100 Hz", "duration": "1 s"},
+        }
+        return case_from_dict(tables, "rigid")
+
+    with_own = rigid("3e6 N/m")
+    for stiffness, spring in (("bearings", 3e6), (5e6, 5e6)):
+        (mode, _) = natural_modes(with_own, stiffness, [0.0]).points[0].modes  # type: ignore[arg-type]
+        assert mode.frequency_Hz == pytest.approx(math.sqrt(2 * spring / 4.0) / (2 * math.pi), rel=1e-12)
+    unequal = rigid([["3e6 N/m", 0], [0, "1e6 N/m"]])
+    with pytest.raises(InputError, match="differs with the direction"):
+        natural_modes(unequal, "bearings")
+    with pytest.raises(InputError, match="films"):
+        natural_modes(load_case("jeffcott"), "bearings")

@@ -181,12 +181,13 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
 def _told_findings(case: Case, found: Findings) -> dict[str, object]:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
+    from frbcli.scene.shafts.table import shaft_of
 
     return {
         "mass_kg": found.mass,
         "natural_frequencies_Hz": found.frequencies_Hz,
         "supported": found.supported,
-        "reduction": None if found.mass is None else reduction_document(case),
+        "reduction": None if found.mass is None else reduction_document(shaft_of(case).reduction),
         "films": documents(FILM_LOADS, found.films),
         "tilts": documents(FILM_TILTS, found.tilts),
     }
@@ -252,12 +253,13 @@ def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple
 def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
+    from frbcli.scene.shafts.table import shaft_of
 
     if found.mass is not None:
         frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
         natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
         terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
-        tell_reduction(terminal, case)
+        tell_reduction(terminal, shaft_of(case).reduction)
     if found.films:
         terminal.show("static loads, at the top speed", table_of(FILM_LOADS, found.films))
     if found.tilts:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from frbcli.cli.machines.stability_table import tell_largest_error
 from frbcli.cli.outputs import picture_of
@@ -24,14 +24,16 @@ LONGEST_TABLE = 13  # rows of the text
 TOLD = 3  # slowest modes of each direction
 
 
-def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequence[float], places: Outputs) -> None:
-    """Table, picture and JSON of the rotor, free and on springs of a stiffness in N/m, at speeds in Hz."""
+def emit_modes(terminal: Terminal, case: Case, stiffness: Any, speeds: Sequence[float], places: Outputs) -> None:
+    """Table, picture and JSON of the rotor, free at rest, then at speeds in Hz: "free", on its "bearings" or on springs
+    of a stiffness in N/m."""
     from frbcli.linear.modes import natural_modes
 
-    found = [natural_modes(case, None, [0.0]), natural_modes(case, stiffness, speeds or None)]
-    for modes in found:
-        tell_modes(terminal, modes)
-    drawn = natural_modes(case, stiffness) if speeds else found[1]
+    on = None if stiffness == "free" else stiffness
+    found = [natural_modes(case, None, [0.0]), natural_modes(case, on, speeds or None)]
+    tell_free(terminal, found[0])
+    tell_held(terminal, found[1])
+    drawn = natural_modes(case, on) if len(speeds) == 1 else found[1]
     written = places.write(terminal, found[1], "Natural modes", partial(picture_of, drawn))
     terminal.emit(
         {
@@ -46,13 +48,24 @@ def emit_modes(terminal: Terminal, case: Case, stiffness: float, speeds: Sequenc
 
 
 def tell_modes(terminal: Terminal, modes: Modes) -> None:
-    """The modes as text."""
+    """The modes as text: of a free rotor its bending ones at rest, else a table."""
+    (tell_held if modes.stiffness_N_m else tell_free)(terminal, modes)
+
+
+def tell_free(terminal: Terminal, modes: Modes) -> None:
+    """The bending modes of the free rotor at rest, and what is not listed of it."""
+    bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:TOLD])
+    told = f"bending modes of {bending} Hz at rest" if bending else "it does not bend"
+    terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: {told}.")
+    rings = sum(1 for given in modes.case.bearings if len(given.films) > 1)
+    apart = f", and its {rings} rings are apart" if rings > 1 else ", and its ring is apart" if rings else ""
+    terminal.sentence(f"Not listed: {modes.points[0].still} rigid-body motions of 0 Hz{apart}.")
+
+
+def tell_held(terminal: Terminal, modes: Modes) -> None:
+    """A table of the modes over the speed."""
     from frbcli.units import display
 
-    if not modes.stiffness_N_m:
-        bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:TOLD])
-        terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: bending modes of {bending} Hz at rest.")
-        return
     springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
     every = -(-len(modes.points) // LONGEST_TABLE)
     rows = [
@@ -60,7 +73,8 @@ def tell_modes(terminal: Terminal, modes: Modes) -> None:
         for point in modes.points[::every]
     ]
     columns = ("Hz", *("forward",) * TOLD, *("backward",) * TOLD)
-    title = f"Natural frequencies on {springs}: conical, cylindrical, bending"
+    on = f"on {springs}" if springs else "of the free rotor"
+    title = f"Natural frequencies {on}: conical, cylindrical, bending"
     terminal.table(title, columns, rows)
     if modes.error is not None:
         missing = 100 * modes.error.frequency

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from frbcli.linear.response import Response
     from frbcli.plot.style import Picture
     from frbcli.results.store import Run
+    from frbcli.rotor.reduction import Reduction
 
 MOST_SPEEDS, MOST_POINTS = 20, 4  # of the table; JSON, CSV and the picture have all
 EXPLANATION = (
@@ -63,6 +64,7 @@ def command(
     """
     from frbcli.columns import documents, spread_table
     from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
+    from frbcli.linear.modes import own_reduction
     from frbcli.linear.response import response
     from frbcli.results.store import read_run
 
@@ -73,7 +75,8 @@ def command(
     with computing(terminal, case, kernels="rest") as shown:
         found = response(case, speeds or None, shown.counting(), excitation, operating)
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
-    _tell(terminal, found, bool(speeds))
+    reduced = own_reduction(case, found.resting)
+    _tell(terminal, found, reduced, bool(speeds))
     films = ((point, film) for point in found.resting for film in point.films)
     terminal.emit(
         {
@@ -84,7 +87,7 @@ def command(
             "forces": spread_table(RESPONSE_FORCES, found).documents(),
             "films": spread_table(RESPONSE_FILMS, found).documents(),
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
-            "reduction": reduction_document(case),
+            "reduction": reduction_document(reduced),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "critical_speeds": documents(PEAKS, found.critical_speeds),
             "error": {"critical_speeds_Hz": [peak.speed_uncertainty_Hz for peak in found.critical_speeds]},
@@ -119,7 +122,7 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
     return tuple(order_track(run, 1.0, name) for name in named)
 
 
-def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
+def _tell(terminal: Terminal, found: Response, reduced: Reduction | None, every_speed: bool) -> None:
     import numpy as np
 
     from frbcli.columns import table_of, with_uncertainty
@@ -141,7 +144,7 @@ def _tell(terminal: Terminal, found: Response, every_speed: bool) -> None:
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     explanation = EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + "."
     terminal.result(explanation.format(angle=found.angle))
-    tell_reduction(terminal, found.case)
+    tell_reduction(terminal, reduced)
     for sentence in _excitation(found):
         terminal.sentence(sentence)
     for sentence in _doubts(found):

@@ -19,7 +19,7 @@ from frbcli.cli.machines.stability_table import (
     tell_points,
     tell_reduction,
 )
-from frbcli.cli.options import SPEED_OPTION, STIFFNESS_OPTION, speeds_option
+from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
 
@@ -29,15 +29,17 @@ if TYPE_CHECKING:
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.linear.threshold import Threshold
+    from frbcli.rotor.reduction import Reduction
 
 
 @click.command()
 @case_argument
-@speeds_option("60 over the range of CASE")
+@speeds_option("60 over the range of CASE", REST_OPTION)
 @click.option("--threshold", "with_threshold", is_flag=True,
               help="Seek the threshold over the range of CASE beside speeds of --speed, too.")  # fmt: skip
-@click.option("--stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
-              help='Only natural frequencies of a turbocharger, on bearings of e.g. "5e6 N/m".')  # fmt: skip
+@click.option("--modes", "--stiffness", "stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
+              help='Only undamped natural frequencies of the rotor, from 0 Hz on: "free", on "bearings" of given '
+                   'coefficients, or on a stiffness of e.g. "5e6 N/m".')  # fmt: skip
 @click.option("--shapes", type=SPEED_OPTION, metavar="SPEED",
               help='Only the damped modes at this rotor speed, with their shapes, e.g. "200 Hz".')  # fmt: skip
 @outputs_options("CASE-campbell.png, here")
@@ -46,7 +48,7 @@ def command(
     case: Case,
     speeds: tuple[float, ...],
     with_threshold: bool,
-    stiffness: float | None,
+    stiffness: Any,
     shapes: float | None,
     outputs: OutputOptions,
     terminal: Terminal,
@@ -57,7 +59,7 @@ def command(
     """
     from frbcli.cycles.method.threshold import threshold_kind
     from frbcli.errors import NotConverged
-    from frbcli.linear.modes import natural_modes
+    from frbcli.linear.modes import natural_modes, own_reduction
     from frbcli.linear.stability import stability
 
     if shapes is not None and (stiffness is not None or speeds):
@@ -73,7 +75,8 @@ def command(
     with computing(terminal, case, kernels="rest") as shown:
         found = stability(case, speeds or None, shown.counting(), with_threshold)
         kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
-    _tell(terminal, found, kind, bool(speeds))
+    reduced = own_reduction(case, found.points)
+    _tell(terminal, found, kind, reduced, bool(speeds))
     written = places.write(terminal, found, "Campbell diagram")
     natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
     for modes in natural:
@@ -91,7 +94,7 @@ def command(
             "threshold": found.threshold and asdict(found.threshold) | {"whirl_ratio": found.threshold.whirl_ratio},
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
             "note": found.note,
-            "reduction": reduction_document(case),
+            "reduction": reduction_document(reduced),
             **written,
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
@@ -99,14 +102,16 @@ def command(
     return None if any(point.rests for point in found.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: Stability, kind: ThresholdKind | None, every_speed: bool) -> None:
+def _tell(
+    terminal: Terminal, found: Stability, kind: ThresholdKind | None, reduced: Reduction | None, every_speed: bool
+) -> None:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)
     tell_coefficient_error(terminal, found.points)
     terminal.sentence(_sentence(found))
-    tell_reduction(terminal, found.case)
+    tell_reduction(terminal, reduced)
     tell_collar(terminal, found)
     warmest = found.points[-1]
     if warmest.warm is not None:

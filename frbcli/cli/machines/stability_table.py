@@ -16,10 +16,10 @@ from frbcli.linear.thrust.columns import AXIAL
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from frbcli.case.schema import Case
     from frbcli.cli.common import Terminal
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
+    from frbcli.rotor.reduction import Reduction
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 MODES_TOLD = 2  # in the one line of a single film
@@ -94,19 +94,14 @@ def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint])
     tell_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
 
 
-def tell_reduction(terminal: Terminal, case: Case) -> None:
+def tell_reduction(terminal: Terminal, found: Reduction | None) -> None:
     """What the reduction of a shaft keeps, and what that changes."""
-    from frbcli.scene.shafts.table import shaft_of
-
-    if (reduction := shaft_of(case).reduction) is not None:
-        terminal.sentence(f"Reduction of the shaft to {reduction.words}.")
+    if found is not None:
+        terminal.sentence(f"Reduction of the shaft to {found.words}.")
 
 
-def reduction_document(case: Case) -> dict[str, float] | None:
+def reduction_document(found: Reduction | None) -> dict[str, float] | None:
     """The same in JSON, None for a shaft that is not reduced."""
-    from frbcli.scene.shafts.table import shaft_of
-
-    found = shaft_of(case).reduction
     if found is None:
         return None
     static = len(found.modes.frequencies) - found.free

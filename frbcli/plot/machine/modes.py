@@ -40,7 +40,8 @@ def modes_figure(modes: Modes) -> Figure:
         shapes = [figure.add_subplot(grid[row, 1]) for row in range(SHOWN)]
         for axes, mode in zip(shapes, last.directed("forward"), strict=False):
             _draw_shape(axes, modes, mode)
-        shapes[-1].set_xlabel(f"along the shaft in mm, at {last.speed_Hz:.4g} Hz")
+        along = "along the shaft" if case.rotor.symmetric else "along the shaft in mm"
+        shapes[-1].set_xlabel(f"{along}, at {last.speed_Hz:.4g} Hz")
         for axes in shapes[:-1]:
             axes.tick_params(labelbottom=False)
         figure.legend(*campbell.get_legend_handles_labels(), loc="outside lower left", ncols=3)
@@ -63,18 +64,19 @@ def _draw_campbell(axes: Axes, modes: Modes) -> None:
             axes.fill_between(speeds, low, high, color=colour, alpha=BAND, linewidth=0.0)
     axes.plot([0.0, fastest], [0.0, fastest], color=GREY, linestyle=(0, (1, 2)), label="rotor speed")
     axes.set_xlim(0.0, fastest)
-    axes.set_ylim(0.0, HEADROOM * max(fastest, modes.free_Hz[0]))
+    axes.set_ylim(0.0, HEADROOM * max([fastest, *modes.free_Hz[:1]]))
     axes.set_xlabel("rotor speed in Hz")
     axes.set_ylabel("natural frequency in Hz")
 
 
 def _draw_shape(axes: Axes, modes: Modes, mode: Mode) -> None:
-    z = 1e3 * modes.positions_m
+    scale = 1.0 if modes.case.rotor.symmetric else 1e3
+    z = scale * modes.positions_m
     axes.axhline(0.0, color=GREY, linewidth=0.8)
     axes.plot(z, mode.shape, color=BLUE, linewidth=1.6)
     for places, marker, colour in ((modes.bearings, "^", VERMILION), (modes.disks, "|", BLACK)):
         for _, place in places:
-            axes.plot(1e3 * place, 0.0, marker=marker, color=colour, markersize=7, linestyle="none")
+            axes.plot(scale * place, 0.0, marker=marker, color=colour, markersize=7, linestyle="none")
     axes.set_title(f"{mode.frequency_Hz:.4g} Hz, {mode.kind}", fontsize=9.0)
     axes.set_ylim(-1.15, 1.15)
     axes.set_yticks([])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
@@ -14,7 +15,7 @@ from frbcli.rotor.body import Body
 from frbcli.rotor.linear import Array, LinearRotor
 
 if TYPE_CHECKING:
-    from frbcli.rotor.reduction import Reduction
+    from frbcli.rotor.reduction import FreeModes, Reduction
     from frbcli.scene.shafts.turbocharger import FreeShaft
 
 
@@ -115,6 +116,21 @@ class Shaft(ABC):
     def journal(self, name: str) -> str:
         """The node of the bearing with a name."""
         return "journal"
+
+    def free_modes(self) -> FreeModes:
+        """All its modes without bearings, of one plane. Raises InputError if it has none."""
+        from frbcli.rotor.assembly import assembled
+        from frbcli.rotor.reduction import modes_of_plane
+
+        machine = assembled([self.undamped_body()])
+        n, places = machine.size // 2, self.stations(machine)
+        return modes_of_plane(machine.mass[:n, :n], machine.stiffness[:n, :n], places.positions, places.maps[:, 0, :n])
+
+    @property
+    def held(self) -> Array:
+        """(b, n) displacements of free_modes at the springs of all bearings, then their slopes at collars."""
+        end = self.free_modes().shapes[0]
+        return np.tile(math.sqrt(self.equal_bearings) * end, (len(self.case.placed_bearings), 1))
 
     def free(self) -> FreeShaft:
         """The shaft without bearings in its free modes. Raises InputError for one without sections."""

@@ -152,6 +152,13 @@ class TurbochargerShaft(Shaft):
             fault = Fault("shaft", f"{len(sections)} sections", None, problem, remedy)
             raise InputError(case.name or "case", (fault,)) from None
 
+    def free_modes(self) -> FreeModes:
+        return self.free().modes
+
+    @property
+    def held(self) -> Array:
+        return self.free().held
+
     @property
     def reduction(self) -> Reduction:
         return self.free().reduced

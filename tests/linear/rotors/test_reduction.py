@@ -12,6 +12,7 @@ import pytest
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
+from frbcli.linear.modes import own_reduction
 from frbcli.scene.shafts.table import shaft_of
 
 SPEEDS = [2.0, 80.0, 160.0]  # peaks between them are found
@@ -117,9 +118,36 @@ duration = "1 s"
     assert frb([command, str(path), *plain]) == 0
     told = " ".join(capsys.readouterr().out.split())
     assert "Reduction of the shaft to 6 free modes of each plane" in told
-    assert "heights of peaks" in told
+    assert "heights of peaks by at most" in told
+    assert ("on bearings of any stiffness" in told) == (command == "check")
+    assert ("on the stiffness of its own bearings" in told) == (command != "check")
     assert frb([command, str(path), *plain, "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
     found = document["findings"]["reduction"] if command == "check" else document["reduction"]
     assert found["free_modes"] == 6
-    assert found["amplitude_relative"] > found["frequency_relative"] > 1e-3
+    assert found["amplitude_relative"] > found["frequency_relative"]
+    assert found["amplitude_relative"] > 1e-3
+    anything = shaft_of(frbcli.load_case(str(path))).reduction
+    assert anything is not None
+    assert (found["amplitude_relative"] < anything.amplitude) == (command != "check")
+
+
+def test_the_own_bearings_bound_the_error_of_six_modes() -> None:
+    """The change is stated on the case's own stiffness, and the peaks of the rotor with many modes are within it."""
+    stiffness, damping = 1e7, 1e3
+    few, whole = (frbcli.response(shaft(stiffness, damping, modes=count), SPEEDS) for count in (6, MANY))
+    told = own_reduction(few.case, few.resting)
+    assert told is not None
+    for a, b in zip(few.critical_speeds, whole.critical_speeds, strict=False):
+        assert abs(a.speed_Hz / b.speed_Hz - 1.0) <= 1.1 * told.frequency
+        assert abs((a.amplitude or 0.0) / (b.amplitude or 1.0) - 1.0) <= 1.1 * told.amplitude
+
+
+def test_a_shipped_turbocharger_is_not_frightening() -> None:
+    """On bearings of any stiffness its speeds may be off by 7 %; on its films, by much less."""
+    case = frbcli.load_case("turbocharger-car")
+    told = own_reduction(case, frbcli.stability(case, [500.0]).points)
+    anything = shaft_of(case).reduction
+    assert told is not None
+    assert anything is not None
+    assert told.frequency < 0.02 < anything.frequency
