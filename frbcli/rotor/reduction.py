@@ -200,7 +200,8 @@ def modes_of_plane(mass: Array, stiffness: Array, positions: Array, places: Arra
     squares[squares < STILL * squares.max(initial=0.0)] = 0.0
     shapes, none = np.asarray(places @ vectors, dtype=np.float64), np.zeros_like(mass)
     weight = np.abs(vectors.T @ mass @ np.ones(len(mass)))
-    return FreeModes(positions, np.sqrt(np.maximum(squares, 0.0)), shapes, np.zeros_like(shapes), none, none, weight)
+    frequencies, slopes = np.sqrt(np.maximum(squares, 0.0)), np.zeros_like(shapes)
+    return FreeModes(positions, frequencies, shapes, slopes, none, none, none, weight)
 
 
 def _slowest(plane: Plane) -> tuple[Array, Array]:
