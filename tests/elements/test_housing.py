@@ -321,7 +321,8 @@ def test_a_run_keeps_the_energy_of_rotor_support_and_housing(tmp_path: Path) -> 
         parts = [np.linalg.lstsq(wave, each)[0] for wave, each in zip(waves, found[:, late], strict=True)]
         energies.append(0.5 * sum(square * (part @ part) for square, part in zip(squares, parts, strict=True)))
     assert energies[0] > 0.01
-    assert abs(energies[1] - energies[0]) <= 2.0 * run.error["time_integration"] * energies[0] < 1e-4 * energies[0]
+    assert abs(energies[1] - energies[0]) <= 2.0 * run.error["time_integration"] * energies[0]
+    assert abs(energies[1] - energies[0]) < 1e-4 * energies[0]  # the stated error is that of the phase, too
 
 
 def test_a_run_in_an_elastic_housing_has_the_motion_of_the_response(tmp_path: Path) -> None:
