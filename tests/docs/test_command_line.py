@@ -17,7 +17,8 @@ from frbcli.cli.main import COMMANDS, run
 PAGE = DOCS / "command-line.md"
 ROW = re.compile(r"^\| `frb (.+?)` \| (\d+) \| (.*?) \| (.*?) \|$", re.MULTILINE)
 TEXTS = ("--help", "--version", "cases jeffcott", "schema", "export run.h5 -o -")  # no results for people
-PROGRESS = re.compile(r"^.*\d:\d\d left.*\n", re.MULTILINE)  # told on slow machines only
+# Said on slow machines, and where kernels are not compiled yet
+PROGRESS = re.compile(r"^(?:.*\d:\d\d left.*|Compiling the kernels, once.*)\n", re.MULTILINE)
 # Their documents: test_cli_limit_cycles.py, that of the same picture that does not move, test_fit.py
 LONG = (
     "limit-cycles my.toml --set film.theory=short --csv cycles.csv",
