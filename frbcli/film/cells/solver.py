@@ -57,6 +57,7 @@ from frbcli.film.grid import Array
 
 ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of
 SETTLED = 1e-12  # the same, for a residual that does not fall any more
+FALLING = 0.6  # outflow into the air (4.37) falls by e an iteration where nothing else sets the level of a film
 LARGEST = 1e9  # beyond this, w is the mark of a singular matrix
 SHRINK = 0.3  # the pseudo-time step shrinks to no less than this in one iteration
 DRY = -1e-6  # an oil fraction below this is none
@@ -75,7 +76,8 @@ STILL_MOTION, STILL_STEP = 1e-4, 1e-6
 @dataclass(frozen=True)
 class Attempt:
     """One way to go. first: the first pseudo-time step times the motion's rate; growth: the most that it grows by in
-    one iteration; limit: of iterations; gas: share of its change that free gas follows in one iteration."""
+    one iteration; limit: of iterations, twice as many while each leaves less than FALLING of the residual; gas: share
+    of its change that free gas follows in one iteration."""
 
     first: float
     growth: float
@@ -272,7 +274,7 @@ class FilmSolver:
         passed, mixing = self._passed(motion), GasMixing(self.film.law.gas_content) if self._carries else None
         pseudo_rate, left_before, largest_before = motion.rate / attempt.first, math.inf, math.inf
         worst, off_before = np.zeros_like(w), math.inf
-        for iteration in range(1, attempt.limit + 1):
+        for iteration in range(1, 2 * attempt.limit + 1):
             residual = self._assemble(motion, w, storage, mixing, attempt.gas)
             with np.errstate(over="ignore"):  # on the way to a failure
                 worst = np.abs(residual) / self._terms(passed, w, storage)
@@ -283,6 +285,8 @@ class FilmSolver:
                 return w, iteration, ""
             if 0.0 < off < close and largest < close:
                 return w, iteration, ""
+            if iteration >= attempt.limit and not largest < FALLING * largest_before:
+                return w, iteration, self._where(worst)
             largest_before, off_before = largest, off
             if left_before < math.inf:
                 pseudo_rate /= min(max(left_before / left, SHRINK), attempt.growth)
@@ -292,7 +296,7 @@ class FilmSolver:
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
-        return w, attempt.limit, self._where(worst)
+        return w, 2 * attempt.limit, self._where(worst)
 
     def _assemble(self, motion: Motion, w: Array, storage: Storage, mixing: GasMixing | None, gas: float) -> Array:
         """(m, k) what does not balance, and in the arrays of the solver Newton's equations. mixing: of the gas that the

@@ -132,6 +132,20 @@ def test_plates_fill_again_as_the_front_equation_has_it(rate: float) -> None:
     assert length == pytest.approx(exact, rel=1e-2)
 
 
+@pytest.mark.parametrize("omega", [50.0, 314.0, 3000.0])
+def test_centred_film_that_nothing_feeds_is_at_rest(omega: float) -> None:
+    """Ends that let oil out and none in leave the level to the outflow (4.37) alone, an exponential of the pressure,
+    which Newton's method follows by a factor of e an iteration. Any level between cavity and air carries nothing."""
+    section = replace(section_of("none", ends="free-to-air"), cavitation_pressure=100.0)
+    film = VolumeFilm(section, volume_grid(section, np.linspace(0.0, TURN, 49), np.linspace(0.0, 1.0, 7)),
+                      Reynolds(), omega)  # fmt: skip
+    solution = FilmSolver(film).steady(Motion((0.0, 0.0), (0.0, 0.0), omega))
+    level = film.pressure(solution.state) * section.pressure_scale
+    assert np.ptp(level) < 1e-9 * AMBIENT
+    assert 100.0 - AMBIENT < level.min() < 0.0
+    assert solution.flows.outflow < 1e-9 * omega
+
+
 def test_elrod_is_reynolds_for_an_axial_groove() -> None:
     """Steady rotation: the cavity ends in the groove, so that where the oil goes in it does not matter."""
     section = section_of("axial-groove", AMBIENT)
