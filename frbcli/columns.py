@@ -15,16 +15,16 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from frbcli.units import SpeedUnit
+
 if TYPE_CHECKING:
     import pandas as pd
 
 AXES = "xy"
 ENTRIES = ("xx", "xy", "yx", "yy")  # heads of a matrix
 ZERO_CELSIUS = 273.15
-TWO_DIGITS = 2.0  # an uncertainty that begins with 1 has two digits
 MINUS_ZERO = re.compile(r"^-(?=0(?:\.0*)?[^\d.]*$)")  # of round-off below zero, such as -0.0 or -0°
 LARGEST_PLAIN = 1e6  # below it, numbers with a number of digits have no powers of ten
-ROUND_OFF = 1e-9  # of a number that is rounded up
 NOTHING = 1e-12  # of the largest entry of a matrix: an entry that is zero but for round-off
 SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
 
@@ -37,12 +37,14 @@ class Shown:
     form: the format of a number, or a function from the value to the cell, or to all cells of several heads
     unit: the unit in which it is shown, by default that of the column
     table: the name of the table
+    per_minute: the same for people who read rotor speeds in rpm
     """
 
     head: str | tuple[str, ...]
     form: str | Callable[[Any], Any] = ""
     unit: str = ""
     table: str = ""
+    per_minute: Shown | None = None
 
     @property
     def heads(self) -> tuple[str, ...]:
@@ -84,6 +86,20 @@ def _without_round_off(value: Any) -> list[float]:
     entries = np.ravel(value).astype(float)
     least = NOTHING * float(np.abs(entries).max(initial=0.0))
     return [0.0 if abs(entry) < least else float(entry) for entry in entries]
+
+
+def speed_shown(form: str = ".4g", head: str = "Hz", table: str = "") -> Shown:
+    """A rotor speed in Hz in a table of the terminal. head: ends with Hz."""
+    return Shown(head, form, table=table, per_minute=Shown(f"{head[:-2]}rpm", SpeedUnit(rpm=True).number, table=table))
+
+
+def uncertain_speed(head: str = "speed, Hz", digits: int = 1, table: str = "", unit: str = "") -> Shown:
+    """A rotor speed in Hz with its uncertainty, both of a pair, in a table of the terminal. digits: of a speed in Hz
+    behind its point; unit: "Hz" where the head does not name it."""
+    hertz, per_minute = SpeedUnit(), SpeedUnit(rpm=True)
+    return Shown(head, lambda pair: hertz.cell(pair[0], pair[1], digits), unit, table,
+                 per_minute=Shown(head.replace("Hz", "rpm"), lambda pair: per_minute.cell(pair[0], pair[1]),
+                                  unit and per_minute.name, table))  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -199,6 +215,10 @@ class Table:
         """The heads of a table of the terminal with meaning and unit."""
         return legend(self.columns, table)
 
+    def with_speeds_in(self, unit: SpeedUnit) -> Table:
+        """The table with its rotor speeds in a unit, for the terminal."""
+        return replace(self, columns=with_speeds_in(unit, self.columns))
+
     def cells(self, table: str = "") -> list[tuple[str, ...]]:
         """The rows of a table of the terminal."""
         return [
@@ -206,6 +226,13 @@ class Table:
                   for shown in _in(column, table) for cell in shown.cells(value))
             for row in self.rows
         ]  # fmt: skip
+
+
+def with_speeds_in(unit: SpeedUnit, columns: Columns) -> tuple[Column, ...]:
+    """The columns with rotor speeds in a unit, for the terminal."""
+    if not unit.rpm:
+        return tuple(columns)
+    return tuple(replace(each, shown=tuple(shown.per_minute or shown for shown in each.shown)) for each in columns)
 
 
 def table_of(columns: Columns, items: Iterable[object]) -> Table:
@@ -258,20 +285,6 @@ def short_number(value: float | None) -> str:
     if value is None or math.isnan(value):
         return "-"
     return f"{value:.1e}".replace("e-0", "e-").replace("e+00", "")
-
-
-def with_uncertainty(value: float | None, uncertainty: float | None, digits: int) -> str:
-    """A number with the uncertainty of its last digits in brackets, as 318(4) for 318 +- 4 or 204.4(12) for
-    204.4 +- 1.2; without an uncertainty with so many digits behind the point; "-" where there is none."""
-    if value is None or math.isnan(value):
-        return "-"
-    if uncertainty is None or not 0.0 < uncertainty < math.inf:
-        return f"{value:.{digits}f}"
-    leading = math.floor(math.log10(uncertainty))
-    places = 1 - leading if uncertainty < TWO_DIGITS * 10.0**leading else -leading
-    places = min(max(places, 0), digits)
-    in_last = max(1, math.ceil(uncertainty * 10.0**places - ROUND_OFF))
-    return f"{value:.{places}f}({in_last})"
 
 
 def _joined(*words: str) -> str:

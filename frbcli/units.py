@@ -10,6 +10,8 @@ from __future__ import annotations
 import functools
 import math
 import re
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -98,6 +100,11 @@ _DISPLAY: dict[str, tuple[tuple[str, float, float], ...]] = {
 }
 
 
+PER_MINUTE, LEAST_WHOLE = 60.0, 100.0  # rpm over Hz; revolutions per minute from which on whole ones are shown
+TWO_DIGITS = 2.0  # an uncertainty that begins with 1 has two digits
+ROUND_OFF = 1e-9  # of a number that is rounded up
+
+
 class ValueFault(ValueError):
     """A value that cannot be taken: what is wrong with it, and what to write instead."""
 
@@ -146,6 +153,14 @@ def is_kinematic(given: object) -> bool:
         return False
     unit_text = " ".join(parts[2].translate(_SPELLING).split())
     return unit_text in _COMMON[KINEMATIC]
+
+
+def is_per_minute(given: object) -> bool:
+    """Whether `given` is text of a speed in revolutions per minute, such as "9000 rpm"."""
+    parts = _TEXT.fullmatch(given.strip()) if isinstance(given, str) else None
+    if parts is None:
+        return False
+    return " ".join(parts[2].translate(_SPELLING).split()) in (*_PER_MINUTE, "krpm")
 
 
 def display(value: float, unit: str) -> str:
@@ -289,3 +304,73 @@ def _registry() -> pint.UnitRegistry[float]:
     import pint
 
     return pint.UnitRegistry()
+
+
+def with_uncertainty(value: float | None, uncertainty: float | None, digits: int) -> str:
+    """A number with the uncertainty of its last digits in brackets, as 318(4) for 318 +- 4 or 204.4(12) for
+    204.4 +- 1.2; without an uncertainty with so many digits behind the point; "-" where there is none."""
+    if value is None or math.isnan(value):
+        return "-"
+    if uncertainty is None or not 0.0 < uncertainty < math.inf:
+        return f"{value:.{digits}f}"
+    leading = math.floor(math.log10(uncertainty))
+    places = 1 - leading if uncertainty < TWO_DIGITS * 10.0**leading else -leading
+    places = min(max(places, 0), digits)
+    in_last = max(1, math.ceil(uncertainty * 10.0**places - ROUND_OFF))
+    return f"{value:.{places}f}({in_last})"
+
+
+@dataclass(frozen=True)
+class SpeedUnit:
+    """The unit in which people read rotor speeds: Hz, or revolutions per minute. both: also the other one."""
+
+    rpm: bool = False
+    both: bool = False
+
+    @property
+    def name(self) -> str:
+        """Hz or rpm."""
+        return "rpm" if self.rpm else "Hz"
+
+    @property
+    def head(self) -> str:
+        """The unit in the head of a table."""
+        return f"{self.name} ({self._other.name})" if self.both else self.name
+
+    def number(self, speed_Hz: float) -> str:
+        """A speed without its unit."""
+        value = PER_MINUTE * speed_Hz if self.rpm else speed_Hz
+        return f"{value:.0f}" if self.rpm and abs(value) >= LEAST_WHOLE else f"{value:.4g}"
+
+    def cell(self, speed_Hz: float | None, uncertainty_Hz: float | None = None, digits: int = 1) -> str:
+        """A speed in a table whose head names the unit, with its uncertainty in brackets. digits: of a speed in Hz
+        behind its point; revolutions per minute have none."""
+        if speed_Hz is None:
+            return "-"
+        size = PER_MINUTE if self.rpm else 1.0
+        uncertainty = None if uncertainty_Hz is None else size * uncertainty_Hz
+        own = with_uncertainty(size * speed_Hz, uncertainty, 0 if self.rpm else digits)
+        return f"{own} ({self._other.cell(speed_Hz, uncertainty_Hz)})" if self.both else own
+
+    def words(self, speed_Hz: float, digits: int | None = None) -> str:
+        """A speed with its unit. digits: as for `cell`; without them four that count."""
+        if digits is None and not self.both:
+            return f"{self.number(speed_Hz)} {self.name}"
+        one = replace(self, both=False)
+        own = f"{one.cell(speed_Hz, digits=1 if digits is None else digits)} {self.name}"
+        return f"{own}, {self._other.words(speed_Hz, 1)}" if self.both else own
+
+    def listed(self, speeds_Hz: Iterable[float]) -> str:
+        """Several speeds with their unit."""
+        return f"{', '.join(map(self.number, speeds_Hz))} {self.name}"
+
+    def span(self, low_Hz: float, high_Hz: float, between: str = "to") -> str:
+        """Two speeds with their unit, as 9000 to 12000 rpm."""
+        return f"{self.number(low_Hz)} {between} {self.number(high_Hz)} {self.name}"
+
+    @property
+    def _other(self) -> SpeedUnit:
+        return SpeedUnit(not self.rpm)
+
+
+HERTZ = SpeedUnit()

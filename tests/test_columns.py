@@ -12,18 +12,8 @@ import pandas as pd
 import pytest
 from pages import column_tables
 
-from frbcli.columns import (
-    ENTRIES,
-    Column,
-    Shown,
-    heads,
-    keys,
-    legend,
-    named,
-    spread_table,
-    table_of,
-    with_uncertainty,
-)
+from frbcli.columns import ENTRIES, Column, Shown, heads, keys, legend, named, spread_table, table_of
+from frbcli.units import with_uncertainty
 
 COLUMNS = (
     Column("speed", "Hz", "rotor speed", shown=(Shown("Hz", ".3g"), Shown("Hz", ".4g", table="stiffness"))),

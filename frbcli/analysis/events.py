@@ -35,6 +35,7 @@ from frbcli.analysis.signals import RunLike, joined, pieces, points
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.spectrum import hann
 from frbcli.arrays import Array, Complex
+from frbcli.units import HERTZ, SpeedUnit
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
                "clearance-step", "forced"]  # fmt: skip
@@ -211,9 +212,12 @@ def _near_the_speed(
         yield Event("self-excited", None, own.time_s, own.speed_Hz, ratio * own.speed_Hz, ratio, point, own.amplitude)
 
 
-def about_critical_speeds(run: RunLike, events: Sequence[Mapping[str, Any]]) -> list[str]:
+def about_critical_speeds(
+    run: RunLike, events: Sequence[Mapping[str, Any]], unit: SpeedUnit = HERTZ
+) -> list[str]:
     """Sentences on critical speeds of the linearised machine that a run passes without an event, each way up and down,
-    with the reason; where they are not known, on the whirls during which none is sought. events: of the run."""
+    with the reason; where they are not known, on the whirls during which none is sought. events: of the run; unit: of
+    rotor speeds."""
     if len(run) < 2:
         return []
     found = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
@@ -223,10 +227,10 @@ def about_critical_speeds(run: RunLike, events: Sequence[Mapping[str, Any]]) -> 
     modes = signals.critical_speeds(run)
     if modes is None:
         begins, ends = [end for _, end in quiet], [*[begin for begin, _ in quiet[1:]], float(time_s[-1])]
-        hidden = [f"{signals.speed_at(run, begin):.4g} to {signals.speed_at(run, min(end, time_s[-1])):.4g} Hz"
+        hidden = [unit.span(signals.speed_at(run, begin), signals.speed_at(run, min(end, time_s[-1])))
                   for begin, end in zip(begins, ends, strict=False) if begin < time_s[-1]]  # fmt: skip
         return [f"During whirl no critical speed is sought: {', '.join(hidden)}."] if hidden else []
-    told: dict[tuple[str, str], list[str]] = {}
+    told: dict[tuple[str, str], list[float]] = {}
     for first, last in passes(speed):
         way = slice(first, min(last + 1, len(speed)))
         t, size = time_s[way], np.abs(speed[way])
@@ -239,10 +243,10 @@ def about_critical_speeds(run: RunLike, events: Sequence[Mapping[str, Any]]) -> 
             when = float(np.interp(mode, size if up else size[::-1], t if up else t[::-1]))
             left = abs(float(size[-1]) - mode)
             reason = _why_not_found(when - float(time_s[0]), quiet, left < LATE * ramp**0.5)
-            told.setdefault(("up" if up else "down", reason), []).append(f"{mode:.4g}")
+            told.setdefault(("up" if up else "down", reason), []).append(mode)
     return [
-        f"No critical speed at {', '.join(names)} Hz on the way {way}: {reason}."
-        for (way, reason), names in told.items()
+        f"No critical speed at {unit.listed(speeds)} on the way {way}: {reason}."
+        for (way, reason), speeds in told.items()
     ]
 
 

@@ -18,7 +18,7 @@ from pydantic import Field, PrivateAttr
 from frbcli.case.bearing import Bearings, FilmBearing
 from frbcli.case.course.control import Accuracy, Output, Start
 from frbcli.case.course.motion import KinematicMotion
-from frbcli.case.course.speed import SpeedRamp
+from frbcli.case.course.speed import SpeedRamp, given_speed_unit
 from frbcli.case.elements import Axial, Element, ThrustBearings
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.film_tables import Cavitation
@@ -37,6 +37,7 @@ from frbcli.case.surroundings.over_time import largest
 from frbcli.case.thermal import AnyThermal, Thermal
 from frbcli.errors import Fault, InputError
 from frbcli.html import html_table
+from frbcli.units import SpeedUnit
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]
 
@@ -92,6 +93,20 @@ class Case(Model):
     accuracy: Accuracy = Field(default=Accuracy(), description="target, or mesh and tolerance")
     output: Output = Field(default=Output(), description="what a run file holds")
     _read: tuple[str, dict[str, Any]] | None = PrivateAttr(None)  # a text, and the values that were read from it
+    _speed_unit: SpeedUnit | None = PrivateAttr(None)
+
+    @property
+    def speed_unit(self) -> SpeedUnit:
+        """The unit in which people read its rotor speeds: that in which the case gives them, unless set otherwise."""
+        if self._speed_unit is not None:
+            return self._speed_unit
+        return given_speed_unit(self.source_text)
+
+    def with_speed_unit(self, unit: SpeedUnit) -> Case:
+        """This case with its rotor speeds in another unit for people; its values stay."""
+        case = self.model_copy()
+        case._speed_unit = unit
+        return case
 
     @property
     def heading(self) -> str:

@@ -12,6 +12,7 @@ and returns its exit code (None is 0). Errors are raised as FrbError; `frbcli.cl
 
 from __future__ import annotations
 
+import functools
 import itertools
 import json
 import logging
@@ -19,19 +20,21 @@ import math
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path, PurePath
 from shutil import get_terminal_size
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
 from frbcli.cli.completion import complete_case, complete_key
 from frbcli.cli.files import INPUT, note_read
 from frbcli.cli.looks import Look, look_of
+from frbcli.cli.options import PER_MINUTE
 from frbcli.cli.streams import OutputLost
 from frbcli.errors import printable
+from frbcli.units import HERTZ, SpeedUnit
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -65,6 +68,12 @@ class Terminal:
     json: bool = False
     quiet: bool = False
     look: Look = DEFAULT_LOOK  # of the pictures
+    speeds: SpeedUnit = HERTZ  # of the rotor, in tables and sentences
+
+    def with_speeds_in(self, unit: SpeedUnit) -> Terminal:
+        """This terminal, whose reader takes rotor speeds in another unit, in pictures, too; --rpm overrides Hz."""
+        unit = replace(unit, rpm=unit.rpm or self.look.rpm or self.speeds.rpm)
+        return replace(self, speeds=unit, look=replace(self.look, rpm=unit.rpm))
 
     @property
     def live(self) -> bool:
@@ -86,6 +95,7 @@ class Terminal:
 
     def show(self, title: str, table: declared.Table, name: str = "") -> None:
         """Print the columns of a result that are declared for the table of the terminal with this name."""
+        table = table.with_speeds_in(self.speeds)
         self.table(title, table.heads(name), table.cells(name), table.spans(name))
 
     def table(
@@ -259,7 +269,23 @@ def output_options(function: Function) -> Function:
         help="Print the results as one JSON document.",
     )
     quiet = click.option("--quiet", "terminal", is_flag=True, callback=_terminal, help="Print errors only.")
-    return as_json(quiet(function))
+    return as_json(quiet(_with_speeds_of_case(function)))
+
+
+def _with_speeds_of_case(function: Function) -> Function:
+    """Speeds in the unit of the case, or in rpm where an option asks for it or is given so."""
+
+    @functools.wraps(function)
+    def command(*arguments: Any, **options: Any) -> Any:
+        case, terminal = options.get("case"), options["terminal"]
+        asked = SpeedUnit(bool(click.get_current_context().meta.get(PER_MINUTE)))
+        unit = getattr(case, "speed_unit", HERTZ)
+        options["terminal"] = terminal = terminal.with_speeds_in(replace(unit, rpm=unit.rpm or asked.rpm))
+        if case is not None and terminal.speeds.rpm and not unit.rpm and hasattr(case, "with_speed_unit"):
+            options["case"] = case.with_speed_unit(terminal.speeds)
+        return function(*arguments, **options)
+
+    return cast(Function, command)
 
 
 def _remember_settings(context: click.Context, _: click.Parameter, settings: tuple[str, ...]) -> None:

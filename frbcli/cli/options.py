@@ -12,6 +12,8 @@ import click
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
+PER_MINUTE = "frbcli.per_minute"  # of the context: whether an option gives a speed in rpm
+
 
 @dataclass(frozen=True)
 class QuantityOption(click.ParamType[float]):
@@ -24,7 +26,7 @@ class QuantityOption(click.ParamType[float]):
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """The number of a quantity in `unit`. Fails the option for anything else."""
-        from frbcli.units import quantity
+        from frbcli.units import is_per_minute, quantity
 
         with suppress(ValueError):  # then it has a unit
             value = float(str(value))
@@ -32,6 +34,8 @@ class QuantityOption(click.ParamType[float]):
             found = quantity(value, self.unit, self.example)
         except ValueError as fault:
             self.fail(f"{value!r} {fault}", param, ctx)
+        if self.unit == "Hz" and ctx is not None and is_per_minute(value):
+            ctx.meta[PER_MINUTE] = True
         if self.positive and found <= 0.0:
             self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
         return found

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from frbcli.cli.common import WIDTH, Terminal
+from frbcli.units import HERTZ, SpeedUnit
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -41,6 +42,11 @@ class Display:
 
     def __init__(self, terminal: Terminal, draw: Callable[[str], None] | None = None) -> None:
         self._terminal, self._draw = terminal, draw
+
+    @property
+    def speeds(self) -> SpeedUnit:
+        """The unit of rotor speeds."""
+        return self._terminal.speeds
 
     @property
     def redraws(self) -> bool:
@@ -87,7 +93,7 @@ class Display:
         show = self.now_and_then()
 
         def observe(name: str, number: int, count: int, progress: Progress) -> None:
-            show(f"{number} of {count}: {name}\n{progress_line(progress)}")
+            show(f"{number} of {count}: {name}\n{progress_line(progress, self.speeds)}")
 
         return observe
 
@@ -201,14 +207,14 @@ def slowness() -> float:
     return sorted(spent)[TRIALS // 2] / REFERENCE_s
 
 
-def progress_line(progress: Progress) -> str:
-    """One line of at most WIDTH columns: time, speed, eccentricity, steps per revolution, pace, time left."""
+def progress_line(progress: Progress, unit: SpeedUnit = HERTZ) -> str:
+    """One line of at most WIDTH columns: time, speed in a unit, eccentricity, steps per revolution, time left."""
     per_turn = f"{progress.steps_per_revolution:.3g}" if math.isfinite(progress.steps_per_revolution) else "-"
-    whose, pace = ("its error: ", "") if progress.for_error else ("", f"{progress.simulated_ms_per_hour:.2g} ms/h  ")
+    whose = "its error: " if progress.for_error else ""
     eps = "" if math.isnan(progress.eccentricity) else f"eps {progress.eccentricity:5.3f}  "
     line = (
-        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {progress.speed_Hz:5.1f} Hz  "
-        f"{eps}{per_turn} steps/rev  {pace}{_clock(progress.left_s)} left"
+        f"{whose}{progress.t_s:.3f}/{progress.end_s:.4g} s  {unit.words(progress.speed_Hz, 1):>8}  "
+        f"{eps}{per_turn} steps/rev  {_clock(progress.left_s)} left"
     )
     return line if len(line) <= WIDTH else line[: WIDTH - 1] + "…"
 

@@ -8,8 +8,9 @@ from dataclasses import replace
 from operator import attrgetter, itemgetter
 from typing import Any
 
-from frbcli.columns import Column, Shown, named, with_uncertainty
+from frbcli.columns import Column, Shown, named, speed_shown, uncertain_speed
 from frbcli.cycles.result import SPEED, CyclePoint, RestingPoint, SpecialPoint, UnbalancedWhirl
+from frbcli.units import with_uncertainty
 
 MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
@@ -131,7 +132,7 @@ def _other_line(whirl: UnbalancedWhirl) -> str:
 # Of the number of a branch and one of its whirls with unbalance, for the terminal
 WHIRLS = (
     Column("branch", "", "number of the branch", lambda item: item[0] + 1, shown=(Shown("branch"),)),
-    *named((replace(SPEED_COLUMN, shown=(Shown("Hz", ".2f"),)), replace(FREQUENCY, shown=(Shown("whirl Hz", ".3f"),)),
+    *named((replace(SPEED_COLUMN, shown=(speed_shown(".2f"),)), replace(FREQUENCY, shown=(Shown("whirl Hz", ".3f"),)),
             Column("eccentricity_max", "", "largest eccentricity", lambda whirl: whirl.eccentricity_max.max(),
                    shown=(Shown("eps max", ".4f"),)),
             Column("at_nu", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
@@ -167,7 +168,8 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
                lambda point: "synchronous" if point.synchronous else None if point.branch is None else point.branch + 1,
                shown=(Shown("branch"),), key="", flat=False),
         VALUE,
-        _in_last_digits("Hz", 2, "value", own) if along_speed else value,
+        replace(value, value=lambda point: (point.value, own(point)), shown=(uncertain_speed("Hz", 2),))
+        if along_speed else value,
         SPEED_COLUMN,
         FREQUENCY,
         _in_last_digits("whirl Hz", 2, "frequency_Hz", attrgetter("frequency_uncertainty_Hz")),

@@ -10,15 +10,16 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.columns import ENTRIES, Column, Shown, named, with_uncertainty
+from frbcli.columns import ENTRIES, Column, Shown, named, speed_shown
+from frbcli.units import with_uncertainty
 
 # Tables of the terminal
 FILMS, WARM, MIXED, MATRICES = "films", "warm", "mixed", ("stiffness", "damping")
 STABILITY, RESPONSE = "stability", "response"
 
 SPEED = Column("speed", "Hz", "rotor speed", shown=(
-    *(Shown("Hz", ".3g", table=table) for table in (FILMS, WARM, MIXED)),
-    *(Shown("Hz", ".4g", table=table) for table in (*MATRICES, STABILITY, RESPONSE)),
+    *(speed_shown(".3g", table=table) for table in (FILMS, WARM, MIXED)),
+    *(speed_shown(table=table) for table in (*MATRICES, STABILITY, RESPONSE)),
 ))  # fmt: skip
 NAME = Column("film", "", "name of the film, empty of one alone")
 STATUS = Column("status", "", "`resting` or `not-converged`")
@@ -227,7 +228,7 @@ RESPONSE_POINTS = (
 # Of a CriticalSpeed
 PEAKS = (
     Column("speed", "Hz", "speed of a peak of the response", attrgetter("speed_Hz"),
-           shown=(Shown("Hz", ".6g", table=RESPONSE),)),
+           shown=(speed_shown(".6g", table=RESPONSE),)),
     Column("speed_uncertainty", "Hz", "expected error of the speed", attrgetter("speed_uncertainty_Hz"),
            more="by the search and by the mesh of the films"),
     Column("mode", "", "number of the mode that resonates, by frequency", shown=(Shown("mode", table=RESPONSE),)),

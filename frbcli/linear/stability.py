@@ -31,6 +31,7 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds
+from frbcli.units import SpeedUnit
 
 NOT_SOUGHT = "Given speeds alone are computed: --threshold seeks the threshold of stability, too."
 SCOUTED = 4  # every which speed is tried on the coarsest mesh
@@ -206,7 +207,7 @@ def _sweep(
         point, near = _point(case, machines, speed, near, frequency, with_error)
         if not points and not point.rests and len(ordered) > TRIED:
             seek = partial(_point, case, machines, near=None, frequency=frequency, with_error=with_error)
-            if tried := _none_rests(seek, point, ordered):
+            if tried := _none_rests(seek, point, ordered, case.speed_unit):
                 return tried
         points.append(point)
         if observe is not None:
@@ -218,6 +219,7 @@ def _none_rests(
     seek: Callable[[float], tuple[StabilityPoint, MachineAtRest | None]],
     fastest: StabilityPoint,
     speeds: Sequence[float],
+    unit: SpeedUnit,
 ) -> tuple[StabilityPoint, ...]:
     """The points at descending speeds, ascending, if there is no rest at the fastest one nor at others between it and
     the slowest, TRIED in all; () if there is rest at one of them. To seek in vain takes long, and is not done at all
@@ -228,7 +230,8 @@ def _none_rests(
         if point.rests:
             return ()
         found[point.speed_Hz] = point
-    why = f"Sought at {TRIED} speeds from {speeds[-1]:.4g} to {speeds[0]:.4g} Hz only, since there is none at these."
+    span = unit.span(speeds[-1], speeds[0])
+    why = f"Sought at {TRIED} speeds from {span} only, since there is none at these."
     reason = f"{fastest.problem} {why}"
     left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
     slowest, *others = tuple(left)[::-1]

@@ -16,6 +16,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged
 from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
 from frbcli.scene.remedies import advised
+from frbcli.units import SpeedUnit
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed
 STABLE, UNSTABLE = "Stable up to the highest speed", "Unstable from the lowest speed on"  # begin a note
@@ -51,21 +52,23 @@ def find_threshold(
     if not resting:
         return None, "No threshold: there is no resting position in the whole range of speeds."
     slowest, fastest = resting[0], resting[-1]
+    unit = case.speed_unit
+    lowest, highest = unit.words(slowest.speed_Hz), unit.words(fastest.speed_Hz)
     if len(resting) == 1:
-        return None, _one_speed(slowest, len(sweep))
+        return None, _one_speed(slowest, lowest, len(sweep))
     above = deciding(resting)[-1]
     if resting[above].growth == 0.0:
-        return None, f"No threshold up to {fastest.speed_Hz:.4g} Hz: {UNDAMPED}."
+        return None, f"No threshold up to {highest}: {UNDAMPED}."
     if resting[above].growth < 0.0:
-        return None, f"{STABLE}: a threshold, if there is one, lies above {fastest.speed_Hz:.4g} Hz."
+        return None, f"{STABLE}: a threshold, if there is one, lies above {highest}."
     if above == 0:
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
         beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
-        return None, f"{unstable} {slowest.speed_Hz:.4g} Hz.{beyond}{_stable_again(resting)}"
+        return None, f"{unstable} {lowest}.{beyond}{_stable_again(resting, unit)}"
     near = resting[max(above - 2, 0) : above + 2]
     guess = interpolated_root([point.speed_Hz for point in near], [point.growth for point in near])
     threshold, problem = _crossing(case, machines, resting[above - 1], resting[above], guess)
-    return threshold, problem + _stable_again(resting[above:])
+    return threshold, problem + _stable_again(resting[above:], unit)
 
 
 def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
@@ -87,9 +90,8 @@ def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float
     return float(brentq(BarycentricInterpolator(speeds, growth), speeds[above - 1], speeds[above]))
 
 
-def _one_speed(point: StabilityPoint, tried: int) -> str:
+def _one_speed(point: StabilityPoint, speed: str, tried: int) -> str:
     """Why a single speed has no threshold."""
-    speed = f"{point.speed_Hz:.4g} Hz"
     found = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
     if tried > 1:
         return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
@@ -99,12 +101,12 @@ def _one_speed(point: StabilityPoint, tried: int) -> str:
     )
 
 
-def _stable_again(points: Sequence[StabilityPoint]) -> str:
+def _stable_again(points: Sequence[StabilityPoint], unit: SpeedUnit) -> str:
     """Where no motion grows any more, of points that begin with an unstable one."""
     stable = [point.speed_Hz for point in points if point.growth <= 0.0]
     if not stable:
         return ""
-    return f" No motion grows at {len(stable)} higher speeds, from {stable[0]:.4g} to {stable[-1]:.4g} Hz."
+    return f" No motion grows at {len(stable)} higher speeds, from {unit.span(stable[0], stable[-1])}."
 
 
 def _crossing(
@@ -126,7 +128,7 @@ def _crossing(
                 return _fitted(machines, found, near), ""
             return threshold_at(machines, found.speed_Hz, near=near), ""
     except NotConverged as error:
-        between = f"{low.speed_Hz:.4g} and {high.speed_Hz:.4g} Hz"
+        between = case.speed_unit.span(low.speed_Hz, high.speed_Hz, "and")
         return None, f"A threshold lies between {between}, but was not found: {error}"
 
 

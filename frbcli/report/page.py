@@ -6,7 +6,7 @@ import base64
 import datetime
 import shlex
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,7 @@ from markupsafe import Markup
 from frbcli import __version__
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable
@@ -31,7 +32,6 @@ from frbcli.plot.spectra.levels import levels
 from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, narrowed, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
-from frbcli.report.speed_words import SpeedWords, speed_words
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import event_name, told_amplitude, told_frequency
 from frbcli.results.files.kinds import PAGE
@@ -44,6 +44,7 @@ from frbcli.runs.errors.account import about_certainty, account, grows_late
 from frbcli.runs.record.header import FILM_SIGNALS, POWER
 from frbcli.scene.machine.findings import Findings, findings
 from frbcli.scene.planning.plan import make_plan
+from frbcli.units import SpeedUnit
 
 MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for
@@ -122,7 +123,7 @@ def report(
     """
     end = ends(run)[1]
     found = with_whirl_names(events(run)[:MOST_EVENTS])
-    unit = speed_words(run, both_units)
+    unit = replace(given_speed_unit(run.case_text), both=both_units)
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
     if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area
@@ -143,7 +144,7 @@ def report(
         script=script,
         cards=_cards(run, found, unit),
         events=[_event(number, event, unit) for number, event in enumerate(found, start=1)],
-        certainty=about_certainty(found, run.cost),
+        certainty=about_certainty(found, run.cost, unit),
         speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
@@ -201,18 +202,18 @@ def _today() -> str:
     return datetime.datetime.now(tz=datetime.UTC).astimezone().date().isoformat()
 
 
-def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedWords) -> list[tuple[str, str]]:
+def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedUnit) -> list[tuple[str, str]]:
     """The figures that are asked for first."""
     fastest = max(float(np.max(np.abs(run[SPEED]))), 0.0)
-    cards = [(unit.words(fastest), "highest speed")]
+    cards = [(unit.words(fastest, 1), "highest speed")]
     for kind, words in (("critical-speed", "critical speed"), ("onset", "onset of whirl")):
         first = next((event for event in found if event["kind"] == kind), None)
         if first is None:
             cards.append(("none", words))
             continue
         ratio = first["frequency_ratio"]
-        share = "" if ratio in (None, 1.0) else f", {ratio:.3f} ω"
-        cards.append((unit.words(first["speed_Hz"]), words + share))
+        share = "" if ratio in (None, 1.0) else f", {ratio:.3f}X"
+        cards.append((unit.words(first["speed_Hz"], 1), words + share))
     eccentricities = [float(np.max(run[name])) for name in run.signals if name.startswith("eccentricity")]
     if eccentricities:
         cards.append((f"{max(max(eccentricities), 0.0):.3f}", "largest eccentricity"))
@@ -225,7 +226,7 @@ def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedWords) -> list[
     return cards
 
 
-def _event(number: int, event: dict[str, Any], unit: SpeedWords) -> tuple[str, ...]:
+def _event(number: int, event: dict[str, Any], unit: SpeedUnit) -> tuple[str, ...]:
     def told(key: str, form: str) -> str:
         return "-" if event[key] is None else format(event[key], form)
 

@@ -18,7 +18,7 @@
     const decibel = data.lowest + data.step * level[row * columns + column];
     const amplitude = data.clearance * Math.pow(10, decibel / 20), speed = Math.abs(data.speeds[column]);
     const frequency = data.frequencies[row];
-    const order = speed > 0 ? ` (${digits(frequency / speed, 3)} ω)` : "";
+    const order = speed > 0 ? ` (${digits(frequency / speed, 3)}X)` : "";
     reading.textContent =
       `time ${digits(data.times[column], 4)} s, rotor ${digits(speed, 4)} Hz, frequency ${digits(frequency, 4)} Hz` +
       `${order}, amplitude ${digits(1e6 * amplitude, 3)} µm, ${digits(decibel, 3)} dB`;

@@ -14,14 +14,13 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, scale_colours, ticks
 from frbcli.plot.spectra.waterfall import LEVELS_dB
-from frbcli.report.speed_words import SpeedWords
 from frbcli.report.svg import curve, drawing, element, line, text
+from frbcli.units import HERTZ, SpeedUnit
 
 WIDTH, HEIGHT = 900.0, 500.0
 LEFT, RIGHT, TOP, BOTTOM = 62.0, 90.0, 84.0, 46.0
 FLAG_ROWS, FLAG_ROW = 4, 16.0  # of the numbers of events above the picture
 BAR, BAR_WIDTH = WIDTH - RIGHT + 18.0, 14.0
-HERTZ = SpeedWords()
 FLAG = 7.5  # radius of the number of an event
 
 
@@ -34,7 +33,7 @@ class Waterfall:
 
 
 def page_waterfall(
-    found: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedWords = HERTZ
+    found: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedUnit = HERTZ
 ) -> Waterfall:
     """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on; unit: of
     the rotor speeds above it."""
@@ -57,7 +56,7 @@ def _numbers(found: Levels, clearance: float) -> str:
     )
 
 
-def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedWords) -> str:
+def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedUnit) -> str:
     right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
     begin, end = _edges(found.time_s)
     top_Hz = _edges(found.frequency_Hz)[1]
@@ -92,7 +91,7 @@ def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedWords) 
         parts.append(line(LEFT - 4.0, up(f), LEFT, up(f), "tick"))
         parts.append(text(LEFT - 8.0, up(f) + 4.0, f"{f:g}", anchor="end"))
     parts.append(text(0.5 * (LEFT + right), HEIGHT - 8.0, "time in s"))
-    parts.append(text(LEFT - 8.0, TOP - 8.0, f"rotor, {unit.unit}", "small", "end"))
+    parts.append(text(LEFT - 8.0, TOP - 8.0, f"rotor, {unit.name}", "small", "end"))
     parts.append(
         element("text", "frequency in Hz", kind="label", text_anchor="middle",
                 transform=f"translate(16 {0.5 * (TOP + bottom):.0f}) rotate(-90)")

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from frbcli.columns import Column, Shown, with_uncertainty
+from frbcli.columns import Column, Shown, uncertain_speed
+from frbcli.units import with_uncertainty
 
 # by the kind of an event: what a ring does with its pin, and what the asperities of a film do
 TOUCHING = {"touch": ("touches its pin", "asperities touch"), "lift-off": ("leaves its pin", "asperities part")}
@@ -34,9 +35,9 @@ def event_name(event: Mapping[str, Any]) -> str:
     return " ".join(word for word in (event["kind"], event.get("whirl", ""), place) if word)
 
 
-def told_speed(event: Mapping[str, Any]) -> str:
-    """The rotor speed of an event with its uncertainty in brackets, Hz."""
-    return with_uncertainty(event["speed_Hz"], event.get("speed_uncertainty_Hz"), 1)
+def uncertain_pair(event: Mapping[str, Any]) -> tuple[float, float | None]:
+    """The rotor speed of an event and its uncertainty, Hz."""
+    return event["speed_Hz"], event.get("speed_uncertainty_Hz")
 
 
 def told_frequency(event: Mapping[str, Any]) -> str:
@@ -60,7 +61,7 @@ EVENTS = (
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),
-    Column("speed", "", "", told_speed, shown=(Shown("speed, Hz"),), key="", flat=False),
+    Column("speed", "", "", uncertain_pair, shown=(uncertain_speed(),), key="", flat=False),
     Column("frequency", "Hz", "frequency of the motion, if it has one"),
     Column("frequency", "", "", told_frequency, shown=(Shown("frequency, Hz"),), key="", flat=False),
     Column("frequency_ratio", "", "frequency over the rotor speed", shown=(Shown("ratio", ".3f"),)),

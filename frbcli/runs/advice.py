@@ -140,7 +140,7 @@ def _overheated(case: Case, end: RunEnd) -> tuple[str, ...]:
     gap = ", or heat closed its gap" if follows else ""
     film = "the film" if end.hot_film == "film" else f"the film {end.hot_film}"
     return (
-        f"At {end.speed_Hz:.4g} Hz the oil in {film} became too hot{limit}{gap}{_while(end)}. "
+        f"At {case.speed_unit.words(end.speed_Hz)} the oil in {film} became too hot{limit}{gap}{_while(end)}. "
         "Give it more flow, a cooler supply, more clearance, or a wall that takes heat.",
     )
 
@@ -149,10 +149,11 @@ def _contact(case: Case, end: RunEnd) -> tuple[str, ...]:
     if closed := _closed_shell(case, end):
         return (closed,)
     if end.on_pads:
-        touched = f"The collar of the thrust bearing touched its pads at {end.speed_Hz:.4g} Hz{_while(end)}"
+        at = case.speed_unit.words(end.speed_Hz)
+        touched = f"The collar of the thrust bearing touched its pads at {at}{_while(end)}"
         return (f"{touched}: its tilt and the axial load left less than the roughness of surfaces.",)
     limit = f"contact.eccentricity = {case.contact.eccentricity:g}"
-    touched = f"The {end.journal} reached the shell at {end.speed_Hz:.4g} Hz ({limit})"
+    touched = f"The {end.journal} reached the shell at {case.speed_unit.words(end.speed_Hz)} ({limit})"
     through = () if case.contact.gives_way else (_through_contact(case),)
     return (f"{touched}{_before(end)}.", *_missing_oil(case), *through)
 
@@ -193,14 +194,15 @@ def _missing_oil(case: Case) -> tuple[str, ...]:
 
 def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
     """Sentences on a run whose equations had no solution with the smallest step size, or without films had no bound."""
+    speed = case.speed_unit.words(end.speed_Hz)
     if not case.films:
-        grown = f"The motion grew beyond {UNBOUNDED:.0e} times the length of the plan at {end.speed_Hz:.4g} Hz"
+        grown = f"The motion grew beyond {UNBOUNDED:.0e} times the length of the plan at {speed}"
         return (f"{grown}: given coefficients do not bound it. `frb stability` shows the speed from which one grows.",)
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
     touching = end.eccentricity >= case.contact.eccentricity
     place = "in contact with the shell" if touching else "not in contact"
     told = (
-        f"Rotor and films had no solution at {end.speed_Hz:.4g} Hz with a step size below {step}: the "
+        f"Rotor and films had no solution at {speed} with a step size below {step}: the "
         f"{end.journal} was {place}, at an eccentricity of {end.eccentricity:.4f}{_while(end)}."
     )
     remedies = (*_contact_remedies(case, end, touching), *_numerics(case), *film_remedies(case))

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from operator import attrgetter
 from typing import Any
 
-from frbcli.columns import ZERO_CELSIUS, Column, Shown
-from frbcli.results.columns import told_speed
+from frbcli.columns import ZERO_CELSIUS, Column, Shown, uncertain_speed
+from frbcli.results.columns import uncertain_pair
 
 MODELS, COUPLINGS = "models", "couplings"  # tables of the terminal
 
@@ -21,9 +21,9 @@ def _event(kind: str, key: str) -> Callable[[Any], float]:
     return value
 
 
-def _told(kind: str) -> Callable[[Any], str | None]:
+def _uncertain(kind: str) -> Callable[[Any], tuple[float, float | None] | None]:
     """The speed of an event with its uncertainty; that of a run with a second one."""
-    return lambda result: None if result.first(kind) is None else told_speed(result.first(kind))
+    return lambda result: None if result.first(kind) is None else uncertain_pair(result.first(kind))
 
 
 def _of(account: str, key: str) -> Callable[[Any], Any]:
@@ -50,11 +50,11 @@ VARIANT = (
     Column("t_end", "s", "when it ended", attrgetter("run.t_end_s"), key=""),
     Column("events", "", "events of the run", attrgetter("run.events"), flat=False),
     Column("critical_speed", "Hz", "rotor speed at resonance", _event("critical-speed", "speed_Hz"), key=""),
-    Column("critical_speed", "", "rotor speed at resonance, Hz", _told("critical-speed"), key="", flat=False,
-           shown=(Shown("crit.", table=MODELS),)),
+    Column("critical_speed", "", "rotor speed at resonance", _uncertain("critical-speed"), key="", flat=False,
+           shown=(uncertain_speed("crit.", table=MODELS, unit="Hz"),)),
     Column("onset_speed", "Hz", "rotor speed at the onset of whirl", _event("onset", "speed_Hz"), key=""),
-    Column("onset_speed", "", "rotor speed at the onset of whirl, Hz", _told("onset"), key="", flat=False,
-           shown=(Shown("onset", table=MODELS), Shown("onset", table=COUPLINGS))),
+    Column("onset_speed", "", "rotor speed at the onset of whirl", _uncertain("onset"), key="", flat=False,
+           shown=tuple(uncertain_speed("onset", table=table, unit="Hz") for table in (MODELS, COUPLINGS))),
     Column("onset_speed_uncertainty", "Hz", "its uncertainty, where the run has it",
            _event("onset", "speed_uncertainty_Hz"), key=""),
     Column("onset_frequency_ratio", "", "whirl ratio there", _event("onset", "frequency_ratio"), key="",

@@ -24,6 +24,7 @@ from frbcli.cli.main import run as frb
 from frbcli.cli.progress import progress_line
 from frbcli.results.store import Run, read_run
 from frbcli.runs.march import Progress
+from frbcli.units import SpeedUnit
 
 PNG = b"\x89PNG"
 QUICK = ["jeffcott", "--set", "film.theory=short", "--set", "speed.duration=0.3 s"]
@@ -153,7 +154,9 @@ def test_progress_line_fits_any_terminal(
 def test_progress_line_says_what_matters() -> None:
     line = progress_line(Progress(12.3456, 100.0, 123.45, 0.6789, 10**6, 41.7, 1.2e8, 3725.0))
     assert len(line) < 80
-    for word in ("12.346/100 s", "123.5 Hz", "eps 0.679", "41.7 steps/rev", "1.2e+08 ms/h", "62:05 left"):
+    per_minute = progress_line(Progress(12.3, 100.0, 123.45, 0.6789, 1, 41.7, 1.0, 3.0), SpeedUnit(rpm=True))
+    assert "  7407 rpm  " in per_minute
+    for word in ("12.346/100 s", "123.5 Hz", "eps 0.679", "41.7 steps/rev", "62:05 left"):
         assert word in line
 
 
@@ -169,7 +172,7 @@ def test_progress_says_that_it_is_the_error_s() -> None:
     [(0.4, "0:00"), (59.6, "1:00"), (5999.0, "99:59"), (6000.0, "1 h"), (1e6, "11 d"), (np.inf, "?"), (np.nan, "?")],
 )
 def test_time_left_is_told_in_few_columns(left: float, words: str) -> None:
-    assert progress_line(Progress(1.0, 2.0, 3.0, 0.4, 5, 41.0, 1e8, left)).endswith(f"ms/h  {words} left")
+    assert progress_line(Progress(1.0, 2.0, 3.0, 0.4, 5, 41.0, 1e8, left)).endswith(f"steps/rev  {words} left")
 
 
 def frb_process(*words: str, often: bool = False, **options: Any) -> subprocess.Popen[bytes]:

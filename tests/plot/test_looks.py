@@ -143,7 +143,7 @@ def test_linear_amplitudes_are_in_micrometres(run: Run) -> None:
 
 def test_chosen_orders_are_drawn(run: Run) -> None:
     axes = waterfall_figure(run, scale=LevelScale(orders=(1.0, 0.25))).axes[0]
-    assert [text.get_text() for text in axes.texts] == ["ω", "0.25 ω"]
+    assert [text.get_text() for text in axes.texts] == ["1X", "0.25X"]
     first, second = (np.asarray(line.get_ydata()) for line in axes.get_lines())
     np.testing.assert_allclose(second, 0.25 * first)
 

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Annotated
 
 from pydantic import Field, model_validator
 
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import Count, Duration, FirstSpeed, Hold, Label, Quantity, Speed
+from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.units import SpeedUnit, is_per_minute
 
 DEFAULT_HOLD = 0.5
 
@@ -47,3 +50,23 @@ class SpeedRamp(Model):
     @classmethod
     def _down_as_fast_as_up(cls, data: object) -> object:
         return with_default(data, "down_duration", "duration")
+
+
+def given_speed_unit(text: str) -> SpeedUnit:
+    """The unit in which people read the rotor speeds of a case file with this text: rpm where it gives one so; Hz of a
+    text that is none of a case."""
+    try:
+        tables = parse(text)
+    except TomlFault:
+        return SpeedUnit()
+    motion = tables.get("motion")
+    of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
+    return SpeedUnit(_any_per_minute([tables.get("speed"), of_motion]))
+
+
+def _any_per_minute(given: object) -> bool:
+    if isinstance(given, Mapping):
+        return _any_per_minute(list(given.values()))
+    if isinstance(given, list):
+        return any(map(_any_per_minute, given))
+    return is_per_minute(given)

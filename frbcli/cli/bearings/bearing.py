@@ -129,12 +129,12 @@ def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Pat
 def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: bool) -> None:
     """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
     few of them."""
-    from frbcli.columns import legend, table_of
+    from frbcli.columns import legend, table_of, with_speeds_in
     from frbcli.film.cavitation.table import law_named
     from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
     from frbcli.linear.film_state import heat_capacity
 
-    columns, points = found.columns, len(found.of(films[0]))
+    columns, points = with_speeds_in(terminal.speeds, found.columns), len(found.of(films[0]))
     full = full or points <= FEW_POINTS
     rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
     for film, label in zip(found.films, found.labels, strict=True):

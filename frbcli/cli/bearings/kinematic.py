@@ -102,7 +102,7 @@ def _report(found: KinematicTest, terminal: Terminal) -> None:
             tell_film(terminal, result.heat, f"{result.name}: the film when it is warm")
         if result.stribeck is not None:
             coefficient, speed = result.stribeck.least
-            told = f"the least coefficient of friction is {coefficient:.3g}, at {speed:.3g} Hz."
+            told = f"the least coefficient of friction is {coefficient:.3g}, at {terminal.speeds.words(speed)}."
             terminal.sentence(f"{result.name}: {told}")
     if found.test != "rotation":
         terminal.result(LARGEST)

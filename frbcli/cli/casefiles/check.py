@@ -219,7 +219,7 @@ def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError
 
     if tried is not None:
         around, along = tried.cells
-        until = f"until {tried.until_s:.2g} s, {tried.speed_Hz:.3g} Hz"
+        until = f"until {tried.until_s:.2g} s, {case.speed_unit.words(tried.speed_Hz)}"
         parts = f"of the eccentricities {until}, from short runs on these and on {around} x {along} cells"
         return Decision("expected error", f"{tried.error:.2g}", parts)
     parts = "of the eccentricities before a whirl grows" if case.films else "of the displacements, over the length"

@@ -227,6 +227,7 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
 
 def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
     from frbcli.cycles.columns import special_columns
+    from frbcli.cycles.result import SPEED
 
     terminal.show(found.case.heading, table_of(special_columns(found.films, found.over, found.unit), found.special))
     for number, branch in enumerate(found.branches):
@@ -235,12 +236,16 @@ def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
             terminal.sentence(f"Branch {number + 1} has no cycles. {branch.note}")
             continue
         stable = sum(point.stable for point in branch.points)
-        told = f"{len(values)} cycles from {min(values):.4g} to {max(values):.4g} {found.unit}, {stable} stable."
+        span = f"{min(values):.4g} to {max(values):.4g} {found.unit}"
+        if found.over == SPEED:
+            span = terminal.speeds.span(min(values), max(values))
+        told = f"{len(values)} cycles from {span}, {stable} stable."
         terminal.sentence(f"Branch {number + 1}: {told} {branch.note}")
     for number, branch in enumerate(found.branches):
         for point in branch.points:
             if point.kind == ASKED:
-                terminal.result(f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {_in_words(point)}")
+                at = terminal.speeds.words(point.speed_Hz)
+                terminal.result(f"{at}, branch {number + 1}: {_in_words(point)}")
     _tell_with_unbalance(terminal, found)
     for note in (*found.notes, *_left_out(found, with_unbalance)):
         terminal.sentence(note)
@@ -249,7 +254,7 @@ def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
 
 def _in_words(point: CyclePoint) -> str:
     """A cycle at a speed that was asked for, with the uncertainties in the last digits."""
-    from frbcli.columns import with_uncertainty
+    from frbcli.units import with_uncertainty
 
     film, found = int(point.eccentricity_max.argmax()), point.eccentricity_max_uncertainty
     frequency = with_uncertainty(point.frequency_Hz, point.frequency_uncertainty_Hz, 3)
@@ -264,16 +269,16 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
 
     for number, branch in enumerate(found.branches):
         for reason in dict.fromkeys(missing.reason for missing in branch.missing):
-            speeds = [f"{missing.speed_Hz:.4g}" for missing in branch.missing if missing.reason == reason]
-            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl at {', '.join(speeds)} Hz: {reason}.")
+            at = terminal.speeds.listed(missing.speed_Hz for missing in branch.missing if missing.reason == reason)
+            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl at {at}: {reason}.")
     whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
     if not whirls:
         return
     terminal.show("With unbalance", table_of(WHIRLS, whirls))
     for stable, told in ((False, "Unstable"), (None, "Whether it is stable could not be seen")):
-        speeds = [f"{whirl.speed_Hz:.4g}" for _, whirl in whirls if whirl.stable is stable and not whirl.kind]
+        speeds = [whirl.speed_Hz for _, whirl in whirls if whirl.stable is stable and not whirl.kind]
         if speeds:
-            terminal.result(f"{told}: the whirl at {', '.join(speeds)} Hz.")
+            terminal.result(f"{told}: the whirl at {terminal.speeds.listed(speeds)}.")
 
 
 def _left_out(found: LimitCycles, with_unbalance: bool) -> list[str]:

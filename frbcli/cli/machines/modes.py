@@ -69,10 +69,11 @@ def tell_held(terminal: Terminal, modes: Modes) -> None:
     springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
     every = -(-len(modes.points) // LONGEST_TABLE)
     rows = [
-        (f"{point.speed_Hz:.4g}", *_cells(point.directed("forward")), *_cells(point.directed("backward")))
+        (terminal.speeds.number(point.speed_Hz),
+         *_cells(point.directed("forward")), *_cells(point.directed("backward")))
         for point in modes.points[::every]
-    ]
-    columns = ("Hz", *("forward",) * TOLD, *("backward",) * TOLD)
+    ]  # fmt: skip
+    columns = (terminal.speeds.name, *("forward",) * TOLD, *("backward",) * TOLD)
     on = f"on {springs}" if springs else "of the free rotor"
     title = f"Natural frequencies {on}: conical, cylindrical, bending"
     terminal.table(title, columns, rows)
@@ -110,7 +111,7 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
 
     with computing(terminal, case, kernels="rest"):
         found = damped_modes(case, speed_Hz)
-    terminal.show(f"Damped modes at {speed_Hz:.5g} Hz", found.table())
+    terminal.show(f"Damped modes at {terminal.speeds.words(speed_Hz)}", found.table())
     if not found.modes:
         terminal.result("No mode oscillates.")
         places = replace(places, picture=None)

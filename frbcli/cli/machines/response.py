@@ -16,6 +16,7 @@ from frbcli.cli.options import OPERATING_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
+from frbcli.units import SpeedUnit
 
 if TYPE_CHECKING:
     from frbcli.analysis.orders.order_tracking import OrderTrack
@@ -125,19 +126,20 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
 def _tell(terminal: Terminal, found: Response, reduced: Reduction | None, every_speed: bool) -> None:
     import numpy as np
 
-    from frbcli.columns import table_of, with_uncertainty
+    from frbcli.columns import table_of
     from frbcli.linear.columns import PEAKS, RESPONSE
 
     shown = found.points[:MOST_POINTS]
     every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
-    count, validity, cells = len(found.points), found.validity, found.table().cells(RESPONSE)
+    count, validity = len(found.points), found.validity
+    cells = found.table().with_speeds_in(terminal.speeds).cells(RESPONSE)
     in_films, rows = bool(found.films), []
     for i in range(every - 1, len(found.speeds_Hz), every):
         speed, _, _, growth, eccentricity = cells[i * count]
         motions = (f"{amplitude} {phase}" for _, amplitude, phase, *_ in cells[i * count : i * count + len(shown)])
         rows.append((speed, *motions, growth, *([f"{eccentricity}{MARKS[validity[i]]}"] if in_films else [])))
     named = [name.replace("_", " ") for name in shown]
-    columns = ("Hz", *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
+    columns = (terminal.speeds.name, *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
     terminal.table(found.case.heading, columns, rows)
     if len(found.points) > len(shown):
         rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
@@ -147,10 +149,11 @@ def _tell(terminal: Terminal, found: Response, reduced: Reduction | None, every_
     tell_reduction(terminal, reduced)
     for sentence in _excitation(found):
         terminal.sentence(sentence)
-    for sentence in _doubts(found):
+    for sentence in _doubts(found, terminal.speeds):
         terminal.sentence(sentence)
-    told = [with_uncertainty(peak.speed_Hz, peak.speed_uncertainty_Hz, 3) for peak in found.critical_speeds]
-    terminal.result(f"Peaks at {', '.join(told)} Hz." if told else "No peak in the range.")
+    unit = terminal.speeds
+    told = [unit.cell(peak.speed_Hz, peak.speed_uncertainty_Hz, 3) for peak in found.critical_speeds]
+    terminal.result(f"Peaks at {', '.join(told)} {unit.name}." if told else "No peak in the range.")
     if told:
         terminal.show("Critical speeds", table_of(PEAKS, found.critical_speeds), RESPONSE)
     if any(peak.amplitude is None for peak in found.critical_speeds):
@@ -175,7 +178,7 @@ def _excitation(found: Response) -> list[str]:
     return [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
 
 
-def _doubts(found: Response) -> list[str]:
+def _doubts(found: Response, unit: SpeedUnit) -> list[str]:
     """Sentences on motions that linear coefficients do not describe."""
     from frbcli.linear.response import BEYOND_GAP, DOUBTFUL, DOUBTFUL_MOTION
 
@@ -185,19 +188,19 @@ def _doubts(found: Response) -> list[str]:
                         for kind in (DOUBTFUL_MOTION, BEYOND_GAP))  # fmt: skip
     if doubtful:
         sentences.append(
-            f"?: doubtful at {_among(doubtful, speeds)}. A journal moves over more than {DOUBTFUL:g} of the gap that "
-            "its resting position leaves: its amplitude may be wrong by more than 15 %."
+            f"?: doubtful at {_among(doubtful, speeds, unit)}. A journal moves over more than {DOUBTFUL:g} of the gap "
+            "that its resting position leaves: its amplitude may be wrong by more than 15 %."
         )
     if beyond:
         sentences.append(
-            f"!: not possible at {_among(beyond, speeds)}. The orbit of a journal leaves its gap, up to an "
+            f"!: not possible at {_among(beyond, speeds, unit)}. The orbit of a journal leaves its gap, up to an "
             f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance computes the motion."
         )
     return sentences
 
 
-def _among(some: list[float], speeds: Array) -> str:
+def _among(some: list[float], speeds: Array, unit: SpeedUnit) -> str:
     """Some of the speeds of a response as a reader takes them."""
     if len(some) == 1:
-        return f"{some[0]:.4g} Hz"
-    return f"{len(some)} of {len(speeds)} speeds, {min(some):.4g} to {max(some):.4g} Hz"
+        return unit.words(some[0])
+    return f"{len(some)} of {len(speeds)} speeds, {unit.span(min(some), max(some))}"

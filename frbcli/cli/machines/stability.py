@@ -22,6 +22,7 @@ from frbcli.cli.machines.stability_table import (
 from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
+from frbcli.units import PER_MINUTE, SpeedUnit
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -84,7 +85,7 @@ def command(
     if natural and _beside_bearings(found):
         terminal.result("On supports, the modes are those of the whole machine: frb stability --shapes SPEED.")
     elif len(natural) == 1 and found.points[-1].rests:
-        at = f"{found.points[-1].speed_Hz:.4g} Hz"
+        at = terminal.speeds.words(found.points[-1].speed_Hz)
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
         {
@@ -110,14 +111,14 @@ def _tell(
 
     tell_points(terminal, found, every_speed)
     tell_coefficient_error(terminal, found.points)
-    terminal.sentence(_sentence(found))
+    terminal.sentence(_sentence(found, terminal.speeds))
     tell_reduction(terminal, reduced)
     tell_collar(terminal, found)
     warmest = found.points[-1]
     if warmest.warm is not None:
-        tell_heat(terminal, warmest.warm, f"heat at {warmest.speed_Hz:.4g} Hz")
+        tell_heat(terminal, warmest.warm, f"heat at {terminal.speeds.words(warmest.speed_Hz)}")
     if kind is not None:
-        terminal.sentence(_character(kind))
+        terminal.sentence(_character(kind, terminal.speeds))
     for film in unfed_films(found.case):
         terminal.sentence(film.remark)
     if step_times(found.case):
@@ -148,26 +149,27 @@ def _beside_bearings(found: Stability) -> bool:
     return bool(beside_bearings(found.case))
 
 
-def _sentence(found: Stability) -> str:
+def _sentence(found: Stability, unit: SpeedUnit) -> str:
     threshold = found.threshold
     if threshold is None:
         return found.note
     return (
-        f"Threshold of stability: above {threshold.speed_Hz:.1f} Hz the rotor whirls, initially with "
+        f"Threshold of stability: above {unit.words(threshold.speed_Hz, 1)} the rotor whirls, initially with "
         f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed"
-        f"{_uncertain(threshold)}.{found.note}"
+        f"{_uncertain(threshold, unit)}.{found.note}"
     )
 
 
-def _uncertain(threshold: Threshold) -> str:
+def _uncertain(threshold: Threshold, unit: SpeedUnit) -> str:
     """The expected errors of a threshold, where they are known."""
     if math.isnan(threshold.speed_uncertainty_Hz):
         return ""
     speed, frequency = threshold.speed_uncertainty_Hz, threshold.frequency_uncertainty_Hz
-    return f" (expected errors {speed:.1g} and {frequency:.1g} Hz)"
+    of_speed = f"{PER_MINUTE * speed:.1g} rpm" if unit.rpm else f"{speed:.1g}"
+    return f" (expected errors {of_speed} and {frequency:.1g} Hz)"
 
 
-def _character(kind: ThresholdKind) -> str:
+def _character(kind: ThresholdKind, unit: SpeedUnit) -> str:
     """Whether a threshold is soft or hard."""
     if kind.criticality == "supercritical":
         return "The threshold is soft (supercritical): the whirl grows with the speed from nothing."
@@ -175,7 +177,7 @@ def _character(kind: ThresholdKind) -> str:
         return "The threshold is hard (subcritical): the whirl jumps to a large one."
     return (
         "The threshold is hard (subcritical): the whirl jumps to a large one, which a "
-        f"disturbance leads to from {kind.fold_Hz:.1f} Hz on."
+        f"disturbance leads to from {unit.words(kind.fold_Hz, 1)} on."
     )
 
 

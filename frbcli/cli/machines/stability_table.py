@@ -10,7 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from frbcli.columns import heads, table_of
-from frbcli.linear.columns import FILM, MODES, SPEED, STABILITY
+from frbcli.linear.columns import FILM, MODES, STABILITY
 from frbcli.linear.thrust.columns import AXIAL
 
 if TYPE_CHECKING:
@@ -33,9 +33,10 @@ def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None
     most = min(MOST_SPEEDS, max(1, MOST_LINES // films))
     every = 1 if every_speed else math.ceil(len(found.points) / most)
     shown = found.points[every - 1 :: every]
-    rows = [line for point in shown for line in (_film_lines(point) if several else _lines(point))]
-    speed, place, mode = (heads(columns, STABILITY) for columns in ((SPEED,), FILM, MODES))
-    columns = (*speed, "film", *place, *mode) if several else (*speed, *place, *mode[:2] * MODES_TOLD, *mode[2:])
+    lines, unit = _film_lines if several else _lines, terminal.speeds
+    rows = [line for point in shown for line in lines(point, unit.number(point.speed_Hz))]
+    place, mode = (heads(columns, STABILITY) for columns in (FILM, MODES))
+    columns = (unit.name, "film", *place, *mode) if several else (unit.name, *place, *mode[:2] * MODES_TOLD, *mode[2:])
     terminal.table(found.case.heading, columns, rows)
     if several:
         terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
@@ -49,16 +50,16 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
     missing = [point for point in points if point.problem]
     if len(missing) > 1:
         speeds = [point.speed_Hz for point in missing]
-        span = f"from {min(speeds):.4g} to {max(speeds):.4g} Hz"
-        terminal.result(f"No modes at {len(missing)} of {len(points)} speeds {span}. The first of them:")
+        span = terminal.speeds.span(min(speeds), max(speeds))
+        terminal.result(f"No modes at {len(missing)} of {len(points)} speeds from {span}. The first of them:")
     for point in missing[:1]:
         terminal.sentence(point.problem)
 
 
-def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
+def _lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
     if not point.rests:
-        return [(_speed(point), NONE, *[""] * (2 * MODES_TOLD + 2))]
+        return [(speed, NONE, *[""] * (2 * MODES_TOLD + 2))]
     modes = point.modes_with_errors[: max(MODES_TOLD, len(point.growing))]
     cells = table_of(MODES, modes).cells(STABILITY)
     place = (table_of(FILM, point.films[:1]).cells(STABILITY) or [("-", "-")])[0]
@@ -66,27 +67,23 @@ def _lines(point: StabilityPoint) -> list[tuple[str, ...]]:
     for start in range(0, max(1, len(cells)), MODES_TOLD):
         pairs = [cell for mode in cells[start : start + MODES_TOLD] for cell in mode[:2]]
         fastest = cells[start][2] if cells else "-"
-        head = (_speed(point), *place) if start == 0 else ("",) * 3
+        head = (speed, *place) if start == 0 else ("",) * 3
         lines.append((*head, *pairs, *[""] * (2 * MODES_TOLD - len(pairs)), fastest))
     return lines
 
 
-def _film_lines(point: StabilityPoint) -> list[tuple[str, ...]]:
+def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
     """A line for each film, and beside them one for each mode."""
     if not point.rests:
-        return [(_speed(point), NONE, *[""] * 5)]
+        return [(speed, NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
     places = table_of(FILM, point.films).cells(STABILITY)
     films = [(film.name, *place) for film, place in zip(point.films, places, strict=True)]
     modes = table_of(MODES, point.modes_with_errors[:count]).cells(STABILITY)
     films += [("",) * 3] * (count - len(films))
     modes += [("",) * 3] * (count - len(modes))
-    speeds = [_speed(point), *[""] * (count - 1)]
-    return [(speed, *film, *mode) for speed, film, mode in zip(speeds, films, modes, strict=True)]
-
-
-def _speed(point: StabilityPoint) -> str:
-    return table_of((SPEED,), [point]).cells(STABILITY)[0][0]
+    speeds = [speed, *[""] * (count - 1)]
+    return [(head, *film, *mode) for head, film, mode in zip(speeds, films, modes, strict=True)]
 
 
 def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
@@ -115,7 +112,7 @@ def tell_collar(terminal: Terminal, found: Stability) -> None:
     for point in at_rest[-1:]:
         cells = dict(zip(heads(AXIAL, STABILITY), table_of(AXIAL, [point.axial]).cells(STABILITY)[0], strict=True))
         told = ", ".join(f"{head} {cell}" for head, cell in cells.items())
-        terminal.sentence(f"Collar of the thrust bearing at {_speed(point)} Hz: {told}.")
+        terminal.sentence(f"Collar of the thrust bearing at {terminal.speeds.words(point.speed_Hz)}: {told}.")
 
 
 def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]) -> None:
@@ -125,5 +122,5 @@ def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]
         error, speed = max(known)
         terminal.sentence(
             "Expected error of the films' stiffness and damping, from other meshes: up to "
-            f"{float(f'{100.0 * error:.1g}'):g} % of their largest entry, at {speed:.4g} Hz."
+            f"{float(f'{100.0 * error:.1g}'):g} % of their largest entry, at {terminal.speeds.words(speed)}."
         )

@@ -84,6 +84,7 @@ def command(
     """
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
+    from frbcli.case.course.speed import given_speed_unit
     from frbcli.results.columns import EVENTS
 
     if listed:
@@ -97,6 +98,7 @@ def command(
     check_outputs(picture=target)
     with display(terminal, READING):
         run = run_of(run_file, measurement, terminal, relative=orders is None and not view.linear)
+    terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
     axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
         told = _spectra(terminal, run, signal, axis, view, target)
@@ -106,7 +108,7 @@ def command(
         told["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
-            for sentence in about_critical_speeds(run, run.events):
+            for sentence in about_critical_speeds(run, run.events, terminal.speeds):
                 terminal.sentence(sentence)
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
     terminal.emit({**document, "direction": view.direction, **told})
@@ -141,7 +143,7 @@ def _orders(
     draw_wanted(terminal, lambda: orders_figure(run, tracks, axis, view.direction, view.log), target, "orders")
     rows = [_largest(track, view.direction) for track in tracks]
     for row in rows:
-        most = f"{MICRO * row['amplitude_max_m']:.3g} um at {row['speed_Hz']:.1f} Hz"
+        most = f"{MICRO * row['amplitude_max_m']:.3g} um at {terminal.speeds.words(row['speed_Hz'], 1)}"
         terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
     return {"orders": rows}
 

@@ -154,7 +154,7 @@ def _watch(terminal: Terminal, shown: Display) -> Observer:
 
     def observe(progress: Progress) -> None:
         nonlocal said
-        show(progress_line(progress))
+        show(progress_line(progress, terminal.speeds))
         if not said and progress.cpu_s > SLOW_AFTER_s and progress.over_plan > SLOWER:
             said = True
             left = (
@@ -176,11 +176,12 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
 
     try:
         with display(terminal) as shown:
-            found = verify(case, run, lambda progress: shown.redraw(f"again\n{progress_line(progress)}"))
+            found = verify(case, run, lambda progress: shown.redraw(f"again\n{progress_line(progress, shown.speeds)}"))
     except KeyboardInterrupt:
         terminal.remark("Interrupted before the end of the verification.")
         return {"status": "interrupted"}
-    onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {abs(found.onset_Hz):.2g} Hz"
+    moved = terminal.speeds.words(abs(found.onset_Hz))
+    onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {moved}"
     what = "eccentricity changes" if case.films else "displacements change, over their length,"
     terminal.result(
         f"verified: with half the tolerance and step size the {what} by {found.eccentricity:.1e}\n"
@@ -232,8 +233,8 @@ def _report(case: Case, run: Run, terminal: Terminal) -> None:
     if run.events:
         events = with_whirl_names(run.events)
         terminal.show("events", table_of(EVENTS, events))
-        for sentence in about_certainty(events, run.cost):
+        for sentence in about_certainty(events, run.cost, terminal.speeds):
             terminal.sentence(sentence)
-    for sentence in about_critical_speeds(run, run.events):
+    for sentence in about_critical_speeds(run, run.events, terminal.speeds):
         terminal.sentence(sentence)
     terminal.table("cost and error", ("", "", ""), account(run))

@@ -132,7 +132,7 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
 def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
     from frbcli.studies.comparison_columns import COUPLINGS, MODELS
 
-    name, table = COUPLINGS if couplings else MODELS, found.table()
+    name, table = COUPLINGS if couplings else MODELS, found.table().with_speeds_in(terminal.speeds)
     rows = table.cells(name)
     if couplings and len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1:
         rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{coupling}", *rest)
@@ -151,12 +151,15 @@ def beside_measured(
     outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
+    from frbcli.case.course.speed import given_speed_unit
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 
     places = outputs.check(beside(run_file, "-measured.png"))
     with display(terminal):
-        found = against_measured(read_run(run_file), run_of(file, measurement, terminal), signal)
+        run = read_run(run_file)
+        found = against_measured(run, run_of(file, measurement, terminal), signal)
+    terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
     _tell(terminal, found)
     terminal.emit(
         {
@@ -180,7 +183,7 @@ def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
             for events in (found.computed_events, found.measured_events)
         ]
         if any(speed is not None for speed in speeds):
-            rows.append((kind, *("-" if speed is None else f"{speed:.1f} Hz" for speed in speeds)))
+            rows.append((kind, *("-" if speed is None else terminal.speeds.words(speed, 1) for speed in speeds)))
     where = found.point.replace("_", " ")
     terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
     terminal.show("ridges", table_of(DEVIATIONS, found.deviations()))

@@ -19,6 +19,7 @@ from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
+from frbcli.units import SpeedUnit
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -216,7 +217,8 @@ def _progress(shown: Display) -> Callable[[SweepPoint, int, int], None]:
         before.append(done - 1)
         computed = done - before[0]
         left = (time.monotonic() - began) / computed * (whole - done)
-        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {point.message or _result(point)}")
+        told = point.message or _result(point, shown.speeds)
+        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {told}")
 
     return tell
 
@@ -225,13 +227,13 @@ def _named(point: SweepPoint) -> str:
     return ", ".join(f"{key}={value}" for key, value in point.settings.items())
 
 
-def _result(point: SweepPoint) -> str:
+def _result(point: SweepPoint, unit: SpeedUnit) -> str:
     event = point.first("threshold") or point.first("onset")
-    return point.status if event is None else f"{event['kind']} {event['speed_Hz']:.1f} Hz"
+    return point.status if event is None else f"{event['kind']} {unit.words(event['speed_Hz'], 1)}"
 
 
 def _report(found: Sweep, terminal: Terminal) -> None:
-    table = found.table()
+    table = found.table().with_speeds_in(terminal.speeds)
     terminal.table(found.case.heading, table.heads(), table.cells()[:LONGEST_TABLE])
     if len(found.points) > LONGEST_TABLE:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
@@ -266,16 +268,16 @@ def of_machines(
     """Tables and picture of the scatter, and its part of the JSON document."""
     from frbcli.studies.sweep.scatter import scatter
 
-    seen = scatter(found, below_Hz)
-    rows = [(f"{percent:g} %", _hertz(speed)) for percent, speed in seen.percentiles]
+    seen, unit = scatter(found, below_Hz), terminal.speeds
+    rows = [(f"{percent:g} %", _within(speed, unit)) for percent, speed in seen.percentiles]
     terminal.table(f"{seen.count} machines", ("share", "whirl at or below"), rows)
     if seen.sensitivities:
         terminal.table("sensitivities", ("key", "per standard deviation", "rank correlation"), [
-            (one.key, f"{one.per_deviation_Hz:+.3g} Hz", f"{one.rank:+.2f}") for one in seen.sensitivities
+            (one.key, unit.words(one.per_deviation_Hz), f"{one.rank:+.2f}") for one in seen.sensitivities
         ])
         terminal.result(f"A linear model explains {100.0 * seen.explained:.0f} % of the variance of the speed.")
     low, high = (100.0 * limit for limit in seen.interval)
-    told = f"{100.0 * seen.share:.1f} % of the machines whirl below {seen.below_Hz:.4g} Hz"
+    told = f"{100.0 * seen.share:.1f} % of the machines whirl below {unit.words(seen.below_Hz)}"
     terminal.result(f"{told} (95 % interval {low:.1f} to {high:.1f} %).")
     if seen.left_out:
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
@@ -290,7 +292,7 @@ def of_machines(
     return document, drawn
 
 
-def _hertz(speed: float) -> str:
+def _within(speed: float, unit: SpeedUnit) -> str:
     if math.isinf(speed):
         return "none up to the highest speed"
-    return "the lowest speed" if speed == 0.0 else f"{speed:.1f} Hz"
+    return "the lowest speed" if speed == 0.0 else unit.words(speed, 1)

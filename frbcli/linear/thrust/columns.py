@@ -5,7 +5,7 @@ from __future__ import annotations
 from operator import attrgetter
 from typing import Any
 
-from frbcli.columns import ENTRIES, Column, Shown, named
+from frbcli.columns import ENTRIES, Column, Shown, named, speed_shown
 
 FILMS, TILT_STIFFNESS, TILT_DAMPING = "films", "tilt stiffness", "tilt damping"
 STABILITY = "stability"
@@ -23,7 +23,7 @@ def _direct_and_cross(matrix: Any) -> str:
 # Of a ThrustState
 THRUST = (
     Column("bearing", "", "name of the thrust bearing, empty of one alone"),
-    Column("speed", "Hz", "rotor speed", shown=tuple(Shown("Hz", ".4g", table=table) for table in EVERY)),
+    Column("speed", "Hz", "rotor speed", shown=tuple(speed_shown(table=table) for table in EVERY)),
     Column("gap", "m", "smallest gap of the runner without tilt",
            shown=(*(Shown("gap", ".3g", "um", table) for table in EVERY), Shown("gap", _in_um, table=STABILITY)),
            more="over the lands; with pads on both sides on the side that `load` presses on"),

@@ -12,6 +12,7 @@ from frbcli.linear.stability import Stability
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.linear.threshold import Threshold
 from frbcli.plot.style import BAND, BLACK, BLUE, GREY, VERMILION, new_figure, styled
+from frbcli.units import SpeedUnit
 
 ABOVE_LOWEST = 1.2  # the frequency axis ends with the rotor speed, but not below the slowest mode
 DOT, SMALL_DOT = 15.0, 6.0  # pt^2
@@ -34,7 +35,7 @@ def campbell_figure(stability: Stability) -> Figure:
         draw_frequencies(above, points)
         _draw_growth(below, stability.sweep)
         if stability.threshold is not None:
-            _mark_threshold((above, below), stability.threshold)
+            _mark_threshold((above, below), stability.threshold, stability.case.speed_unit)
         figure.legend(*above.get_legend_handles_labels(), loc="outside lower center", ncols=4)
     return figure
 
@@ -85,7 +86,7 @@ def _draw_growth(axes: Axes, points: Sequence[StabilityPoint]) -> None:
     axes.set_ylabel("growth in 1/s")
 
 
-def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold) -> None:
+def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold, unit: SpeedUnit) -> None:
     above, _ = panels
     error = threshold.speed_uncertainty_Hz
     for axes in panels:
@@ -95,7 +96,8 @@ def _mark_threshold(panels: tuple[Axes, Axes], threshold: Threshold) -> None:
     above.plot(threshold.speed_Hz, threshold.frequency_Hz, marker="D", color=BLACK, markersize=5, zorder=4)
     left = threshold.speed_Hz > 0.5 * above.get_xlim()[1]
     above.annotate(
-        f"threshold {threshold.speed_Hz:.1f} Hz\nwhirl {threshold.frequency_Hz:.1f} Hz = {threshold.whirl_ratio:.3f} ω",
+        f"threshold {unit.words(threshold.speed_Hz, 1)}\n"
+        f"whirl {threshold.frequency_Hz:.1f} Hz = {threshold.whirl_ratio:.3f}X",
         (threshold.speed_Hz, above.get_ylim()[1]),
         xytext=(-5 if left else 5, -4),
         textcoords="offset points",

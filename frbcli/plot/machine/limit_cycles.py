@@ -57,7 +57,7 @@ def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> 
     case = found.case
     count = len(found.films)
     with styled():
-        at = "" if found.over == SPEED else f" at {found.equilibria[0].speed_Hz:g} Hz"
+        at = "" if found.over == SPEED else f" at {case.speed_unit.words(found.equilibria[0].speed_Hz)}"
         words = f"resting positions and limit cycles{at}, dashed where unstable"
         figure = new_figure(case.heading, words, 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
@@ -119,7 +119,7 @@ def _frequencies(axes: Axes, found: LimitCycles) -> None:
     speeds = np.array([point.value for point in found.equilibria])
     ends = np.array([speeds.min(initial=speeds.max()), speeds.max()])
     rotor = np.array([point.speed_Hz for point in found.equilibria])
-    axes.plot(speeds, 0.5 * rotor, color=GREY, linestyle=(0, (1, 2)), label="ω/2")
+    axes.plot(speeds, 0.5 * rotor, color=GREY, linestyle=(0, (1, 2)), label="0.5X")
     rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
     for ring in range(rings.shape[1] if rings.size else 0):
         own = rings[:, ring]

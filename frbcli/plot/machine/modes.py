@@ -41,7 +41,7 @@ def modes_figure(modes: Modes) -> Figure:
         for axes, mode in zip(shapes, last.directed("forward"), strict=False):
             _draw_shape(axes, modes, mode)
         along = "along the shaft" if case.rotor.symmetric else "along the shaft in mm"
-        shapes[-1].set_xlabel(f"{along}, at {last.speed_Hz:.4g} Hz")
+        shapes[-1].set_xlabel(f"{along}, at {case.speed_unit.words(last.speed_Hz)}")
         for axes in shapes[:-1]:
             axes.tick_params(labelbottom=False)
         figure.legend(*campbell.get_legend_handles_labels(), loc="outside lower left", ncols=3)
@@ -89,7 +89,7 @@ def shapes_figure(found: DampedModes) -> Figure:
     columns = min(COLUMNS, len(shown))
     rows = math.ceil(len(shown) / COLUMNS) or 1
     with styled():
-        words = f"damped modes about the resting position at {found.speed_Hz:.4g} Hz"
+        words = f"damped modes about the resting position at {case.speed_unit.words(found.speed_Hz)}"
         figure = new_figure(case.heading, words, width=3.3 * max(columns, 2), height=0.5 + 3.0 * rows)
         for number, mode in enumerate(shown):
             axes: Any = figure.add_subplot(rows, max(columns, 1), number + 1, projection="3d")

@@ -113,7 +113,8 @@ def draw_amplitude(axes: Axes, found: Response) -> None:
         lower = sum(peak.speed_Hz - other.speed_Hz < close for other in found.critical_speeds[:number])
         factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
         top = 1.0 - LABEL_LENGTH * (lower % LEVELS)
-        axes.annotate(f"{peak.speed_Hz:.4g} Hz, {peak.direction}{factor}", (peak.speed_Hz, top), (-2, -3),
+        at = found.case.speed_unit.words(peak.speed_Hz)
+        axes.annotate(f"{at}, {peak.direction}{factor}", (peak.speed_Hz, top), (-2, -3),
                       xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=6,
                       ha="right", va="top", color=GREY)  # fmt: skip
     if set(found.validity) != {SOUND}:

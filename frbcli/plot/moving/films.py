@@ -12,6 +12,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, speed_at
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
 from frbcli.plot.run.envelope import at_times
 from frbcli.plot.signals import cut, heading
@@ -158,4 +159,5 @@ def _draw_maps(row: Any, kept: KeptFilm, frame: int) -> tuple[list[Any], list[An
 
 def _told(run: Run, kept: KeptFilm, frame: int) -> str:
     now = float(kept.times[frame])
-    return f"{now:.4f} s, {speed_at(run, now):.1f} Hz, eccentricity {np.hypot(*kept.places[frame]):.3f}"
+    speed = given_speed_unit(run.case_text).words(speed_at(run, now), 1)
+    return f"{now:.4f} s, {speed}, eccentricity {np.hypot(*kept.places[frame]):.3f}"

@@ -11,6 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import joined, points, speed_at
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
 from frbcli.plot.run.envelope import at_times
 from frbcli.plot.run.orbit import LAST_s
@@ -56,6 +57,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
         trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
+    unit = given_speed_unit(run.case_text)
     told = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
 
     def draw(frame: int) -> None:
@@ -65,7 +67,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
             trail.set_data(x[first:last], y[first:last])
             dot.set_data(x[last - 1 : last], y[last - 1 : last])
         now = float(times[last - 1])
-        told.set_text(f"{now:.4f} s, {speed_at(run, now):.1f} Hz")
+        told.set_text(f"{now:.4f} s, {unit.words(speed_at(run, now), 1)}")
 
     return figure, draw
 

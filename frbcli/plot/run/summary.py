@@ -11,6 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.plot.run.displacement import draw_distances
 from frbcli.plot.run.eccentricity import draw_eccentricity
 from frbcli.plot.run.envelope import curve
@@ -32,6 +33,7 @@ from frbcli.plot.style import (
 from frbcli.results.columns import touching_name
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
+from frbcli.units import SpeedUnit
 
 SIGNAL = "journal"
 FEWEST_SAMPLES = 64  # for a spectrum; a run that ends before has none
@@ -56,7 +58,7 @@ def summary_figure(run: Run) -> Figure:
     """
     begin, end = ends(run)
     title, subtitle = heading([run])
-    marked = _marks(events(run))
+    marked = _marks(events(run), given_speed_unit(run.case_text))
     words = [subtitle]
     if not run.events and not is_searchable(run):
         words.append("too long for a search for events")
@@ -108,22 +110,23 @@ def _draw_speed(axes: Axes, run: Run) -> None:
     axes.set_ylabel("speed in Hz")
 
 
-def _marks(found: list[dict[str, Any]]) -> list[tuple[float, str]]:
+def _marks(found: list[dict[str, Any]], unit: SpeedUnit) -> list[tuple[float, str]]:
     """Time and words of what is marked; of the whirls of floating rings the first onset of each that has a name."""
     marks, known = [], set()
     for event, name in zip(found, whirl_names(found), strict=True):
         if not name:
-            marks.append((event["t_s"], _words(event)))
+            marks.append((event["t_s"], _words(event, unit)))
         elif event["kind"] == "onset" and name not in known:
             known.add(name)
-            marks.append((event["t_s"], _words(event | {"kind": name.replace("_i", "$_i$").replace("_o", "$_o$")})))
+            shown = name.replace("_i", "$_i$").replace("_o", "$_o$")
+            marks.append((event["t_s"], _words(event | {"kind": shown}, unit)))
     return marks
 
 
-def _words(event: dict[str, Any]) -> str:
+def _words(event: dict[str, Any], unit: SpeedUnit) -> str:
     """Label of an event: kind or who touches what, speed, frequency."""
     film = f" {event['film'].replace('_', ' ')}" if event.get("film") else ""
     name = touching_name(event) or f"{NAMES.get(event['kind'], event['kind'])}{film}"
     ratio = event.get("frequency_ratio")
-    share = f", {ratio:.2f} ω" if ratio is not None and ratio != 1.0 else ""
-    return f"{name}\n{event['speed_Hz']:.1f} Hz{share}"
+    share = f", {ratio:.2f}X" if ratio is not None and ratio != 1.0 else ""
+    return f"{name}\n{unit.words(event['speed_Hz'], 1)}{share}"

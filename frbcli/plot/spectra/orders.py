@@ -44,5 +44,5 @@ def orders_figure(
 
 
 def named(order: float) -> str:
-    """Label of an order, e.g. "0.5 ω"."""
-    return "ω" if order == 1.0 else f"{order:g} ω"
+    """Label of an order, such as 0.5X."""
+    return f"{order:g}X"

@@ -141,7 +141,7 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
 def reading(found: Spectrogram) -> str:
     """Window of the spectra, and the largest loss of the synchronous line."""
     low = float(np.max(found.low_dB, initial=0.0))
-    told = f": the line ω is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
+    told = f": the line 1X is up to {low:.1f} dB low, use --order 1" if low >= TOLD_dB else ""
     return f"window {1e3 * found.window_s:.3g} ms{told}"
 
 
@@ -204,11 +204,11 @@ def orders(
 ) -> list[tuple[str, Array]]:
     """The synchronous line, those of harmonic loads, and the frequencies of free whirls; or lines of chosen orders."""
     if chosen is not None:
-        return [("ω" if order == 1.0 else f"{order:g} ω", order * found.speed_Hz) for order in chosen]
-    lines = [("ω", found.speed_Hz), *((line.name, line.along(found.speed_Hz)) for line in load_lines(run))]
+        return [(f"{order:g}X", order * found.speed_Hz) for order in chosen]
+    lines = [("1X", found.speed_Hz), *((line.name, line.along(found.speed_Hz)) for line in load_lines(run))]
     bearing = bearing_of(run, signal)
     if bearing not in points(run.signals, "ring"):
-        return [*lines, ("ω/2", found.speed_Hz / 2)]
+        return [*lines, ("0.5X", found.speed_Hz / 2)]
     turning = joined("ring_speed", bearing, "Hz")
     ring = at_times(run, run.signal(turning), found.time_s) if turning in run else np.zeros(len(found.time_s))
     return [*lines, ("(ω$_R$+ω$_F$)/2", (found.speed_Hz + ring) / 2), ("ω$_F$/2", ring / 2)]
@@ -340,5 +340,5 @@ def load_lines(run: Run) -> tuple[LoadLine, ...]:
     for load in loads:
         order, frequency = abs(load.order), abs(load.frequency) / (2.0 * math.pi)
         if not load.synchronous:
-            found[order, frequency] = LoadLine(f"{order:g} ω" if order else f"{frequency:g} Hz", order, frequency)
+            found[order, frequency] = LoadLine(f"{order:g}X" if order else f"{frequency:g} Hz", order, frequency)
     return tuple(found.values())

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.case.film_tables import THEORIES
 from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
@@ -65,13 +66,14 @@ def comparison_figure(comparison: Comparison) -> Figure:
 def _draw_events(axes: Axes, run: Run, row: int, colour: str, line: Line) -> None:
     """A run as a line as long as it lasts, with its events on it."""
     left, right = axes.get_xlim()
+    unit = given_speed_unit(run.case_text)
     axes.plot(ends(run), [row, row], color=colour, linestyle=line)
     for event in run.events[:MOST_MARKED]:
         at = event["t_s"]
         axes.plot(at, row, marker=MARKS.get(event["kind"], "."), markersize=6.0, color=colour, clip_on=False)
         after = at < left + LEFT_SHARE * (right - left)
         axes.annotate(
-            f"{touching_name(event) or WORDS.get(event['kind'], event['kind'])} {event['speed_Hz']:.1f} Hz",
+            f"{touching_name(event) or WORDS.get(event['kind'], event['kind'])} {unit.words(event['speed_Hz'], 1)}",
             (at, row),
             xytext=(6 if after else -6, 3),
             textcoords="offset points",

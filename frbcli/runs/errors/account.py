@@ -10,6 +10,7 @@ from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
 from frbcli.scene.costs.cost import clock
+from frbcli.units import HERTZ, SpeedUnit
 
 LATE = 0.5  # of the time until which the error is stated: from then on its growth is told
 SLOW_WORDS = (
@@ -51,14 +52,16 @@ def account(run: Run) -> list[tuple[str, str, str]]:
     ]
 
 
-def about_certainty(events: Sequence[Mapping[str, Any]], cost: Mapping[str, Any]) -> list[str]:
+def about_certainty(
+    events: Sequence[Mapping[str, Any]], cost: Mapping[str, Any], unit: SpeedUnit = HERTZ
+) -> list[str]:
     """Sentences on the uncertainties of the events of a run: which events are not certain and why, or what it would
-    cost to know. events: with the names of their whirls."""
+    cost to know. events: with the names of their whirls; unit: of rotor speeds."""
     if SECOND_RUN in cost and any(event.get("certain") is None for event in events):
         return ["No uncertainties of the events: the machine does not begin to run on fewer cells."]
     if SECOND_RUN in cost:
         return [
-            f"Not certain: {event_name(event)} at {event['speed_Hz']:.4g} Hz: {event['reason']}."
+            f"Not certain: {event_name(event)} at {unit.words(event['speed_Hz'])}: {event['reason']}."
             for event in events
             if event.get("certain") is False
         ]

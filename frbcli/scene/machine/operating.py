@@ -9,7 +9,7 @@ from operator import attrgetter
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown
+from frbcli.columns import Column, Shown, speed_shown
 from frbcli.elements.damper import DamperElement
 from frbcli.film.operating import (
     LAMINAR_BELOW,
@@ -51,7 +51,7 @@ FILM_OPERATION = (
     Column("turning", "m", "what centrifugal growth would add", shown=(Shown("by turning", "+.2g", "um"),)),
     Column("viscosity", "Pa s", "viscosity of the oil", shown=(Shown("mPa*s", ".4g", "mPa s"),)),
     Column("speed", "Hz", "speed of journal and shell together", lambda film: film.omega / (2.0 * math.pi),
-           shown=(Shown("Hz", ".4g"),)),
+           shown=(speed_shown(),)),
     Column("reynolds_number", "", "Reynolds number (3.3)", attrgetter("reynolds"), shown=(Shown("Re (3.3)", ".0f"),)),
     Column("laminar", "", "whether (3.3) holds"),
 )  # fmt: skip

@@ -19,7 +19,7 @@ from typing import Any
 
 from frbcli import __version__
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, table_of, with_uncertainty
+from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import InputError
 from frbcli.html import Tabular
 from frbcli.results.files.kinds import TABLES
@@ -33,6 +33,7 @@ from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid, refused
 from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve
 from frbcli.studies.sweep.workers import Workers, check_workers, solved
+from frbcli.units import HERTZ, SpeedUnit
 
 __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "sweep", "write_table"]
 
@@ -329,14 +330,21 @@ def event_columns(kind: str) -> tuple[Column, ...]:
             Column(f"{name}_{quantity}_uncertainty", "Hz", f"uncertainty of the {words} {at}", uncertainty, key="")
         )
         if kind in TOLD:
-            shown = (Shown(head),)
-            found.append(Column(head, "", "", _told(value, uncertainty), shown=shown, key="", flat=False))
+            shown = _with_unit(head, HERTZ)
+            if quantity == "speed":
+                shown = replace(shown, per_minute=_with_unit(head, SpeedUnit(rpm=True)))
+            found.append(Column(head, "", "", _pair(value, uncertainty), shown=(shown,), key="", flat=False))
     return tuple(found)
 
 
-def _told(value: Callable[[Any], float], uncertainty: Callable[[Any], float]) -> Callable[[Any], str | None]:
-    def told(point: Any) -> str | None:
-        number = value(point)
-        return None if math.isnan(number) else f"{with_uncertainty(number, uncertainty(point), 1)} Hz"
+def _with_unit(head: str, unit: SpeedUnit) -> Shown:
+    """A number with its uncertainty and its unit in a cell."""
+    return Shown(head, lambda pair: f"{unit.cell(pair[0], pair[1])} {unit.name}")
 
-    return told
+
+def _pair(value: Callable[[Any], float], uncertainty: Callable[[Any], float]) -> Callable[[Any], Any]:
+    def pair(point: Any) -> tuple[float, float] | None:
+        number = value(point)
+        return None if math.isnan(number) else (number, uncertainty(point))
+
+    return pair

@@ -1,0 +1,79 @@
+"""Rotor speeds in the unit of the case: all that a user of a case in rpm reads; JSON stays in Hz."""
+
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from frbcli.case.reading.load import load_case
+from frbcli.cli.main import run as frb
+from frbcli.units import SpeedUnit
+
+PER_MINUTE = ("--set", "speed.to=18000 rpm")
+HERTZ = ("--set", "speed.to=300 Hz")
+# the command, with how its text names a speed in rpm
+COMMANDS: dict[str, tuple[tuple[str, ...], str]] = {
+    "stability": (("stability", "jeffcott", "--threshold", "--no-picture"), r"above 10632 rpm the rotor whirls"),
+    "response": (("response", "jeffcott", "--no-picture"), r"Peaks at 8512\(1\) rpm"),
+    "bearing": (("bearing", "jeffcott", "--no-picture"), r"rpm: rotor speed"),
+    "limit-cycles": (("limit-cycles", "jeffcott", "--no-picture"), r"cycles from 10249 to \d+ rpm"),
+    "runup": (("runup", "jeffcott", "--no-picture", "--set", "speed.duration=2 s", "-o", "run.h5", "--force"),
+              r"speed, rpm"),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", list(COMMANDS))
+def test_text_is_in_the_unit_of_the_case_and_json_in_hertz(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    words, told = COMMANDS[name]
+    documents = {}
+    for unit, settings in (("rpm", PER_MINUTE), ("Hz", HERTZ)):
+        assert frb([*words, *settings]) == 0
+        text = " ".join(capsys.readouterr().out.split())
+        assert (re.search(told, text) is not None) == (unit == "rpm"), text
+        assert frb([*words, *settings, "--json", "--quiet"]) == 0
+        documents[unit] = without_times(json.loads(capsys.readouterr().out))
+    assert documents["rpm"] == documents["Hz"]
+
+
+def without_times(document: object) -> object:
+    """A document without what follows the clock."""
+    if isinstance(document, dict):
+        return {key: without_times(value) for key, value in document.items() if key not in ("cost", "resumes")}
+    return [without_times(value) for value in document] if isinstance(document, list) else document
+
+
+def test_an_option_in_rpm_turns_the_text_to_rpm(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for asked in (("--speed", "3000 rpm"), ("--speed", "50 Hz", "--rpm")):
+        assert frb(["stability", "jeffcott", "--no-picture", *asked]) == 0
+        said = capsys.readouterr().out
+        assert re.search(r"^ +rpm ", said, re.MULTILINE)
+        assert re.search(r"^ +3000 ", said, re.MULTILINE)
+
+
+@pytest.mark.parametrize(
+    ("settings", "per_minute"),
+    [(("speed.to=3000 r/min",), True), (("speed.to=3 krpm",), True), (("speed.to=300 rad/s",), False), ((), False),
+     ((r'speed={points=[["0 s", "0 rpm"], ["1 s", "900 rpm"]]}',), True), (("speed.duration=1 min",), False),
+     (('motion={eccentricity=0.5, speed="600 rpm"}',), True), (('motion={eccentricity=0.5, speed="6 Hz"}',), False)],
+)  # fmt: skip
+def test_unit_of_a_case(settings: tuple[str, ...], per_minute: bool) -> None:
+    assert load_case("jeffcott", settings).speed_unit.rpm is per_minute
+
+
+def test_speeds_in_words() -> None:
+    hertz, per_minute, both = SpeedUnit(), SpeedUnit(rpm=True), SpeedUnit(both=True)
+    assert (hertz.words(177.2), per_minute.words(177.2)) == ("177.2 Hz", "10632 rpm")
+    assert (hertz.number(0.5), per_minute.number(0.5)) == ("0.5", "30")
+    assert (hertz.cell(204.43, 1.8), per_minute.cell(204.43, 1.8)) == ("204.4(18)", "12266(108)")
+    assert both.words(200.0) == "200.0 Hz, 12000 rpm"
+    assert per_minute.span(10.0, 20.0) == "600 to 1200 rpm"
+    assert per_minute.cell(None) == "-"
