@@ -182,13 +182,13 @@ def compilation_shown(
             from frbcli.solve.time_loop import some_are_kept
 
             most = "at most " if some_are_kept() else ""  # of which this machine needs some, maybe
-            about = f"{most}about {compile_s([case, *also], kernels) * slowness():.0f} s of CPU time."
+            about = f"{most}about {compile_s([case, *also], kernels) * slowness():.0f} s"
             told = now
-            shown.line(f"Compiling the kernels, once: {about}")
+            shown.line(f"Compiling the kernels, once: {about} of CPU time.")
         elif compilations.functions and (shown.redraws or now - told > COMPILING_EVERY_s):
             told = now
             line = f"Compiling the kernels, once: {compilations.functions} functions"
-            shown.line(f"{line}, {compilations.spent_s:.0f} s of {about}")
+            shown.line(f"{line}, {compilations.spent_s:.0f} s of {about}.")
 
     with counted(observe) as compilations:
         yield

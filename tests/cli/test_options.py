@@ -1,15 +1,20 @@
-"""Options that several commands have are one option; the example in each help can be called."""
+"""Options that several commands have are one option; the example in each help can be called; what a shell completes."""
 
 from __future__ import annotations
 
+import os
 import shlex
+import subprocess
+import sys
 
 import click
 import pytest
+from click.shell_completion import ShellComplete
 from click.testing import CliRunner
 
 from frbcli.cli.main import COMMANDS, GROUPS, command_named, frb
 from frbcli.cli.options import UnitOption
+from frbcli.cli.process import main
 
 SHARED = ("--set", "--json", "--quiet", "--csv", "--picture", "--size", "--dpi", "--xlim", "--ylim", "--rpm",
           "--signal", "--cavitation", "--theory", "--coupling", "--format")  # fmt: skip
@@ -60,3 +65,43 @@ def test_a_unit_is_given_alone_or_as_a_multiple(given: str, metres: float) -> No
 def test_what_is_no_unit_of_the_kind_is_refused(given: str) -> None:
     with pytest.raises(click.BadParameter):
         UnitOption("length", "m", "um")(given)
+
+
+def completed(*words: str) -> list[str]:
+    """What follows the words of a line; the last one is the one that is being written."""
+    asked = ShellComplete(frb, {}, "frb", "_FRB_COMPLETE")
+    return [item.value for item in asked.get_completions(list(words[:-1]), words[-1])]
+
+
+def test_commands_and_options() -> None:
+    assert set(COMMANDS) <= set(completed(""))
+    assert completed("wat") == ["waterfall"]
+    assert "--clearance" in completed("waterfall", "--cl")
+    assert "--set" in completed("runup", "--s")
+    assert completed("plot", "--what", "orb") == ["orbit"]
+
+
+@pytest.mark.parametrize("command", ["check", "runup", "stability", "sweep", "bearing"])
+def test_shipped_cases_and_files(command: str) -> None:
+    found = completed(command, "floating-r")
+    assert "floating-ring" in found
+    assert found[-1] == "floating-r"  # stands for the files of the folder
+    assert "jeffcott" not in found
+
+
+def test_keys_of_the_case_on_the_line() -> None:
+    found = completed("check", "floating-ring", "--set", "bearing.ring.")
+    assert "bearing.ring.mass=" in found
+    assert all(key.startswith("bearing.ring.") for key in found)
+    assert completed("check", "--set", "oil.vi") == ["oil.viscosity="]
+    assert completed("check", "no-such-case", "--set", "oil.vi") == ["oil.viscosity="]
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_a_shell_is_given_its_script(shell: str) -> None:
+    code = f"import sys; sys.argv = ['frb']; from {main.__module__} import main; main()"
+    done = subprocess.run(
+        [sys.executable, "-c", code], env={**os.environ, "_FRB_COMPLETE": f"{shell}_source"}, capture_output=True,
+        text=True, check=False,
+    )  # fmt: skip
+    assert "_FRB_COMPLETE" in done.stdout, done.stderr
