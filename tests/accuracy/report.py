@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from accuracy.kinematic import KINEMATIC, Stated, stated
-from accuracy.measured import CASES, PICTURES, Cost, Ladder, Rung, cost, ladder
+from accuracy.measured import CASES, Cost, Ladder, Rung, cost, ladder
 
 HERE = Path(__file__).parent
 PAGE = HERE.parent.parent / "docs" / "accuracy-measured.md"
@@ -40,10 +40,8 @@ def page(folder: Path) -> str:
     parts = {
         "ERRORS": "\n".join(_error_table(ladders)),
         "SUMMARY": _summary(ladders, costs),
-        "FRONTS": "\n".join(_front_table(ladders)),
         "COSTS": "\n".join(_cost_table(costs)),
         "KINEMATIC": "\n".join(_kinematic_table([row for name in KINEMATIC for row in stated(name, folder)])),
-        "PICTURES": "\n\n".join(f"![Error over cost, {name}](images/accuracy-{name}.png)" for name in PICTURES),
     }
     for key, part in parts.items():
         text = text.replace(f"@{key}@", part)
@@ -73,17 +71,6 @@ def _error_table(ladders: dict[str, Ladder]) -> Iterator[str]:
             f"| {name} | {found.until_s:g} s | {found.certain:.1e} | {found.planned.error:.1e} | "
             f"{found.planned.stated['eccentricity']:.1e} | {plan[0]} of {plan[1]}, {plan[2]:.1f} x | "
             f"{every[0]} of {every[1]}, {every[2]:.1f} x |"
-        )
-
-
-def _front_table(ladders: dict[str, Ladder]) -> Iterator[str]:
-    yield "| case | choice of the plan | CPU time | over the front, CPU time | over the front, counted work | |"
-    yield "| --- | --- | --- | --- | --- | --- |"
-    for name, found in ladders.items():
-        verdict = "holds" if found.above_quiet <= ABOVE_FRONT else "misses"
-        yield (
-            f"| {name} | {found.planned.name} | {found.planned.cpu_s:.2g} s | {found.above_front:.2f} | "
-            f"{found.above_quiet:.2f} | {verdict} |"
         )
 
 
