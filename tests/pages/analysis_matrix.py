@@ -47,9 +47,7 @@ HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
 TABLE = 'force=[{at="disk", over_time={time=[0, 1000], x=[0, 1]}}]'
 GROUND = 'base={acceleration=["2 m/s^2", "0 m/s^2"], order=2, speed="50 Hz"}'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
-ROUGH = (
-    'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
-)
+ROUGH = 'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
 SHELL = "contact={policy='elastic', stiffness='1e8 N/m'}"
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
@@ -63,14 +61,14 @@ THRUST = (
     'taper_angle="50 deg", taper="20 um"}]'
 )
 COLLAR = THRUST.replace("[{", '[{position="30 mm", ')
-INNER_GROOVES = tuple(
-    f'bearing.{i}.inner.supply={{kind="circumferential-groove", pressure="3 bar"}}' for i in range(2)
+INNER_GROOVES = tuple(f'bearing.{i}.inner.supply={{kind="circumferential-groove", pressure="3 bar"}}' for i in range(2))
+OVER_SPEED = ", ".join(
+    [
+        'speed=["0 Hz", "300 Hz"]',
+        *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
+        *(f'c{axes}=["10 N*s/m", "20 N*s/m"]' for axes in ("xx", "xy", "yx", "yy")),
+    ]
 )
-OVER_SPEED = ", ".join([
-    'speed=["0 Hz", "300 Hz"]',
-    *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
-    *(f'c{axes}=["10 N*s/m", "20 N*s/m"]' for axes in ("xx", "xy", "yx", "yy")),
-])
 SEAL = (
     'bearing=[{kind="single-film", width="20 mm", diameter="25 mm", clearance="35 um"}, '
     f'{{kind="coefficients", name="seal", over_speed={{{OVER_SPEED}}}}}]'
@@ -104,20 +102,24 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
     "floating ring that does not turn, on its elastic shell": ("floating-ring", ("bearing.ring.spin=blocked", SHELL)),
     "floating ring that does not turn, on rough surfaces": (
-        "floating-ring", ("bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld", ROUGH)
+        "floating-ring",
+        ("bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld", ROUGH),
     ),
     "floating ring with a pin": ("floating-ring", ("film.cavitation=half-sommerfeld", PIN)),
     "floating ring with a pin, on its elastic shell": (
-        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, SHELL)
+        "floating-ring",
+        ("film.cavitation=half-sommerfeld", PIN, SHELL),
     ),
     "floating ring with a pin, on rough surfaces": ("floating-ring", (PIN, "film.cavitation=half-sommerfeld", ROUGH)),
     "floating ring with a pin, without weight": (
-        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2")
+        "floating-ring",
+        ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2"),
     ),
     "cartridge": ("turbocharger-car-cartridge", ()),
     "cartridge that does not turn": ("turbocharger-car-cartridge", ("bearing.ring.spin=blocked",)),
     "cartridge that does not turn, on its elastic shells": (
-        "turbocharger-car-cartridge", ("bearing.ring.spin=blocked", SHELL)
+        "turbocharger-car-cartridge",
+        ("bearing.ring.spin=blocked", SHELL),
     ),
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
@@ -147,13 +149,15 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS)),
     "floating rings that tilt": ("turbocharger-car", (TILTS,)),
     "floating rings that tilt, grooves in place of feed holes, Elrod": (
-        "turbocharger-car", (TILTS, ELROD, *INNER_GROOVES)
+        "turbocharger-car",
+        (TILTS, ELROD, *INNER_GROOVES),
     ),
     "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", (TILTS,)),
     "shells that are not in line": ("jeffcott", (ASKEW,)),
     "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),
     "thrust bearing under an axial load": (
-        "turbocharger-car", (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld")
+        "turbocharger-car",
+        (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld"),
     ),
     "thrust bearings alone": ("thrust", ()),
 }
