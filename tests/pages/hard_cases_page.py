@@ -24,9 +24,8 @@ frb cases --hard                      # lists them
 frb cases --hard reversed             # prints one as a case file; -o FILE copies it
 ```
 
-A case ended as listed if it has the expected status and events within its time limit, if all signals, forces and
-pressures are finite, if less than 0.1 % of its oil is unaccounted for, and if its error is
-not larger than the stated one.
+A case ended as listed if it has the expected status and events within its time limit. All signals, forces and
+pressures must be finite, less than 0.1 % of its oil unaccounted for, and its error not larger than the stated one.
 
 - **error**: largest deviation of the eccentricities from a reference until a whirl begins or the run ends; of a
   kinematic test, relative deviation of the force. The reference has a finer mesh and a smaller tolerance
