@@ -178,10 +178,10 @@ def _value(entry: dict[str, Any]) -> str:
     forms = [form for form in forms if form.get("type") != "null"]
     if len(forms) == 2 and forms[0].get("type") == "number" and forms[1].get("type") == "string":
         unit = forms[0]["description"].removeprefix("in ")
-        return "number" if unit == "without unit" else unit
+        return "number" if unit == "without unit" else f"`{unit}`" if "*" in unit else unit  # "*" would be emphasis
     if forms:
         return " or ".join(dict.fromkeys(_value(form) for form in forms))
-    names = {"integer": "whole number", "string": "text", "array": "tables", "boolean": "`true` or `false`"}
+    names = {"integer": "integer", "string": "text", "array": "tables", "boolean": "`true`, `false`"}
     return "table" if "$ref" in entry else names.get(entry.get("type", ""), "table")
 
 
