@@ -88,7 +88,7 @@ class CoefficientsBearing(Model):
     )
     file: Label = Field(
         default="",
-        description="replaces the three: .toml of ROSS or `frb bearing --ross`, or .csv with speed_Hz, "
+        description="replaces the three: .toml of ROSS or of `--ross`, or .csv with speed_Hz, "
         "kxx to kyy, cxx to cyy, perhaps mxx to myy",
     )
     over_speed: CoefficientsOverSpeed | None = Field(default=None, description="contents of `file`, written by runs")
