@@ -1,4 +1,4 @@
-"""One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's table."""
+"""One declaration of a column makes pandas, CSV, JSON, the terminal's table with its legend, and a page's list."""
 
 from __future__ import annotations
 
@@ -82,13 +82,13 @@ def test_noise_is_zero_and_large_numbers_are_plain(value: float, form: Any, cell
     assert table_of((shown,), [value]).cells() == [(cell,)]
 
 
-def test_a_page_tells_names_units_and_meaning() -> None:
-    rows = column_tables.page_table(COLUMNS).splitlines()
-    assert len(rows) == 2 + len(COLUMNS)
-    assert rows[4] == "| `p_max_Pa` | `p_max_Pa` | Pa | `p` in bar | largest pressure: absolute |"
-    assert rows[5].startswith("| `stiffness_xx_N_m` to `stiffness_yy_N_m` | `stiffness_N_m` | N/m |")
-    assert rows[6].startswith("| | `load_N` |")
-    assert rows[8] == "| `rise_K` | | K | | temperature rise |"
+def test_a_page_has_names_units_and_meaning() -> None:
+    rows = column_tables.page_list(COLUMNS).splitlines()
+    assert len(rows) == len(COLUMNS)
+    assert rows[2] == "- `p_max_Pa`, terminal `p` in bar: largest pressure: absolute"
+    assert rows[3].startswith("- `stiffness_xx_N_m` to `stiffness_yy_N_m`, terminal ")
+    assert rows[4].startswith("- JSON `load_N`")
+    assert rows[6] == "- CSV `rise_K`: temperature rise"
 
 
 def test_columns_of_a_part_have_its_name_at_their_end() -> None:

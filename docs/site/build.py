@@ -213,10 +213,10 @@ def _printed_state(row: dict[str, str]) -> FilmState:
 def configuration(source: Path, target: Path) -> str:
     """Settings of MkDocs: no fonts and scripts from elsewhere, equations by equations.py."""
     commands = "\n".join(f"      - {name}: commands/{name}.md" for name in COMMANDS)
-    guides = ("terms", "case-file", "cases", "command-line", "matrix", "columns", "conventions", "measurements",
-              "report", "bearing-sheet", "thrust", "rotors", "standards", "floating-rings", "gas-and-contact",
-              "elements", "surroundings", "limit-cycles", "couplings", "sweeps")  # fmt: skip
-    science = ("theory", "equations", "heat", "validation", "textbooks", "accuracy")
+    guides = ("cases", "floating-rings", "rotors", "elements", "surroundings", "heat", "thrust", "bearing-sheet",
+              "limit-cycles", "gas-and-contact", "measurements", "sweeps", "report", "standards")  # fmt: skip
+    concepts = ("conventions", "theory", "equations", "couplings", "accuracy", "validation", "textbooks")
+    tables = ("case-file", "matrix", "columns", "command-line")
     development = ("architecture", "adding-a-model", "accuracy-measured", "limit-cycles-method", "hard-cases")
 
     def entries(names: tuple[str, ...]) -> str:
@@ -244,19 +244,23 @@ validation:
     anchors: warn
 nav:
   - frb: index.md
-  - installation: installation.md
-  - tutorial: tutorial.md
-  - gallery: gallery.md
+  - tutorial:
+      - contents: contents.md
+      - installation: installation.md
+      - tutorial: tutorial.md
+      - terms: terms.md
+      - gallery: gallery.md
+  - how-to:
+{entries(guides)}
+  - concepts:
+{entries(concepts)}
+  - reference:
+{entries(tables)}
+      - Python: reference.md
   - commands:
 {commands}
-  - guides:
-      - contents: contents.md
-{entries(guides)}
-  - science:
-{entries(science)}
   - development:
 {entries(development)}
-  - Python: reference.md
 """
 
 

@@ -39,16 +39,13 @@ class BearingWalls(Model):
     shaft: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.shaft")
     housing: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.housing")
     supply_temperature: InputTemperature | None = Field(
-        default=None, description="of this bearing, if not that of [thermal]; may change over time"
+        default=None, description="of this bearing, if not thermal.supply_temperature; may change over time"
     )
 
 
 Misalignment = Annotated[
     tuple[Tilt, Tilt] | None,
-    Field(
-        description="tilt of the shell about x, y through the middle of the bearing; in kinematic tests of a single "
-        "film, runs and at rest; of a shell around a ring with film.tilt = follows"
-    ),
+    Field(description="tilt of the shell about x, y; around a ring it needs film.tilt = follows"),
 ]
 
 
@@ -59,7 +56,7 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
     misalignment: Misalignment = None
     pin: ClassVar[None] = None
 
@@ -89,29 +86,31 @@ class Ring(Model):
     """The floating ring itself, or the body of a cartridge."""
 
     given_mass: RingMass | None = Field(
-        default=None, alias="mass",
-        description="of one ring; from its material, which is then given, width and diameters if not given",
+        default=None,
+        alias="mass",
+        description="of one ring; by default from its material, width and diameters",
     )
     given_inertia: RingInertia | None = Field(
-        default=None, alias="inertia",
-        description="about the axis of rotation; m (D_i^2 + D_o^2) / 8 of its mass and diameters if not given",
+        default=None,
+        alias="inertia",
+        description="about the axis of rotation; by default m (D_i^2 + D_o^2) / 8",
     )
     tilt_inertia: RingInertia | None = Field(
         default=None,
-        description="about a diameter through the centre of mass, for film.tilt = follows: half of inertia and "
-        "m B^2/12 if not given; of a cartridge, which always tilts, it must be given",
+        description="about a diameter, for film.tilt = follows; by default half of inertia and m "
+        "B^2/12; must be given for a cartridge",
     )
     width: Length | None = Field(
-        default=None, description="axial, for a mass that is not given; that of the wider film if not given"
+        default=None, description="axial, for a mass that is not given; by default of the wider film"
     )
     spin: Literal["free", "blocked"] = Field(
-        default="free", description="whether the films turn the ring; a blocked one floats without turning"
+        default="free", description="the films turn the ring; a blocked one floats without turning"
     )
     material: Material = Field(default="brass", description="for conduction, heat and growth of the ring")
-    conductivity: ThermalConductivity | None = Field(default=None, description="thermal, if not that of its material")
-    heat_capacity: SpecificHeat | None = Field(default=None, description="specific, if not that of its material")
+    conductivity: ThermalConductivity | None = Field(default=None, description="thermal, if not of its material")
+    heat_capacity: SpecificHeat | None = Field(default=None, description="specific, if not of its material")
     expansion: Expansion | None = Field(
-        default=None, description="coefficient of linear thermal expansion, if not that of its material"
+        default=None, description="coefficient of linear thermal expansion, if not of its material"
     )
 
     @property
@@ -126,7 +125,7 @@ class Pin(Model):
     It acts on the turning of the ring alone."""
 
     radius: Length = Field(description="at which ring and pin touch, from the axis")
-    play: Play = Field(description="distance at this radius by which the ring turns to either side before they touch")
+    play: Play = Field(description="distance at this radius to either side before they touch")
     stiffness: Stiffness = Field(description="of pin and hole, across the radius")
     damping: Damping = Field(default=0.0, description="while they touch; they do not pull at each other")
 
@@ -135,14 +134,11 @@ GivenPin = Annotated[
     Pin | None, Field(description="semi-floating: keeps the ring from turning beyond its play; not in limit cycles")
 ]
 CentrifugalPressure = Annotated[
-    bool, Field(description="whether the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")
+    bool, Field(description="the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")
 ]
 Channels = Annotated[
     Literal["pressure", "coupled"],
-    Field(
-        description="feed holes of the inner film in the ring: at given pressure, or coupled to the outer film: "
-        "oil that leaves one film enters the other"
-    ),
+    Field(description="feed holes of the inner film: at given pressure, or coupled to the outer film"),
 ]
 
 
@@ -154,12 +150,12 @@ class FloatingRingBearing(BearingWalls):
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     ring: Ring = Field(description="mass and inertia of the ring, or what they follow from")
     inner: RingFilm = Field(description="film between journal and ring")
-    outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer one of the ring")
+    outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer diameter of the ring")
     centrifugal_pressure: CentrifugalPressure = True
     channels: Channels = "pressure"
     pin: GivenPin = None
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
     misalignment: Misalignment = None
 
     @property
@@ -222,15 +218,14 @@ SIDES = ("left", "right")  # of a cartridge; left is towards smaller positions
 
 
 class CartridgeBearing(BearingWalls):
-    """One rigid ring over two journals, which moves and tilts, between two inner and two outer films. Its centre of
-    mass lies in the middle between both positions."""
+    """One rigid ring over two journals, which moves and tilts, between two inner and two outer films."""
 
     kind: Literal["cartridge"] = Field(description="one ring over two inner and two outer films")
     name: Identifier = Field(default="", description="of the bearing in results, followed by left or right")
     positions: tuple[Position, Position] = Field(description="of both journals along the shaft, ascending")
     ring: Ring = Field(description="its body: mass, inertia and tilt_inertia must be given")
-    inner: _Films = Field(description="films between journals and ring: one table for both ends, or a list of two")
-    outer: _Films = Field(description="films between ring and shells, as inner; diameter: the outer one of the ring")
+    inner: _Films = Field(description="films between journals and ring: one table for both ends, or two")
+    outer: _Films = Field(description="films between ring and shells, as inner; diameter: outer diameter of the ring")
     centrifugal_pressure: CentrifugalPressure = True
     channels: Channels = "pressure"
     pin: GivenPin = None

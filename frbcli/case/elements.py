@@ -48,9 +48,7 @@ _Matrix = (
     AlsoAs(lambda matrix: [matrix["prefixItems"][0]["prefixItems"][0], matrix]),
 )
 StiffnessMatrix = Annotated[tuple[tuple[Entry, Entry], tuple[Entry, Entry]], *_Matrix]
-DampingMatrix = Annotated[
-    tuple[tuple[DampingEntry, DampingEntry], tuple[DampingEntry, DampingEntry]], *_Matrix
-]
+DampingMatrix = Annotated[tuple[tuple[DampingEntry, DampingEntry], tuple[DampingEntry, DampingEntry]], *_Matrix]
 MassMatrix = Annotated[tuple[tuple[MassEntry, MassEntry], tuple[MassEntry, MassEntry]], *_Matrix]
 
 
@@ -60,7 +58,7 @@ class CoefficientsOverSpeed(Model):
     source: Label = Field(default="", description="the file that they were read from")
     speed: tuple[SignedSpeed, ...] = Field(description="of the rotor, ascending")
     kxx: tuple[Entry, ...] = Field(description="stiffness at each speed")
-    kxy: tuple[Entry, ...] = Field(description="stiffness: force along -x by a displacement along y")
+    kxy: tuple[Entry, ...] = Field(description="stiffness at each speed")
     kyx: tuple[Entry, ...] = Field(description="stiffness")
     kyy: tuple[Entry, ...] = Field(description="stiffness")
     cxx: tuple[DampingEntry, ...] = Field(description="damping at each speed")
@@ -74,31 +72,28 @@ class CoefficientsOverSpeed(Model):
 
 
 class CoefficientsBearing(Model):
-    """Given coefficients between shaft and ground or support: a seal, a mount, any bearing. The force on the shaft is
-    -K d - C d' - M d'' with the displacement d of the shaft from the middle."""
+    """Given coefficients between shaft and ground or support: a force of -K d - C d' - M d'' on the shaft."""
 
     kind: Literal["coefficients"] = Field(description="given stiffness, damping and mass, without a film")
     name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
     position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
     stiffness: StiffnessMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
     )
     damping: DampingMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
     )
     mass: MassMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one quantity for both directions; 0 if not given"
+        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
     )
     file: Label = Field(
         default="",
-        description="in place of the three: coefficients over speed, .toml as frb bearing --ross or ROSS writes it, or "
-        ".csv with the columns speed_Hz, kxx, kxy, kyx, kyy, cxx to cyy and perhaps mxx to myy; from the case's folder",
+        description="replaces the three: .toml of ROSS or of `--ross`, or .csv with speed_Hz, "
+        "kxx to kyy, cxx to cyy, perhaps mxx to myy",
     )
-    over_speed: CoefficientsOverSpeed | None = Field(
-        default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
-    )
+    over_speed: CoefficientsOverSpeed | None = Field(default=None, description="contents of `file`, written by runs")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed if not given")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
     pin: ClassVar[None] = None
 
     @property
@@ -138,10 +133,10 @@ class ThrustBearing(Model):
     outer_radius: Length = Field(description="of the pads")
     pads: Annotated[int, Count(1, 60, 6)] = Field(description="number of pads on each side")
     pad_angle: OpeningAngle = Field(description="of the sector of a pad, from its leading edge")
-    taper_angle: OpeningAngle = Field(description="from the leading edge to the land; up to that of the pad")
+    taper_angle: OpeningAngle = Field(description="from the leading edge to the land; at most the pad angle")
     taper: Clearance = Field(description="depth at the leading edge below the land")
     profile: Literal["taper", "step"] = Field(
-        default="taper", description="whether the depth falls to 0 linearly in the angle, or stays up to the land"
+        default="taper", description="the depth falls linearly to 0 in the angle, or is constant up to the land"
     )
     end_play: Clearance | None = Field(
         default=None, description="sum of the gaps over the lands of both sides; must be given with pads on both"
@@ -185,6 +180,6 @@ class Axial(Model):
     """The load along the axis, with which the thrust bearing acts on the machine."""
 
     load: AnyLoad = Field(
-        description="on the rotor, towards larger positions, below 0 the other way; or `{ at, load }`, with the square "
-        "of the speed; or over time"
+        description="on the rotor, towards larger positions; or `{ at, load }`, with the "
+        "square of the speed; or over time"
     )

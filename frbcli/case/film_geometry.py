@@ -67,8 +67,7 @@ class Lobes(Model):
 
     count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
     preload: Preload = Field(
-        description="1 - c_b / c_p: `clearance` is c_b, the assembled clearance at the narrowest place of a lobe; "
-        "c_p is the machined clearance of a lobe"
+        description="1 - c_b / c_p, with the assembled clearance c_b (`clearance`) and the machined clearance c_p"
     )
     position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
     offset: Fraction = Field(
@@ -80,18 +79,14 @@ class SealedEnds(Model):
     """Ends with a seal, such as a piston ring, beyond which lies the air."""
 
     sealed: Fraction = Field(
-        description="share of the flow of an open end that a film of constant gap, fed in a groove or the middle of "
-        "its width, lets out: 1 is open, 0 lets out none"
+        description="share of the side flow of open ends that leaves the film: 1 is open, 0 is tight"
     )
 
 
 class PartBath(Model):
     """Ends that lie in oil up to a level, and above it in the air."""
 
-    bath_level: Position = Field(
-        description="height of the oil over the middle of the shell, y; from the radius of the journal on an oil bath, "
-        "from below the journal on free to air"
-    )
+    bath_level: Position = Field(description="height y of the oil over the middle of the shell")
 
 
 def _ends_form(given: object) -> str:
@@ -116,17 +111,17 @@ class FilmGeometry(Model):
     given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
     given_ends: AnyEnds = Field(
-        default="free-to-air", alias="ends", description="no oil comes in at the ends (4.36), or they lie in oil at "
-        "ambient pressure; or a table: with `sealed` they let out a share of the flow into the air, with `bath_level` "
-        "they lie in oil up to it",
-    )  # fmt: skip
+        default="free-to-air",
+        alias="ends",
+        description="no oil enters at the ends (4.36), or they lie in oil; or a table with `sealed` or `bath_level`",
+    )
     supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
-    viscosity: Viscosity | None = Field(default=None, description="of this film, if not that of [oil]")
+    viscosity: Viscosity | None = Field(default=None, description="of this film, if not oil.viscosity")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
     side_flow_factor: Ratio | None = Field(
         default=None,
-        description="beta of the flow of a concentric film, for thermal.side_flow; 1 for a groove around, else 0.6",
+        description="beta of thermal.side_flow = concentric; by default 1 with a groove around, else 0.6",
     )
 
     @property
@@ -164,6 +159,6 @@ class FilmGeometry(Model):
 
 
 class RingFilm(FilmGeometry):
-    """A film that may have a cavitation model of its own: inside or outside of a floating ring, of a damper."""
+    """A film inside or outside of a floating ring, which may have a cavitation model of its own."""
 
     cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")

@@ -63,12 +63,11 @@ class Vogel(Model):
 class Grade(Model):
     """An oil of the library: viscosity over temperature, density, heat capacity and conductivity."""
 
-    grade: GradeName = Field(description="SAE or ISO VG grade; docs/heat.md lists the figures and where they are from")
+    grade: GradeName = Field(description="SAE or ISO VG grade, see [heat](heat.md#oils-and-materials)")
 
 
 class ViscosityPoints(Model):
-    """The kinematic viscosity at two temperatures, as a data sheet has it; between and beyond them by Walther's rule
-    (ASTM D341)."""
+    """Kinematic viscosity at two temperatures of a data sheet, elsewhere by Walther's rule (ASTM D341)."""
 
     points: tuple[tuple[Temperature, KinematicViscosity], tuple[Temperature, KinematicViscosity]] = Field(
         description='of a data sheet, such as [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]], with oil.density'
@@ -103,25 +102,26 @@ class Oil(Model):
     """The lubricant: a viscosity, or Vogel's coefficients or a grade, and a temperature."""
 
     given_viscosity: AnyViscosity | None = Field(
-        default=None, alias="viscosity",
-        description="warm: dynamic, or kinematic (`\"12 cSt\"`) with `density`; or `{ grade = \"SAE 10W-40\" }`, "
-        "or `{ points = ... }` of a data sheet",
+        default=None,
+        alias="viscosity",
+        description='dynamic, or kinematic (`"12 cSt"`) with `density`; or `{ grade = "SAE '
+        '10W-40" }` or `{ points = ... }`',
     )
-    vogel: Vogel | None = Field(default=None, description="viscosity over temperature, in place of `viscosity`")
+    vogel: Vogel | None = Field(default=None, description="viscosity over temperature; replaces `viscosity`")
     temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law or a grade")
     shear_factor: Annotated[float, Quantity(NUMBER, "0.8", above=0, most=1)] = Field(
         default=1.0,
-        description="of the viscosity over temperature, by high shear rates: that at 1e6 to 1e7 1/s over that at rest",
+        description="viscosity at 1e6 to 1e7 1/s over the one at low shear rates",
     )
     density: Density = Field(
         default=USUAL_DENSITY,
-        description="of the full oil; of a grade, if not given, its density at `temperature`, or at 80 degC",
+        description="of the oil; by default of the grade at `temperature`, or at 80 degC",
     )
     heat_capacity: SpecificHeat | None = Field(
-        default=None, description="specific; if not given, that of a petroleum oil of this density over temperature"
+        default=None, description="specific; by default of a petroleum oil of this density over temperature"
     )
     conductivity: ThermalConductivity | None = Field(
-        default=None, description="thermal; if not given, that of a petroleum oil of this density"
+        default=None, description="thermal; by default of a petroleum oil of this density"
     )
     ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
     cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")

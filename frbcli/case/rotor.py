@@ -74,15 +74,12 @@ class TurbochargerRotor(Model):
     symmetric: ClassVar[bool] = False
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
-    file: Label = Field(
-        default="", description="rotor file of the Python package ROSS, in place of [[shaft]]; from the case's folder"
-    )
+    file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
     modes: Annotated[int, Count(2, 200, 6)] | None = Field(
         default=None,
-        description="modes of the free rotor kept in each plane: translation, tilt, then bending; by default as many "
-        "as `accuracy.target` needs, with static modes of bearings and disks",
+        description="modes of the free rotor kept in each plane; by default as many as `accuracy.target` needs",
     )
-    cutoff: Speed | None = Field(default=None, description="in place of `modes`: keep those up to this frequency")
+    cutoff: Speed | None = Field(default=None, description="replaces `modes`: keep the modes up to this frequency")
     modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode; does not turn")
     internal_damping: DampingTime = Field(
         default=0.0, description="damping of the shaft over its stiffness; turns with the shaft"
@@ -105,7 +102,8 @@ class ShaftSection(Model):
     youngs_modulus: Modulus = Field(default=210e9, description="of the material; steel")
     poisson_ratio: Ratio = Field(default=0.3, description="of the material, for its shear")
     internal_damping: DampingTime | None = Field(
-        default=None, description="of the section over its stiffness, in place of that of the rotor; turns with it"
+        default=None,
+        description="of the section over its stiffness, instead of the damping of the rotor; turns with it",
     )
     mass_damping: DampingRate = Field(default=0.0, description="of the section over its mass; does not turn")
     stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")

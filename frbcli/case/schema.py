@@ -51,9 +51,8 @@ class Case(Model):
     title: Label = Field(default="", description="of tables and pictures")
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
-        description="values outside the usual range that are intended; refused if not confirmed: a surface speed of a "
-        "journal above 500 m/s, a clearance that changes by more than half by centrifugal growth, one below 1 um "
-        "or above a tenth of the radius",
+        description="intended values outside the usual range: surface speed above 500 m/s, centrifugal "
+        "growth above half of the clearance, clearance below 1 um or above R/10",
     )
     given_rotor: Rotor | None = Field(
         default=None, alias="rotor", description="must be given, but for a case with [motion]"
@@ -61,7 +60,7 @@ class Case(Model):
     shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
     disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
     forces: tuple[AppliedForce, ...] = Field(
-        default=(), alias="force", description="forces on places of the machine beside unbalance and weight"
+        default=(), alias="force", description="forces besides unbalance and weight"
     )
     magnetic_pulls: tuple[MagneticPull, ...] = Field(
         default=(), alias="magnetic_pull", description="of electrical machines on places of the rotor"
@@ -71,19 +70,19 @@ class Case(Model):
         default=(), alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
     )
     thrust_bearings: ThrustBearings = Field(
-        default=(), alias="thrust_bearing", description="pads beside a collar; must be given without a bearing"
+        default=(), alias="thrust_bearing", description="pads at a collar; must be given without a bearing"
     )
     axial: Axial | None = Field(
         default=None, description="load along the axis; without it thrust bearings are left out of the motion"
     )
     housing: Housing | None = Field(
-        default=None, description="what all bearings stand in; they are fixed to the ground if not given"
+        default=None, description="carries all bearings; by default they are fixed to the ground"
     )
     given_oil: Oil | None = Field(
         default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"
     )
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
-    thermal: AnyThermal = Field(default=None, description="heat; without it every film keeps its temperature")
+    thermal: AnyThermal = Field(default=None, description="heat; without it film temperatures are constant")
     given_speed: SpeedRamp | None = Field(
         default=None, alias="speed", description="must be given, but for a case with [motion]"
     )

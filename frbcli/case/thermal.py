@@ -22,7 +22,7 @@ Clearances = Literal["fixed", "follows"]
 
 
 class WallNode(Model):
-    """A body at a film with one temperature of its own, which passes heat on to a place of given temperature."""
+    """A body at a film with one temperature, which passes heat on to a place of given temperature."""
 
     capacity: HeatCapacity = Field(description="heat that warms it by 1 K")
     conductance: Conductance = Field(description="heat that it passes on per K")
@@ -49,12 +49,10 @@ class Thermal(Model):
     model: Literal["lumped", "none"] = Field(
         default="lumped", description="one temperature per film, two per ring; or none: all keep their temperature"
     )
-    supply_temperature: InputTemperature = Field(
-        description="of the oil that is supplied; may change over time, docs/surroundings.md"
-    )
+    supply_temperature: InputTemperature = Field(description="of the supplied oil; may change over time")
     start_temperature: Temperature | None = Field(
         default=None,
-        description="of films, rings, shaft and housing at the start of a run; that of the supply if not given",
+        description="of films, rings and walls at the start of a run; by default of the supply",
     )
     shaft: AnyWall = Field(
         default="adiabatic",
@@ -62,10 +60,10 @@ class Thermal(Model):
     )
     housing: AnyWall = Field(default="adiabatic", description="the same")
     clearance: Clearances = Field(
-        default="fixed", description="whether clearances follow the temperatures of journal, ring and shell (4.24)"
+        default="fixed", description="clearances follow the temperatures of journal, ring and shell (4.24)"
     )
     centrifugal_growth: Clearances = Field(
-        default="fixed", description="whether clearances follow the growth of turning shafts and rings"
+        default="fixed", description="clearances follow the centrifugal growth of shafts and rings"
     )
     reference_temperature: Temperature = Field(
         default=ROOM_TEMPERATURE, description="at which clearances that follow have their given value"
@@ -73,16 +71,17 @@ class Thermal(Model):
     shaft_material: Material = Field(default="steel", description="for its expansion and growth")
     housing_material: Material = Field(default="steel", description="for its expansion")
     mixing: Annotated[float, Quantity(NUMBER, "0.5", least=0.5, most=1)] = Field(
-        default=0.5, description="m: 0.5, a film has the mean temperature of inlet and outlet; 1, that of its outlet"
+        default=0.5,
+        description="m: 0.5, a film has the mean temperature of inlet and outlet; 1, the outlet temperature",
     )
     nusselt: Annotated[float, Quantity(NUMBER, "3.77", above=0, most=1000)] = Field(
         default=3.77, description="heat transfer from a film to each wall, Nu k / C"
     )
     side_flow: Literal["film", "concentric"] = Field(
-        default="film", description="what leaves the solved film, or the formula of a concentric one (docs/heat.md)"
+        default="film", description="outflow of the solved film, or the formula of a concentric film"
     )
     films: Literal["states", "quasi-steady"] = Field(
-        default="states", description="of a run: whether films store heat, or are in balance at each instant"
+        default="states", description="of a run: films store heat, or are in balance at each instant"
     )
     hottest_film: Temperature = Field(
         default=HOTTEST_FILM, description="a film that reaches it ends the run as `overheated`"

@@ -24,7 +24,7 @@ RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
 FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
-SECOND_FREQUENCY = Column("second_frequency", "Hz", "frequency beside the first one, of a torus point or a flip")
+SECOND_FREQUENCY = Column("second_frequency", "Hz", "second frequency, of a torus point or a flip")
 SYNCHRONOUS = Column("synchronous", "", "whether the curve is of the synchronous response, with torus points or flips",
                      lambda item: item[1].synchronous)  # fmt: skip
 DIGITS = 6  # of a value that is varied, in the terminal
@@ -261,7 +261,7 @@ def diagram_columns(
 
     return (
         *of_point(*(() if over == SPEED else (value,))),
-        Column("branch", "", "number of the branch, from 0; -1 of a resting position", itemgetter(0)),
+        Column("branch", "", "number of the branch, from 0; -1 of a static equilibrium", itemgetter(0)),
         *of_point(
             SPEED_COLUMN,
             replace(FREQUENCY, value=_number("frequency_Hz")),

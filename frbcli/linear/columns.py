@@ -257,7 +257,7 @@ RESPONSE_FORCES = (
 RESPONSE_FILMS = (
     _SPEEDS,
     _NAMES,
-    Column("gap_share", "", "larger semi-axis of the orbit over the gap that the resting position leaves"),
+    Column("gap_share", "", "larger semi-axis of the orbit over the smallest gap in static equilibrium"),
     Column("eccentricity_max", "", "largest eccentricity of the journal on its orbit"),
 )
 

@@ -77,13 +77,13 @@ REYN = 6894.757  # Pa s
 def _seireg(name: str, micro_reyn: float, degrees: float) -> OilGrade:
     """By mu = mu_0 exp(b / (t + 95)), t in degF, mu_0 in micro-reyn, b in degF: a Vogel's law with C = 95 degF."""
     at = [1e-6 * micro_reyn * REYN * math.exp(degrees / (1.8 * t + 32.0 + 95.0)) for t in TEMPERATURES]
-    source = "mu_0 exp(b / (t + 95)) of Seireg and Dandage, as others quote it from Shigley; density: own choice"
+    source = "Seireg and Dandage, as quoted from Shigley; density: own choice"
     return OilGrade(name, (at[0], at[1], at[2]), 880.0, source)
 
 
-_MULTIGRADE = "typical values, not from a single source; density: own choice"
+_MULTIGRADE = "typical values; density: own choice"
 _PQIA = "1 % below the thinnest of five oils that PQIA measured in 2016"
-_ROSS = "lubricants of the package ROSS, its density taken as that at 15 degC"
+_ROSS = "package ROSS"
 _GRADES = (
     _three("SAE 10W-40", 870.0, 81.5, 11.7, 4.65, f"{_MULTIGRADE}; {_PQIA}"),
     _three("SAE 5W-30", 860.0, 55.2, 9.2, 3.85, f"{_MULTIGRADE}; within SAE J300 at 100 degC"),

@@ -20,8 +20,8 @@ class Solid:
 
 
 _A2 = "modulus, Poisson's ratio, density, expansion: table A.2"
-_HEAT = "conductivity, heat capacity: Incropera and DeWitt, table A.1"
-_TYPICAL = "typical value, not from a single source"
+_HEAT = "conductivity, heat capacity: Incropera, A.1"
+_TYPICAL = "typical value"
 
 STEEL = Solid(210e9, 0.27, 7870.0, 1.18e-5, 60.5, 434.0, f"{_A2} (shaft); {_HEAT}, plain carbon steel")
 BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5, 110.0, 380.0, f"{_A2} (floating ring); {_HEAT}, cartridge brass")
@@ -30,12 +30,12 @@ SOLIDS: dict[str, Solid] = {
     "brass": BRASS,
     "bronze": Solid(
         110e9, 0.34, 8780.0, 1.8e-5, 54.0, 355.0,
-        f"{_HEAT}, with the density, phosphor gear bronze; modulus, Poisson's ratio: MakeItFrom, C51000; "
+        f"{_HEAT}, with density, phosphor gear bronze; modulus, Poisson's ratio: MakeItFrom, C51000; "
         "expansion: Callister, table B.6, C93200",
     ),
     "stainless steel": Solid(
         193e9, 0.30, 7900.0, 1.72e-5, 14.9, 477.0,
-        f"{_HEAT}, with the density, AISI 304; modulus, expansion: Callister, tables B.2 and B.6, 304; "
+        f"{_HEAT}, with density, AISI 304; modulus, expansion: Callister, tables B.2 and B.6, 304; "
         f"Poisson's ratio: {_TYPICAL}",
     ),
     "Inconel X-750": Solid(
@@ -45,7 +45,7 @@ SOLIDS: dict[str, Solid] = {
     ),
     "aluminium": Solid(
         71e9, 0.33, 2790.0, 2.29e-5, 168.0, 883.0,
-        f"{_HEAT}, with the density, cast alloy 195; modulus, Poisson's ratio: MakeItFrom, 295.0; "
+        f"{_HEAT}, with density, cast alloy 195; modulus, Poisson's ratio: MakeItFrom, 295.0; "
         "expansion: Callister, table B.6, 2024",
     ),
 }  # fmt: skip

@@ -57,7 +57,7 @@ EVENTS = (
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
            "`lift-off`, `clearance-step`, `forced`",
            more="forced is a line of a measurement that keeps its frequency at all rotor speeds; touch and lift-off "
-                "are those of asperities, or of a ring and its pin where `point` is a ring"),
+                "of asperities, or of a ring and its pin where `point` is a ring"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),
@@ -68,7 +68,7 @@ EVENTS = (
     Column("point", "", "point of the rotor whose motion shows it"),
     Column("amplitude", "", "amplitude over the clearance",
            more="of an onset and a self-excited vibration the largest one that the motion reaches; of a critical speed "
-                "that of the synchronous motion there"),
+                "the synchronous amplitude"),
     Column("amplitude", "", "", told_amplitude, shown=(Shown("ampl."),), key="", flat=False),
     Column("speed_uncertainty", "Hz", "uncertainty of the rotor speed", more="none without a second run"),
     Column("frequency_uncertainty", "Hz", "uncertainty of the frequency"),

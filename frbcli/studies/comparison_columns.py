@@ -89,7 +89,7 @@ def _joined(form: str) -> Callable[[Any], str]:
 HEAT = (
     Column("name", "", "", attrgetter("variant.name"), shown=(Shown("films"),), key="", flat=False),
     Column("thermal", "", "model of heat", attrgetter("variant.thermal")),
-    Column("ring_speed_ratios", "", "speeds of the rings over that of the rotor", attrgetter("ring_ratios"),
+    Column("ring_speed_ratios", "", "speeds of the rings over the rotor speed", attrgetter("ring_ratios"),
            shown=(Shown("ring over rotor", lambda ratios: _joined("{:.4f}")(ratios.values())),), flat=False),
     Column("loss", "W", "power that all films take", shown=(Shown("loss, W", ".4g"),)),
     Column("temperatures", "", "", lambda result: [value - ZERO_CELSIUS for value in result.temperatures_K],

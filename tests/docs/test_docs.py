@@ -23,7 +23,7 @@ def named(page: Path) -> str:
 
 
 def test_every_key_of_the_case_file_has_a_meaning() -> None:
-    empty = [line for line in case_reference.page().splitlines() if line.startswith("| `") and line.endswith("|  |")]
+    empty = [line for line in case_reference.page().splitlines() if line.startswith("- `") and line.endswith(": ")]
     assert empty == []
 
 

@@ -5,6 +5,7 @@ Each cell asks the gate that the analysis itself passes, with a case that has th
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from paths import DOCS
@@ -47,9 +48,7 @@ HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
 TABLE = 'force=[{at="disk", over_time={time=[0, 1000], x=[0, 1]}}]'
 GROUND = 'base={acceleration=["2 m/s^2", "0 m/s^2"], order=2, speed="50 Hz"}'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
-ROUGH = (
-    'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
-)
+ROUGH = 'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
 SHELL = "contact={policy='elastic', stiffness='1e8 N/m'}"
 DAMPER = (
     'bearing.damper={width="20 mm", diameter="50 mm", clearance="80 um", mass="500 g", spring="1e7 N/m", '
@@ -63,14 +62,14 @@ THRUST = (
     'taper_angle="50 deg", taper="20 um"}]'
 )
 COLLAR = THRUST.replace("[{", '[{position="30 mm", ')
-INNER_GROOVES = tuple(
-    f'bearing.{i}.inner.supply={{kind="circumferential-groove", pressure="3 bar"}}' for i in range(2)
+INNER_GROOVES = tuple(f'bearing.{i}.inner.supply={{kind="circumferential-groove", pressure="3 bar"}}' for i in range(2))
+OVER_SPEED = ", ".join(
+    [
+        'speed=["0 Hz", "300 Hz"]',
+        *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
+        *(f'c{axes}=["10 N*s/m", "20 N*s/m"]' for axes in ("xx", "xy", "yx", "yy")),
+    ]
 )
-OVER_SPEED = ", ".join([
-    'speed=["0 Hz", "300 Hz"]',
-    *(f'k{axes}=["1e5 N/m", "2e5 N/m"]' for axes in ("xx", "xy", "yx", "yy")),
-    *(f'c{axes}=["10 N*s/m", "20 N*s/m"]' for axes in ("xx", "xy", "yx", "yy")),
-])
 SEAL = (
     'bearing=[{kind="single-film", width="20 mm", diameter="25 mm", clearance="35 um"}, '
     f'{{kind="coefficients", name="seal", over_speed={{{OVER_SPEED}}}}}]'
@@ -98,26 +97,30 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Elrod": ("jeffcott", (ELROD,)),
     "two-phase": ("jeffcott", (TWO_PHASE,)),
     "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),
-    "a bearing model of one's own": ("jeffcott", (f"film.theory={MODEL}",)),
+    "bearing model from Python": ("jeffcott", (f"film.theory={MODEL}",)),
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
     "floating ring that does not turn, on its elastic shell": ("floating-ring", ("bearing.ring.spin=blocked", SHELL)),
     "floating ring that does not turn, on rough surfaces": (
-        "floating-ring", ("bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld", ROUGH)
+        "floating-ring",
+        ("bearing.ring.spin=blocked", "film.cavitation=half-sommerfeld", ROUGH),
     ),
     "floating ring with a pin": ("floating-ring", ("film.cavitation=half-sommerfeld", PIN)),
     "floating ring with a pin, on its elastic shell": (
-        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, SHELL)
+        "floating-ring",
+        ("film.cavitation=half-sommerfeld", PIN, SHELL),
     ),
     "floating ring with a pin, on rough surfaces": ("floating-ring", (PIN, "film.cavitation=half-sommerfeld", ROUGH)),
     "floating ring with a pin, without weight": (
-        "floating-ring", ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2")
+        "floating-ring",
+        ("film.cavitation=half-sommerfeld", PIN, "rotor.gravity=0 m/s^2"),
     ),
     "cartridge": ("turbocharger-car-cartridge", ()),
     "cartridge that does not turn": ("turbocharger-car-cartridge", ("bearing.ring.spin=blocked",)),
     "cartridge that does not turn, on its elastic shells": (
-        "turbocharger-car-cartridge", ("bearing.ring.spin=blocked", SHELL)
+        "turbocharger-car-cartridge",
+        ("bearing.ring.spin=blocked", SHELL),
     ),
     "feed holes in the shell": ("jeffcott", (HOLES.format("shell"),)),
     "feed holes in the journal": ("jeffcott", (HOLES.format("journal"),)),
@@ -132,12 +135,12 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "co-simulation": ("jeffcott", ("film.coupling=co-simulation",)),
     "turbocharger on two bearings": ("turbocharger-heavy", ()),
     "coefficients alone": ("seal", ()),
-    "films beside coefficients over the speed": ("jeffcott", (SEAL,)),
+    "films and coefficients over the speed": ("jeffcott", (SEAL,)),
     "bearings on supports": ("jeffcott", (SUPPORT,)),
     "squeeze film damper that cavitates": ("jeffcott", (DAMPER, "bearing.damper.cavitation=half-sommerfeld")),
     "squeeze film damper, Sommerfeld": ("jeffcott", (DAMPER,)),
     "rigid housing": ("jeffcott", (HOUSING,)),
-    "supply that gives a flow at the most": ("jeffcott", (ELROD, FLOW)),
+    "flow-limited supply": ("jeffcott", (ELROD, FLOW)),
     "sealed ends": ("jeffcott", ("bearing.ends={sealed=0.3}",)),
     "magnetic pull": ("jeffcott", ('magnetic_pull=[{at="disk", pull="1e5 N/m"}]',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
@@ -146,14 +149,16 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS)),
     "floating rings that tilt": ("turbocharger-car", (TILTS,)),
-    "floating rings that tilt, grooves in place of feed holes, Elrod": (
-        "turbocharger-car", (TILTS, ELROD, *INNER_GROOVES)
+    "floating rings that tilt, grooves, no feed holes, Elrod": (
+        "turbocharger-car",
+        (TILTS, ELROD, *INNER_GROOVES),
     ),
-    "cartridge in films that follow its tilt": ("turbocharger-car-cartridge", (TILTS,)),
-    "shells that are not in line": ("jeffcott", (ASKEW,)),
-    "thrust bearing without an axial load, left out of the motion": ("jeffcott", (THRUST,)),
+    "cartridge in tilting films": ("turbocharger-car-cartridge", (TILTS,)),
+    "misaligned shells": ("jeffcott", (ASKEW,)),
+    "thrust bearing without an axial load": ("jeffcott", (THRUST,)),
     "thrust bearing under an axial load": (
-        "turbocharger-car", (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld")
+        "turbocharger-car",
+        (COLLAR, 'axial={load={at="5000 Hz", load="40 N"}}', "film.cavitation=half-sommerfeld"),
     ),
     "thrust bearings alone": ("thrust", ()),
 }
@@ -165,30 +170,30 @@ APART = "film.coupling=co-simulation"
 PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and clearance steps": ("jeffcott", (OIL, HEAT, STEP)),
     "heat and the published form": ("jeffcott", (OIL, HEAT, *PUBLISHED)),
-    "heat and a bearing model of one's own": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
-    "heat and a bearing model that does not tell its flow": ("jeffcott", (OIL, HEAT, f"film.theory={FLOWLESS}")),
+    "heat and a bearing model from Python": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
+    "heat and a bearing model without its flow": ("jeffcott", (OIL, HEAT, f"film.theory={FLOWLESS}")),
     "heat and co-simulation": ("jeffcott", (OIL, HEAT, APART)),
     "heat and floating rings": ("floating-ring-heat", ()),
     "heat and squeeze film dampers": ("jeffcott", (OIL, HEAT, DAMPER)),
     "clearance steps and the published form": ("jeffcott", (STEP, *PUBLISHED)),
-    "clearance steps and a bearing model of one's own": ("jeffcott", (STEP, MODEL_THEORY)),
+    "clearance steps and a bearing model from Python": ("jeffcott", (STEP, MODEL_THEORY)),
     "clearance steps and co-simulation": ("jeffcott", (STEP, APART)),
     "clearance steps and rings that turn": (
         "floating-ring", ('bearing.outer.clearance_steps=[{time="0.1 s", clearance="75 um"}]',)
     ),
     "rings that turn and the published form": ("floating-ring", PUBLISHED),
-    "rings that turn and a bearing model of one's own": (
+    "rings that turn and a bearing model from Python": (
         "floating-ring", (MODEL_THEORY, "film.cavitation=half-sommerfeld", 'bearing.inner.supply={kind="none"}')
     ),
     "co-simulation and the published form": ("jeffcott", (*PUBLISHED, APART)),
-    "co-simulation and a bearing model of one's own": ("jeffcott", (APART, MODEL_THEORY)),
+    "co-simulation and a bearing model from Python": ("jeffcott", (APART, MODEL_THEORY)),
     "co-simulation and harmonic forces": ("jeffcott", (HARMONIC, APART)),
     "co-simulation and rings that turn": ("floating-ring", (APART,)),
     "co-simulation and cartridges that turn": ("turbocharger-car-cartridge", (APART,)),
     "co-simulation and several bearings": ("turbocharger-heavy", (APART,)),
-    "heat and oil of its own (Elrod)": ("jeffcott", (OIL, HEAT, ELROD)),
+    "heat and mass-conserving films (Elrod)": ("jeffcott", (OIL, HEAT, ELROD)),
     "heat and bubbly oil": ("jeffcott", (OIL, HEAT, BUBBLY)),
-    "heat and a supply that gives a flow at the most": ("jeffcott", (OIL, HEAT, ELROD, FLOW)),
+    "heat and a flow-limited supply": ("jeffcott", (OIL, HEAT, ELROD, FLOW)),
     "heat and rough surfaces": ("jeffcott", (OIL, HEAT, ROUGH)),
     "heat and an elastic shell": ("jeffcott", (OIL, HEAT, SHELL)),
     "heat and feed holes in the journal": ("jeffcott", (OIL, HEAT, HOLES.format("journal"))),
@@ -196,28 +201,28 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and clearances that follow it": (
         "jeffcott", (OIL, 'thermal={model="lumped", supply_temperature="70 degC", clearance="follows"}')
     ),
-    "heat and films that follow a tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS, OIL, HEAT)),
-    "heat and shells that are not in line": ("jeffcott", (OIL, HEAT, ASKEW)),
-    "films that follow a tilt, and bubbly oil": ("turbocharger-car", (SINGLE_FILMS, TILTS, BUBBLY, *FED)),
-    "films that follow a tilt, and a supply that gives a flow at the most": (
+    "heat and tilting films": ("turbocharger-car", (SINGLE_FILMS, TILTS, OIL, HEAT)),
+    "heat and misaligned shells": ("jeffcott", (OIL, HEAT, ASKEW)),
+    "tilting films, and bubbly oil": ("turbocharger-car", (SINGLE_FILMS, TILTS, BUBBLY, *FED)),
+    "tilting films, and a flow-limited supply": (
         "turbocharger-car", (SINGLE_FILMS, TILTS, ELROD, *LIMITED)
     ),
-    "films that follow a tilt, and rough surfaces": ("turbocharger-car", (SINGLE_FILMS, TILTS, ROUGH)),
-    "films that follow a tilt, and an elastic shell": ("turbocharger-car", (SINGLE_FILMS, TILTS, SHELL)),
-    "films that follow a tilt, and bearings on supports": (
+    "tilting films, and rough surfaces": ("turbocharger-car", (SINGLE_FILMS, TILTS, ROUGH)),
+    "tilting films, and an elastic shell": ("turbocharger-car", (SINGLE_FILMS, TILTS, SHELL)),
+    "tilting films, and bearings on supports": (
         "turbocharger-car", (SINGLE_FILMS, TILTS, *(f"bearing.{i}.{SUPPORT.split('.', 1)[1]}" for i in range(2)))
     ),
-    "films that follow a tilt, and a rigid housing": ("turbocharger-car", (SINGLE_FILMS, TILTS, *BODY)),
-    "shells that are not in line, and bubbly oil": ("jeffcott", (ASKEW, BUBBLY)),
-    "shells that are not in line, and a supply that gives a flow at the most": ("jeffcott", (ASKEW, ELROD, FLOW)),
-    "shells that are not in line, and rough surfaces": ("jeffcott", (ASKEW, ROUGH)),
-    "rough surfaces and oil of its own (Elrod)": ("jeffcott", (ROUGH, ELROD)),
+    "tilting films, and a rigid housing": ("turbocharger-car", (SINGLE_FILMS, TILTS, *BODY)),
+    "misaligned shells, and bubbly oil": ("jeffcott", (ASKEW, BUBBLY)),
+    "misaligned shells, and a flow-limited supply": ("jeffcott", (ASKEW, ELROD, FLOW)),
+    "misaligned shells, and rough surfaces": ("jeffcott", (ASKEW, ROUGH)),
+    "rough surfaces and mass-conserving films (Elrod)": ("jeffcott", (ROUGH, ELROD)),
     "rough surfaces and bubbly oil": ("jeffcott", (ROUGH, BUBBLY)),
-    "rough surfaces and a supply that gives a flow at the most": ("jeffcott", (ROUGH, ELROD, FLOW)),
+    "rough surfaces and a flow-limited supply": ("jeffcott", (ROUGH, ELROD, FLOW)),
     "rough surfaces and lobes": ("jeffcott", (ROUGH, LOBES)),
-    "bubbly oil and a supply that gives a flow at the most": ("jeffcott", (BUBBLY, FLOW)),
+    "bubbly oil and a flow-limited supply": ("jeffcott", (BUBBLY, FLOW)),
     "bubbly oil and feed holes in the journal": ("jeffcott", (BUBBLY, HOLES.format("journal"))),
-    "oil of its own (Elrod) and feed holes in the journal": ("jeffcott", (ELROD, HOLES.format("journal"))),
+    "mass-conserving films (Elrod) and feed holes in the journal": ("jeffcott", (ELROD, HOLES.format("journal"))),
 }  # fmt: skip
 
 
@@ -235,14 +240,13 @@ ANALYSES: dict[str, str] = {
 TOGETHER = "run", "stability, response", "limit cycles", "whirls with unbalance"  # of two features
 HEAD = """# What goes with what
 
-Every analysis against every film and feature. The table is made by the program: each cell asks the gate that the
-analysis itself passes, with a case that has the film or feature. `cd tests && python -m pages.analysis_matrix` writes
-this page, and a test checks that it is up to date. "run" stands for run-up, run-down, sweep, fit and compare. Of
-several films, rotation, squeeze and whirl test the one that `motion.film` names.
+Every analysis against every film and feature. The program makes the tables: each cell asks the gate that the analysis
+itself passes. `cd tests && python -m pages.analysis_matrix` writes this page. "run" includes run-up, run-down, sweep,
+fit and compare. Of several films, rotation, squeeze and whirl test the one that `motion.film` names.
 """
 
 
-Reason = tuple[str, str, str]  # key, problem and remedy
+Reason = tuple[str, str, str]  # key without the number of a bearing, problem and remedy
 
 
 def page() -> str:
@@ -252,33 +256,41 @@ def page() -> str:
     try:
         reasons: dict[Reason, list[str]] = {}  # with the values of the key
         rows = _table(reasons, FILMS, tuple(ANALYSES))
-        rows += ["", "Two features together:", "", *_table(reasons, PAIRS, TOGETHER)]
+        rows += ["", "## Two features together", "", *_table(reasons, PAIRS, TOGETHER)]
     finally:
         frbcli.remove_bearing(MODEL)
         frbcli.remove_bearing(FLOWLESS)
     notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
-    return "\n".join([HEAD, *rows, "", "Why not, and what to do:", "", *notes, ""])
+    return "\n".join([HEAD, *rows, "", "## Why not, and what to do", "", *notes, ""])
 
 
 def _table(
     reasons: dict[Reason, list[str]], cases: Mapping[str, tuple[str, tuple[str, ...]]], names: Sequence[str]
 ) -> list[str]:
-    """The table of cases and of the names of analyses, in lines."""
-    rows = ["| | " + " | ".join(names) + " |", "|" + " --- |" * (len(names) + 1)]
+    """What all analyses support, and the table of the other cases, in lines."""
+    everywhere: list[str] = []
+    rows = ["| | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
     for name, (case, settings) in cases.items():
-        asked = (refused(case, settings, ANALYSES[analysis]) for analysis in names)
-        rows.append(f"| {name} | " + " | ".join(_cell(reasons, each) for each in asked) + " |")
-    return rows
+        asked = [refused(case, settings, ANALYSES[analysis]) for analysis in names]
+        if any(asked):
+            rows.append(f"| {name} | " + " | ".join(_cell(reasons, each) for each in asked) + " |")
+        else:
+            everywhere.append(name)
+    return [f"Supported by all of {'; '.join(names)}:", "", f"{'; '.join(everywhere)}.", "", *rows]
 
 
 def _cell(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:
     """Yes, or no with the numbers of the reasons, which are added to them."""
-    told = list(dict.fromkeys((fault.key, fault.problem, fault.remedy) for fault in faults))
+    told = list(dict.fromkeys(map(_reason, faults)))
     for fault in faults:
-        values = reasons.setdefault((fault.key, fault.problem, fault.remedy), [])
+        values = reasons.setdefault(_reason(fault), [])
         if fault.value and fault.value not in values:
             values.append(fault.value)
     return f"no ({', '.join(str(list(reasons).index(each) + 1) for each in told)})" if told else "yes"
+
+
+def _reason(fault: Fault) -> Reason:
+    return re.sub(r"\.\d+", "", fault.key), fault.problem, fault.remedy
 
 
 def _sentence(reason: Reason, values: Sequence[str]) -> str:

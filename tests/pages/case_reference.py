@@ -15,30 +15,27 @@ PAGE = DOCS / "case-file.md"
 
 HEAD = """# The case file
 
-A case is one TOML file: rotor, bearings, oil, solution of the films, speed profile. `frb cases jeffcott` prints
-a complete one, `frb cases jeffcott -o my.toml` copies it, `frb check my.toml` lists its faults and what will be
-modelled, and `frb schema > case.schema.json` writes a schema for editors.
+A case is one TOML file: rotor, bearings, oil, films, speed. `frb cases jeffcott` prints a complete one, `frb cases
+jeffcott -o my.toml` copies it, `frb check my.toml` lists its faults, and `frb schema > case.schema.json` writes a
+schema for editors.
 
-- A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit of the table below, and `frb check`
-  lists the bare numbers. Any unit of the same kind is accepted: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`,
-  `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
-- Values outside the usual range, mostly by a wrong unit, are refused unless the list `confirm` names them:
-  `confirm = ["clearance"]` above all tables, or `--set confirm='["clearance"]'`.
-- Rotor speeds and frequencies are in Hz, revolutions or periods per second. Pressures are absolute. Angles phi are 0 at
-  the top and count counter-clockwise; angles of a displacement count from the x-axis (see
-  [conventions](conventions.md)).
-- `--set bearing.clearance="40 um"` sets one key for one call of any command that takes a case, and can be repeated.
-  `bearing.1.width` is a key of the second `[[bearing]]`, `bearing.support.stiffness.1` the second value of a list.
-- An unknown key is a fault. All faults of a file are reported together, each with its line and a remedy. Combinations
-  that are not modelled are refused before anything is computed.
+- A quantity is a text of number and unit, `"35 um"`; a bare number is in the unit in brackets below. Any unit of the
+  same kind is accepted: `"12 mPa*s"`, `"5000 N/mm"`, `"3 g*mm"`, `"18000 rpm"`, `"15 deg"`, `"100 degC"`.
+- Values outside the usual range need a confirmation: `confirm = ["clearance"]` above all tables, or `--set
+  confirm='["clearance"]'`.
+- Pressures are absolute. [Conventions](conventions.md) has frames, angles and signs. Files are named from the folder
+  of the case.
+- `--set bearing.clearance="40 um"` sets one key for one call and can be repeated. `bearing.1.width` is a key of the
+  second `[[bearing]]`, `bearing.support.stiffness.1` the second value of a list.
+- All faults of a file are reported together, each with its line and a remedy. The [matrix](matrix.md) shows which
+  combinations are supported.
 
-From Python, `frbcli.case_from_dict` takes the same tables as nested dicts with the same checks. `case.source_text` is
-the TOML text of any case, also of one that was made or changed in Python; a run file contains it. A case is frozen:
-`case.with_settings("oil.viscosity = 50 mPa*s", ...)`, or with a dict `{"oil.viscosity": "50 mPa*s"}`, gives another
-case, checked as a file is.
+From Python, `frbcli.case_from_dict` takes the same tables as nested dicts. `case.source_text` is the TOML text of any
+case. A case is frozen: `case.with_settings("oil.viscosity = 50 mPa*s", ...)`, or with a dict, gives another case,
+checked as a file is.
 
-This page is written from the schema by `cd tests && python -m pages.case_reference`; a test checks that it is up to
-date.
+Each line has a key, its unit or values with the default, and its meaning. Keys marked * must be given. `cd tests &&
+python -m pages.case_reference` writes this page from the schema.
 """
 
 # table of the file: name of its model in the schema
@@ -95,27 +92,70 @@ TABLES = {
 }
 
 
+# keys that several tables have, once on the page: title, a model that has them, the first and the last one
+SHARED = (
+    ("Keys of every film", "RingFilm", ("width", "side_flow_factor")),
+    ("Keys of every bearing with a film", "SingleFilmBearing", ("shaft", "supply_temperature")),
+    ("Keys of rings", "CartridgeBearing", ("centrifugal_pressure", "pin")),
+    ("Keys of every supply", "Pocket", ("pressure", "flow")),
+)
+
+Rows = dict[str, tuple[str, str]]
+
+
 def page() -> str:
     """The whole page."""
     schema = json_schema()
     models = schema["$defs"] | {"Case": schema}
     if left := set(models) - set(TABLES.values()):
         raise ValueError(f"no place on the page for {sorted(left)}")
-    return "\n".join([HEAD, *(_section(title, models[name]) for title, name in TABLES.items())])
+    shared = {title: _between(_rows(models[model]), *ends) for title, model, ends in SHARED}
+    sections = [_section(f"`{title}`", models[name], shared) for title, name in TABLES.items()]
+    return "\n".join([HEAD, *sections, *(_text(title, "", rows) for title, rows in shared.items())])
 
 
-def _section(title: str, model: dict[str, Any]) -> str:
-    rows = [_row(key, entry, key in model.get("required", ())) for key, entry in model["properties"].items()]
-    text = " ".join(model["description"].split("\n\n")[0].split())
-    head = ["| key | value | default | meaning |", "|" + " --- |" * 4]
-    return "\n".join([f"## `{title}`", "", text, "", *head, *rows, ""])
+def _section(title: str, model: dict[str, Any], shared: dict[str, Rows]) -> str:
+    rows = _rows(model)
+    links = []
+    for name, common in shared.items():
+        if all(rows.get(key) == row for key, row in common.items()):
+            rows = {key: row for key, row in rows.items() if key not in common}
+            links.append(f"[{name[0].lower()}{name[1:]}](#{name.lower().replace(' ', '-')})")
+    words = [" ".join(model["description"].split("\n\n")[0].split())]
+    return _text(title, " ".join([*words, *([f"It also has the {' and the '.join(links)}."] if links else [])]), rows)
 
 
-def _row(key: str, entry: dict[str, Any], required: bool) -> str:
+def _text(title: str, words: str, rows: Rows) -> str:
+    """A section; neighbours of one value and meaning share a line."""
+    lines: list[tuple[list[str], tuple[str, str]]] = []
+    for key, row in rows.items():
+        if lines and lines[-1][1] == row:
+            lines[-1][0].append(key)
+        else:
+            lines.append(([key], row))
+    items = "\n".join(f"- {', '.join(keys)} ({value}): {meaning}" for keys, (value, meaning) in lines)
+    return "\n\n".join(filter(None, (f"## {title}", words, items))) + "\n"
+
+
+def _rows(model: dict[str, Any]) -> Rows:
+    """Value and meaning of every key but the kind, which the title has."""
+    required = model.get("required", ())
+    entries = {key: entry for key, entry in model["properties"].items() if key != "kind"}
+    return {f"`{key}`{' *' * (key in required)}": _row(entry, key in required) for key, entry in entries.items()}
+
+
+def _between(rows: Rows, first: str, last: str) -> Rows:
+    """The rows from one key to another."""
+    names = [key.strip("`* ") for key in rows]
+    return dict(list(rows.items())[names.index(first) : names.index(last) + 1])
+
+
+def _row(entry: dict[str, Any], required: bool) -> tuple[str, str]:
     meaning = entry.get("description", "")
     if meaning.startswith(("a quantity in", "a plain number")):
         meaning = ""
-    return f"| `{key}` | {_value(entry)} | {_default(entry, required)} | {meaning} |"
+    default = "" if required else _default(entry)
+    return f"{_value(entry)} = {default}" if default else _value(entry), meaning
 
 
 def _value(entry: dict[str, Any]) -> str:
@@ -138,21 +178,19 @@ def _value(entry: dict[str, Any]) -> str:
     forms = [form for form in forms if form.get("type") != "null"]
     if len(forms) == 2 and forms[0].get("type") == "number" and forms[1].get("type") == "string":
         unit = forms[0]["description"].removeprefix("in ")
-        return "number" if unit == "without unit" else unit
+        return "number" if unit == "without unit" else f"`{unit}`" if "*" in unit else unit  # "*" would be emphasis
     if forms:
         return " or ".join(dict.fromkeys(_value(form) for form in forms))
-    names = {"integer": "whole number", "string": "text", "array": "tables", "boolean": "`true` or `false`"}
+    names = {"integer": "integer", "string": "text", "array": "tables", "boolean": "`true`, `false`"}
     return "table" if "$ref" in entry else names.get(entry.get("type", ""), "table")
 
 
-def _default(entry: dict[str, Any], required: bool) -> str:
-    if required:
-        return "must be given"
+def _default(entry: dict[str, Any]) -> str:
     default = entry.get("default")
-    if default in (None, "", []) or default != default:  # NaN: another key's value, see its meaning
+    if (
+        default in (None, "", []) or isinstance(default, dict) or default != default
+    ):  # NaN: another key's value, see its meaning
         return ""
-    if isinstance(default, dict):
-        return "as its table"
     if isinstance(default, bool):
         return f"`{str(default).lower()}`"
     return f"`{default:g}`" if isinstance(default, float) else f"`{default}`"

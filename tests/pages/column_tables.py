@@ -1,6 +1,6 @@
-"""Writes the tables of columns into the pages of the documents: `cd tests && python -m pages.column_tables`.
+"""Writes the lists of columns into the pages of the documents: `cd tests && python -m pages.column_tables`.
 
-A table stands on a page below its mark, a comment `<!-- columns: NAME -->`.
+A list is below its mark on a page, a comment `<!-- columns: NAME -->`.
 """
 
 from __future__ import annotations
@@ -65,6 +65,11 @@ def of_json(columns: Columns) -> Columns:
     return [replace(column, flat=False) for column in columns]
 
 
+def without(columns: Columns, *beginnings: str) -> Columns:
+    """Columns whose names do not begin like this: the page names these events in a sentence."""
+    return [column for column in columns if not column.names[0].startswith(beginnings)]
+
+
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "mixed friction": MIXED_FRICTION,
@@ -92,7 +97,7 @@ TABLES: dict[str, Columns] = {
     "coefficients of the response": of_json(RESPONSE_COEFFICIENTS),
     "critical speeds": of_pandas(CRITICAL_SPEEDS),
     "diagram": of_pandas(diagram_columns("speed", ("",), 1, ("Omega",), unbalance=True, heat=True, tilts=True)),
-    "resting positions": of_json(equilibrium_columns((), heat=True, tilts=True)),
+    "static equilibria": of_json(equilibrium_columns((), heat=True, tilts=True)),
     "cycles": of_json(cycle_columns((), heat=True, tilts=True)),
     "whirls": of_json(whirl_columns(())),
     "lines": of_json(line_columns(())),
@@ -100,10 +105,10 @@ TABLES: dict[str, Columns] = {
     "special points": of_json(special_columns(())),
     "map": of_pandas(map_columns("KEY", "", "KEY of --and", "", crossings=True)),
     "map points": of_json(map_point_columns(())),
-    "sweep": point_columns(("KEY",), "runup"),
+    "sweep": without(point_columns(("KEY",), "runup"), "critical_", "self_excited_", "offset_", "lock_in_", "contact_"),
     "fit": FITTED,
     "deviations": of_json(DEVIATIONS),
-    "ridges": of_pandas(RIDGES),
+    "ridges": of_pandas([column for column in RIDGES if column.names[0].endswith("_computed")]),
     "hard cases": HARD_CASE,
     "events": of_json(EVENTS),
     "signals": MACHINE_SIGNALS + PART_SIGNALS,
@@ -114,17 +119,38 @@ TABLES: dict[str, Columns] = {
     "tilts": of_json(FILM_TILTS),
     "operation": of_json(FILM_OPERATION),
 }
-MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:\|.*\n)*)")
+MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:- .*\n)*)")
 
 
-def page_table(columns: Columns) -> str:
-    """The table of columns in Markdown, without what only begins a row of the terminal."""
-    rows = ["| pandas, CSV | JSON | unit | terminal | meaning |", "|" + " --- |" * 5]
-    for column in (column for column in columns if column.meaning):
-        cells = map(_escaped, (_flat(column), f"`{column.path}`" if column.path else "", column.unit, _told(column),
-                               ": ".join(filter(None, (column.meaning, column.more)))))  # fmt: skip
-        rows.append("|".join(["", *(f" {cell} " if cell else " " for cell in cells), ""]))
-    return "\n".join(rows) + "\n"
+def page_list(columns: Columns) -> str:
+    """The list of columns in Markdown, without what only begins a row of the terminal; neighbours of one meaning share
+    a line."""
+    shown = [column for column in columns if column.meaning]
+    mixed = any(column.flat for column in shown) and any(column.path for column in shown)
+    lines: list[tuple[list[str], str]] = []
+    for column in shown:
+        meaning = ": ".join(filter(None, (column.meaning, column.more)))
+        if lines and lines[-1][1] == meaning:
+            lines[-1][0].append(_names(column, mixed))
+        else:
+            lines.append(([_names(column, mixed)], meaning))
+    return "".join(f"- {_joined(names)}: {meaning}\n" for names, meaning in lines)
+
+
+def _joined(names: list[str]) -> str:
+    return f"{names[0]} to {names[-1]}" if len(names) > 2 else ", ".join(names)
+
+
+def _names(column: Column, mixed: bool) -> str:
+    """Names in pandas and in JSON, which are marked where they differ and the list has both, and in the terminal. The
+    name of a vector or matrix in JSON is its name without axes, and is left out."""
+    flat, path, told = _flat(column), f"`{column.path}`" if column.path else "", _told(column)
+    if flat and column.path == re.sub("_xx?(?=_|$)", "", column.names[0], count=1):
+        path = flat
+    told = "" if told in ("``", flat, path) else f"terminal {told}" if told else ""
+    if mixed and flat != path:
+        flat, path = (f"CSV {flat}" if flat and not path else flat), (f"JSON {path}" if path else "")
+    return ", ".join(dict.fromkeys(filter(None, (flat, path, told))))
 
 
 def _flat(column: Column) -> str:
@@ -137,18 +163,14 @@ def _told(column: Column) -> str:
     return ", ".join(dict.fromkeys(map(" in ".join, heads)))
 
 
-def _escaped(cell: str) -> str:
-    return cell.replace("|", "\\|")
-
-
 def marked(page: Path) -> list[str]:
-    """The names of the tables on a page."""
+    """The names of the lists on a page."""
     return [name for _, name, _ in MARKED.findall(page.read_text(encoding="utf-8"))]
 
 
 def with_tables(page: Path) -> str:
-    """The page with its tables as they are declared."""
-    return MARKED.sub(lambda found: found[1] + page_table(TABLES[found[2]]), page.read_text(encoding="utf-8"))
+    """The page with its lists as they are declared."""
+    return MARKED.sub(lambda found: found[1] + page_list(TABLES[found[2]]), page.read_text(encoding="utf-8"))
 
 
 if __name__ == "__main__":

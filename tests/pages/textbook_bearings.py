@@ -35,7 +35,7 @@ RIGID = (
     "frb's 0.5 um. Without the mean height of the summits, 0.6 um, frb has 0.46 N m there."
 )
 SHORT = (
-    "The closed form is met to round-off. The stated error is that of the short theory against a film of finite length."
+    "The closed form is met to round-off. The stated error is the difference between short theory and finite length."
 )
 
 

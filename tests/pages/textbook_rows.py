@@ -38,8 +38,8 @@ class Row:
 
     @property
     def given(self) -> tuple[str, ...]:
-        """Texts of a row of the page up to the figure of the source."""
-        return self.name, self.source, self.kind, self.quantity, f"{self.expected:.6g}"
+        """Texts of a row of the page up to the figure of the source; the first one is of all rows of a machine."""
+        return f"{self.name}: {self.source} ({self.kind})", self.quantity, f"{self.expected:.6g}"
 
     def cells(self) -> tuple[str, ...]:
         """Texts of a row of the page, but for the number of its reason."""

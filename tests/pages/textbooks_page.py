@@ -14,32 +14,26 @@ from pages.textbook_rotors import ROTORS
 from pages.textbook_rows import Bench, Row
 
 PAGE = DOCS / "textbooks.md"
-HEAD = (
-    "| machine | source | kind | quantity | source's figure | frb | deviation | stated error | why |\n" + "| --- " * 9
-)
+HEAD = "| machine | quantity | source's figure | frb | deviation | stated error | why |\n" + "|---" * 7
 INTRODUCTION = """\
 # Textbooks
 
-Rotors, bearings and dampers of textbooks, standards and other programs: each figure of a source beside frb's.
-`cd tests && python -m pages.textbooks_page` computes all rows and writes this page. `tests/docs/test_textbooks.py`
-checks them: rotors and short films in every run of the tests, films of finite length in the nightly ones.
+Rotors, bearings and dampers of textbooks, standards and other programs. `cd tests && python -m pages.textbooks_page`
+computes all rows and writes this page; `tests/docs/test_textbooks.py` checks them.
 
-- **kind**: a *printed* figure was read in the source or in the repository that is named; a *closed form* is evaluated
-  from the equation of the source; *other program* is the figure of a program that is named.
-- **stated error**: relative error that frb states beside its figure, by the modes that a shaft keeps and by the mesh of
-  a film; empty where it states none.
-- **why**: number of the reason below, of deviations beyond the printed digits and the stated error.
+- **machine**: with its source; an empty cell repeats the one above. *Printed* figures were read in the source or in the
+  repository that is named, a *closed form* is evaluated from the equation of the source.
+- **stated error**: relative error that frb states, by the modes that a shaft keeps and by the mesh of a film.
+- **why**: number of the reason below, for deviations beyond the printed digits and the stated error.
 
 Figures of the dissertation are in [validation](validation.md).
 """
 OPEN = """\
 ## What has no row
 
-- The pressure dams of Nicholas, Barrett and Leader 1980 (bearings 1 of sets 1 to 5): a step that ends within a pad is
-  not modelled. Their bearings without a dam are above.
-- Tilting pads (Fillon, Bligoud, Frene 1992; Someya 1989, p. 83 and 107): a bearing with pads that tilt is not modelled.
-- Porous aerostatic bearings (Miettinen et al. 2024) and labyrinth seals: not modelled. A seal of known coefficients is
-  an [element](elements.md).
+Not supported: pressure dams (Nicholas, Barrett and Leader 1980), tilting pads (Fillon, Bligoud, Frene 1992; Someya
+1989, p. 83 and 107), porous aerostatic bearings (Miettinen et al. 2024) and labyrinth seals. A seal of known
+coefficients is an [element](elements.md).
 """
 
 
@@ -48,13 +42,28 @@ def tables(parts: list[tuple[str, list[Row]]]) -> str:
     reasons = list(dict.fromkeys(row.reason for _, rows in parts for row in rows if row.reason))
     texts = []
     for title, rows in parts:
-        lines = [" | ".join([*row.cells(), f"{reasons.index(row.reason) + 1}" if row.reason else ""]) for row in rows]
+        lines, machine = [], ""
+        for row in rows:
+            first, *others = row.cells()
+            number = f"{reasons.index(row.reason) + 1}" if row.reason else ""
+            lines.append(" | ".join(["" if first == machine else first, *others, number]))
+            machine = first
         texts.append(f"## {title}\n\n{HEAD}|\n" + "".join(f"| {line} |\n" for line in lines))
     numbered = [
         fill(f"{n}. {reason}", 120, subsequent_indent="   ", break_long_words=False, break_on_hyphens=False)
         for n, reason in enumerate(reasons, 1)
     ]
     return "\n".join([*texts, "## Why figures differ\n", *numbered]) + "\n"
+
+
+def written(text: str) -> list[tuple[str, ...]]:
+    """Cells of all rows of the page, the machine in each of them."""
+    rows: list[tuple[str, ...]] = []
+    for line in text.splitlines():
+        cells = [cell.strip() for cell in line.strip("|").split(" | ")]
+        if line.startswith("| ") and cells[0] != "machine":
+            rows.append((cells[0] or rows[-1][0], *cells[1:]))
+    return rows
 
 
 def computed(benches: tuple[Bench, ...]) -> list[Row]:

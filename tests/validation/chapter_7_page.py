@@ -7,6 +7,7 @@ what the page says of it stays. So a study can be repeated alone, which takes a 
 from __future__ import annotations
 
 import math
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -15,6 +16,7 @@ from typing import Any
 from frbcli.analysis.signals import joined, points
 from frbcli.results.store import Run
 from validation.chapter_7 import rows, run_of
+from validation.measured import with_reasons
 
 ROOT = Path(__file__).parent.parent
 PAGE = ROOT.parent / "docs" / "validation.md"
@@ -22,11 +24,10 @@ NUMBERS = ROOT / "data" / "chapter-7-numbers.toml"
 TITLE = "## Floating rings, chapter 7"
 HEAD = f"""{TITLE}
 
-Written by `cd tests && python -m validation.chapter_7_page FOLDER` from the run-ups of `validation.chapter_7`,
-with the cells of the plan for a target of 4.5e-3 (56 x 5, two-phase 64 x 8); cases and trends are in
-[floating-rings](floating-rings.md). Where several films whirl, all are listed, and the one nearest to the
-printed number counts. With targets of 1e-3 to 2e-3 onsets move by 1 % at most, those of the turbocharger at 1.2
-bar by up to 4 %.
+`cd tests && python -m validation.chapter_7_page FOLDER` writes this section, with a target of 4.5e-3; cases and trends
+are in [floating-rings](floating-rings.md). Where several films whirl, all are listed, and the one nearest to the
+printed number counts. With targets of 1e-3 to 2e-3 onsets move by at most 1 %, of the turbocharger at 1.2 bar by up to
+4 %.
 
 | quantity | where | model | printed | measured | deviation | verdict |
 | --- | --- | --- | --- | --- | --- | --- |"""
@@ -70,20 +71,18 @@ def line(row: dict[str, Any], values: list[float]) -> str:
 
 def section(folder: Path, before: str) -> str:
     """The section; rows without a run are those of the page as it was."""
-    lines = [HEAD]
+    lines = []
     for row in printed():
         start = f"| {row['text']} | {row['where']} | {row['model']} |"
         if (folder / f"{row['study']}.h5").exists():
             lines.append(line(row, measured(row, run_of(folder, row["study"]))))
         else:
-            kept = [old for old in before.splitlines() if old.startswith(start)]
+            kept = [re.sub(r" \(\d+\) \|$", " |", old) for old in before.splitlines() if old.startswith(start)]
             lines.append(kept[0] if kept else f"{start} {row['printed']:g} | not measured | | |")
     notes = [
-        f"- *{row['text']}, {row['model']}*: {row['note']}."
-        for row, told in zip(printed(), lines[1:], strict=True)
-        if told.endswith("| differs |") and "note" in row
+        row.get("note", "") if line.endswith("| differs |") else "" for row, line in zip(printed(), lines, strict=True)
     ]
-    return "\n".join([*lines, "", *(["Why rows differ:", "", *notes, ""] if notes else [])])
+    return "\n".join([HEAD, *with_reasons(lines, notes), ""])
 
 
 def placed(text: str, fresh: str) -> str:

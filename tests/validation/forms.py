@@ -1,4 +1,4 @@
-"""Where a journal rests in the two forms of the two-phase model, and how much oil they create."""
+"""Where a journal is in static equilibrium in the two forms of the two-phase model, and how much oil they create."""
 
 from __future__ import annotations
 
@@ -17,14 +17,11 @@ SUPPLIES: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 HEAD = """## Two forms of the two-phase model
 
-The source uses the form (4.31), which does not conserve oil, with artificial diffusion on 10 x 20 quadratic elements.
-`frb` has both: `form = "published"` reproduces it, `form = "conservative"` is the default. They differ where the
-source supplies oil at ambient pressure through a circumferential groove: the film has no pressurised supply and
-starves. There the published form creates the oil that leaves at the ends, and the resting position is that of the
-penalty model; with the conservative form the eccentricity at rest is large and the onset of whirl early. Rows that
-depend on this supply therefore say in which form they were measured.
+The source uses the form (4.31) with artificial diffusion on 10 x 20 quadratic elements, which does not conserve oil:
+`form = "published"`; the default is `form = "conservative"`. They differ where oil is supplied at ambient pressure
+through a circumferential groove and the film starves. There the published form creates the oil that leaves at the ends.
 
-Eccentricity at rest, 30 Hz, x_1 = 0.99; created: oil that leaves the film less what enters it, as a share of it.
+Eccentricity in static equilibrium, 30 Hz, x_1 = 0.99; created: oil that leaves less oil that enters, as a share of it.
 
 | supply | penalty | published | conservative | created, published | created, conservative |
 | --- | --- | --- | --- | --- | --- |"""

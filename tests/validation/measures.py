@@ -37,7 +37,6 @@ AXIAL_GROOVE = (
     'bearing.supply={ kind = "axial-grooves", position = "0 deg", opening_angle = "15 deg", pressure = "1 bar" }'
 )
 TO_600_Hz = "speed.to=600 Hz"
-REFERENCE = ("accuracy.tolerance=1e-8", "accuracy.steps_per_revolution=160", "accuracy.mesh=[12, 256]")
 
 
 @dataclass(frozen=True)
@@ -136,13 +135,6 @@ def stiffness_thresholds(stiffnesses: Sequence[str]) -> list[float]:
 def supply_thresholds(name: str, pressures: Sequence[str]) -> list[float]:
     """Linear thresholds in Hz of a shipped case at the given supply pressures."""
     return [threshold_Hz(load_case(name, (f"bearing.supply.pressure={p}",))) for p in pressures]
-
-
-def accuracy_before(folder: Path, case: Case, reference: Case, before_s: float) -> float:
-    """Largest difference in eccentricity to the reference run up to before_s."""
-    runs = [kept_runup(folder, each) for each in (case, reference)]
-    eccentricities = [run["eccentricity"][run["time_s"] <= before_s] for run in runs]
-    return float(np.abs(eccentricities[0] - eccentricities[1]).max())
 
 
 def worst_resting_position(clearance_um: str, theory: str) -> tuple[float, float]:

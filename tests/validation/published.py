@@ -35,15 +35,11 @@ CIRCUMFERENTIAL, AXIAL, RIGID = "jeffcott-two-phase", "axial-groove-two-phase", 
 
 HEAD = """## Run-ups in the published form
 
-On 40 x 10 cells of a section, whose diffusion has the length of the 20 elements around of the source, with a target of
-1e-2; `python -m validation.published` runs them and keeps the figures in `tests/data/published-runs.csv`. Beside the
-eccentricity after 1 s stand those with 20 x 10 quadratic elements, as in the source, of the conservative form and of
-the penalty model (target 3e-3); then that after 4 s, the onset, and oil created, as a share of what left the film.
-
-Elements and cells agree to 1 % beside a circumferential groove. Beside an axial groove they differ by 3 %: there the
-elements create oil beside their diffusion, too, for the products of their shape functions with theta(p) do not add up,
-while cells create oil by the diffusion alone, and come nearer to the conservative form. On elements a second of a run
-took 10 to 55 s of CPU time, and the first run with a whirl 268 s up to 6.19 s, with its onset at 5.91 s.
+On 40 x 10 cells of a section with the diffusion length of the source and a target of 1e-2; `python -m
+validation.published` keeps the figures in `tests/data/published-runs.csv`. Eccentricities after 1 s, also with 20 x 10
+quadratic elements as in the source, of the conservative form and of the penalty model; then after 4 s, the onset, and
+the oil created, as a share of what left the film. With an axial groove elements and cells differ by 3 %: elements
+create oil also by the products of their shape functions with theta(p).
 
 | run | until, s | at 1 s | elements | conservative | penalty | at 4 s | onset, s | created | CPU s |
 | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"""

@@ -22,7 +22,7 @@ class Start(Model):
     """Position of the journal at the start of a run."""
 
     position: Literal["centre", "resting"] = Field(
-        default="centre", description="in the middle of the bearings, or where the rotor rests at the first speed"
+        default="centre", description="in the middle of the bearings, or in static equilibrium at the first speed"
     )
     displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
 
@@ -34,7 +34,7 @@ class Accuracy(Model):
         default=1e-3, description="error of the eccentricities that is aimed at"
     )
     budget: Annotated[float, Quantity("s", "60 s", above=0)] | None = Field(
-        default=None, description="CPU time of a run-up: the most exact within it, if the target needs more"
+        default=None, description="CPU time of a run-up, if the target needs more: the most exact plan within it"
     )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
         default=None, description="elements along the axis, then around the circumference, where there are no fewer"
@@ -43,10 +43,10 @@ class Accuracy(Model):
         default=None, description="of the time integration, relative to the clearance"
     )
     steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = Field(
-        default=STEPS_PER_REVOLUTION, description="at least; films on cells take fewer if not given"
+        default=STEPS_PER_REVOLUTION, description="at least; finite-volume films take fewer by default"
     )
     macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
-        default=MACRO_STEP, description="longest one of a co-simulation"
+        default=MACRO_STEP, description="longest macro step of a co-simulation"
     )
 
 
@@ -66,8 +66,6 @@ class Output(Model):
     )
     signals: tuple[FilmSignal, ...] = Field(
         default=(),
-        description="what a run records of each film beside its eccentricity: the force on the journal, the smallest "
-        "film thickness, the power that goes into the film, its torque on the journal, the oil that leaves "
-        "it through its open ends",
+        description="further signals of each film that a run records",
     )
-    films: FilmFrames | None = Field(default=None, description="keep the oil and the gas of films that keep their oil")
+    films: FilmFrames | None = Field(default=None, description="keep oil and gas of mass-conserving films")

@@ -28,17 +28,16 @@ class KinematicMotion(Model):
 
     film: Label = Field(
         default="",
-        description="the film that is tested, by its name in results; must be given where there are several. What is "
-        "outside of it is at rest",
+        description="name of the tested film, needed where there are several; all outside of it is fixed",
     )
     eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
-    load: Force | None = Field(default=None, description="in place of the displacement: a resting position")
-    speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is at rest")
+    load: Force | None = Field(default=None, description="replaces the displacement: a static equilibrium")
+    speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is fixed")
     eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
     whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
     velocity: tuple[Velocity, Velocity] | None = Field(
-        default=None, description="of a rotation: of the journal along x, y, in place of the two before"
+        default=None, description="of a rotation: of the journal along x, y; replaces the two before"
     )
     tilt: tuple[Tilt, Tilt] | None = Field(
         default=None, description="of the journal about x, y through the middle of the bearing"

@@ -19,8 +19,7 @@ PointTime = Annotated[float, Quantity("s", "1 s", least=0)]
 
 
 class SpeedRamp(Model):
-    """Rotor speed [Hz]: linear from `start` to `end` in `duration`; a run-down holds it and goes back. Or through given
-    points, from which these three follow."""
+    """Rotor speed [Hz]: linear from `from` to `to` in `duration`, or through points; a run-down goes back."""
 
     start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
     end: Speed = Field(alias="to", description="at the end of the run-up")
@@ -28,17 +27,14 @@ class SpeedRamp(Model):
     hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
     down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
     points: tuple[tuple[PointTime, Speed], ...] = Field(
-        default=(), description="in place of from, to and duration: times, from 0 on, with speeds, linear between them"
+        default=(), description="replaces from, to and duration: times from 0 on with speeds, linear between them"
     )
     file: Label = Field(
-        default="", description="in place of points: CSV, WAV, MAT or UFF with the columns time and speed; from the "
-        "case's folder",
+        default="", description="replaces points: CSV, WAV, MAT or UFF with the columns time and speed",
     )  # fmt: skip
     tacho: Label = Field(default="", description="column of `file` with pulses, from which the speed follows")
     pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` in a revolution")
-    times: tuple[PointTime, ...] = Field(
-        default=(), description="what points or `file` hold: the case that a run keeps has them in place of these keys"
-    )
+    times: tuple[PointTime, ...] = Field(default=(), description="contents of points or `file`, written by runs")
     speeds: tuple[Speed, ...] = Field(default=(), description="at these times")
 
     @property

@@ -32,7 +32,7 @@ class Contact(Model):
         default="spring", description="smooth surfaces, or mixed friction of rough ones, in all films"
     )
     policy: Literal["stop", "elastic"] = Field(
-        default="stop", description="of a spring: a run ends where the surfaces touch, or an elastic shell pushes back"
+        default="stop", description="of a spring: contact ends the run, or an elastic shell pushes back"
     )
     eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = Field(
         default=CONTACT_BEGINS, description="at which smooth surfaces touch; films keep a gap beyond it"
@@ -48,21 +48,20 @@ class Contact(Model):
     )
     modulus: Modulus = Field(
         default=COMPOSITE_MODULUS,
-        description="of asperities, composite: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; steel on steel",
+        description="composite, of asperities: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; default: steel on steel",
     )
     hardness: Modulus | None = Field(
         default=None, description="of the softer asperities, which yield there; elastic if not given"
     )
     wear: WearCoefficient | None = Field(
         default=None,
-        description="Archard's coefficient of asperities, volume times hardness over force and path: runs then "
-        "estimate the depth",
+        description="Archard's coefficient (volume times hardness over force and path): runs estimate the depth",
     )
     flow_factors: bool = Field(
-        default=False, description="of asperities: films, then on cells, flow as between rough surfaces"
+        default=False, description="of asperities: films are finite-volume films with the flow between rough surfaces"
     )
     journal_roughness: Roughness | None = Field(
-        default=None, description="of flow factors: of the journal alone; both surfaces are equal if not given"
+        default=None, description="of the journal alone, for flow factors; by default both surfaces are equal"
     )
     friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
 

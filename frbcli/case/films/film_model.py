@@ -22,7 +22,7 @@ class FilmModel(Model):
     cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global",
-        description="torque of missing oil: reduced by the mean oil fraction (4.46), the local one, or not",
+        description="torque of a cavitated film: reduced by the mean oil fraction (4.46), the local one, or not",
     )
     torque: Literal["all", "couette", "simple"] = Field(
         default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
@@ -30,16 +30,14 @@ class FilmModel(Model):
     coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
     grid: Literal["auto", "fixed", "half-speed"] = Field(
         default="auto",
-        description="cells at rest, or turning with the mean speed of journal and shell (plain gaps); auto: turning "
-        "for plain gaps that keep their oil",
+        description="fixed cells, or turning with the mean surface speed; auto: turning for mass-conserving plain gaps",
     )
     solution: Literal["auto", "table", "cells"] = Field(
-        default="auto", description="in runs: tabulated before the run where possible, or solved on cells"
+        default="auto", description="in runs: tabulated before the run where possible, or solved as finite volumes"
     )
     tilt: Literal["none", "follows"] = Field(
         default="none",
-        description="the gap is even along the axis, or follows the tilt of journals and rings in it; in runs, bearing "
-        "sheets, stability, damped modes and response. In kinematic tests the motion gives the tilt",
+        description="the gap is constant along the axis, or follows the tilt of journals and rings",
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare

@@ -27,19 +27,14 @@ if TYPE_CHECKING:
 
 MIDDLE = 0.5  # of the width
 TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
-SupplyPressure = Annotated[
-    InputPressure, Field(description="supply pressure, absolute; may change over time, docs/surroundings.md")
-]
+SupplyPressure = Annotated[InputPressure, Field(description="supply pressure, absolute; may change over time")]
 Ramp = Annotated[
     RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
 ]
 
 LargestFlow = Annotated[
     Flow | None,
-    Field(
-        description="the most oil that the supply gives to the whole bearing: where the film would take more at "
-        "`pressure`, the pressure falls until it takes this"
-    ),
+    Field(description="flow limit of the whole bearing; where the film would take more, the pressure falls"),
 ]
 
 

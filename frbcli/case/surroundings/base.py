@@ -23,25 +23,21 @@ AccelerationEntry = Annotated[float, Quantity("m/s^2", "2 m/s^2")]
 
 
 class Base(MachineTable):
-    """Motion of the ground that the machine stands on: harmonic, or a table over time. Displacements are those against
-    the ground."""
+    """Motion of the ground: harmonic, or a table over time. Displacements are relative to the ground."""
 
     acceleration: tuple[AccelerationEntry, AccelerationEntry] | None = Field(
-        default=None, description="[x, y], amplitude of the ground; with `file` it multiplies the columns, 1 m/s^2 if "
-        "not given",
-    )  # fmt: skip
-    order: Order | None = Field(default=None, description="times the angle of what shakes; 1 if not given")
-    speed: Speed | None = Field(
-        default=None, description="of what shakes, such as an engine; that of the rotor if not given"
+        default=None,
+        description="[x, y], amplitude of the ground; factor of the columns of `file`, by default 1 m/s^2",
     )
+    order: Order | None = Field(default=None, description="times the angle of the source; by default 1")
+    speed: Speed | None = Field(default=None, description="of the source, such as an engine; by default of the rotor")
     phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
-        default="", description="in place of order, speed and phase: CSV, WAV, MAT or UFF with the columns time, x and "
-        "y, or one beside the time for both; from the case's folder",
-    )  # fmt: skip
-    over_time: OverTime | None = Field(
-        default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
+        default="",
+        description="replaces order, speed and phase: CSV, WAV, MAT or UFF with the "
+        "columns time, x and y, or one for both",
     )
+    over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 
     alone: ClassVar[bool] = True
 

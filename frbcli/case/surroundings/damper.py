@@ -12,15 +12,14 @@ NO_SPRING = (0.0, 0.0)
 
 
 class Damper(RingFilm):
-    """A film around the shell of a bearing, or around its outer ring, which moves in it and does not turn; it lies in
-    the support, or in the ground without one. Each of both equal bearings of a symmetric rotor has such a damper."""
+    """A squeeze film around the shell of a bearing, or around its outer ring; the shell moves and does not turn."""
 
-    mass: ShellMass = Field(description="of the shell and what moves with it, of one bearing; above 0")
+    mass: ShellMass = Field(description="of the shell and what moves with it, per bearing; above 0")
     spring: Stiffnesses = Field(
         default=NO_SPRING,
-        description="stiffness of the centring spring: of both directions, or [x, y]; without a spring if not given",
+        description="stiffness of the centring spring, or [x, y]; 0: no spring",
     )
     centred: bool = Field(
-        default=False, description="whether the spring is set so that the shell rests in the centre under the static "
-        "load; else it sinks by load over stiffness",
-    )  # fmt: skip
+        default=False,
+        description="the spring centres the shell under the static load; else it sinks by load over stiffness",
+    )

@@ -23,33 +23,29 @@ Order = Annotated[float, Quantity(NUMBER, "2")]
 
 
 class AppliedForce(MachineTable):
-    """A force on a disk, a journal, a ring or a support: constant; harmonic with an order of the rotor speed or a
-    frequency of its own, in a direction or rotating; or a table over time."""
+    """A constant, harmonic or tabulated force on a disk, a journal, a ring or a support."""
 
     at: Identifier = Field(
-        description="place: a disk or a bearing by its name, or a point of a run such as `disk`, `journal_left`, "
-        "`support`; of a symmetric rotor at each of both journals, rings or supports"
+        description="disk or bearing by its name, or a point of a run such as `disk`, `journal_left`, `support`"
     )
     force: tuple[ForceEntry, ForceEntry] | None = Field(
-        default=None, description="[x, y]; of a harmonic force its amplitude; with `file` it multiplies the columns, "
-        "1 N if not given",
-    )  # fmt: skip
-    order: Order | None = Field(
-        default=None, description="times the angle of the rotor; below 0 a rotating force turns the other way"
+        default=None,
+        description="[x, y], of a harmonic force its amplitude; factor of the columns of `file`, by default 1 N",
     )
-    frequency: SignedSpeed | None = Field(default=None, description="in place of `order`, whatever the rotor does")
+    order: Order | None = Field(
+        default=None, description="times the angle of the rotor; a negative order rotates the force clockwise"
+    )
+    frequency: SignedSpeed | None = Field(default=None, description="replaces `order`: independent of the rotor")
     rotating: bool = Field(
-        default=False, description="whether its direction turns, counter-clockwise; with the rotor where neither order "
-        "nor frequency is given",
+        default=False,
+        description="the direction turns counter-clockwise, by default with the rotor",
     )
     phase: Angle = Field(default=0.0, description="of a harmonic force at angle and time zero")
     file: Label = Field(
-        default="", description="in place of the four: CSV, WAV, MAT or UFF with the columns time, x and y, or one "
-        "beside the time for both; from the case's folder",
-    )  # fmt: skip
-    over_time: OverTime | None = Field(
-        default=None, description="what `file` holds: the case that a run keeps has it in place of that key"
+        default="",
+        description="replaces the four: CSV, WAV, MAT or UFF with the columns time, x and y, or one for both",
     )
+    over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 
     @property
     def amplitude(self) -> tuple[float, float]:

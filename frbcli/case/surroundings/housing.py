@@ -68,31 +68,29 @@ class HousingMode(Model):
     frequency: Annotated[float, Quantity(SPEED, "120 Hz", above=0)] = Field(description="undamped natural frequency")
     damping: Fraction = Field(default=0.0, description="ratio to the critical damping")
     at: Annotated[tuple[ModeAt, ...], _listed("displacement"), _BY_PLACE] = Field(
-        description="displacements at all bearings in 1/sqrt(kg), e.g. { left = [0.3, 0], right = [-0.2, 0] }"
+        description="displacements at all bearings in 1/sqrt(kg): { left = [0.3, 0], right = [-0.2, 0] }"
     )
 
 
 class Housing(MachineTable):
-    """What all bearings stand in, in place of the ground: a rigid body with mass, inertia and mounts, or modes."""
+    """The body that carries all bearings: a rigid one with mass, inertia and mounts, or modes."""
 
     mass: ShellMass | None = Field(default=None, description="of a rigid housing; above 0")
     inertia: Inertias | None = Field(
         default=None,
-        description="of a rigid housing that tilts, about its centre of mass: of both planes, or [x z, y z]; must be "
-        "given for a turbocharger, and has no effect on a symmetric rotor, whose ends move alike",
+        description="of a rigid housing about its centre of mass, or [x z, y z]; must be given for a turbocharger",
     )
     position: Position | None = Field(default=None, description="of its centre of mass along the shaft, as `inertia`")
     mounts: tuple[Mount, ...] = Field(default=(), description="what holds a rigid housing")
-    modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing, in place of all these keys")
+    modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing; replaces all these keys")
     file: Label = Field(
-        default="", description="in place of `modes`: a CSV with a row for each mode and the columns frequency_Hz, "
-        "damping, and left_x, left_y and so on by places, or a rotor file of ROSS, .toml or .json, whose bearings are "
-        "on point masses; from the case's folder",
-    )  # fmt: skip
+        default="",
+        description="replaces `modes`: CSV with frequency_Hz, damping, left_x, left_y and so on, "
+        "or a rotor file of ROSS with point masses",
+    )
     masses: Annotated[tuple[MassAt, ...], _listed("mass"), _BY_PLACE] = Field(
         default=(),
-        description="all masses of an elastic housing by their places, each with a unit: modes are then "
-        "checked to be orthonormal, and the housing has its weight",
+        description="masses of an elastic housing by place; gives its weight and checks that modes are orthonormal",
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:

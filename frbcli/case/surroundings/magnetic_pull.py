@@ -20,8 +20,7 @@ Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
 
 
 class MagneticPull(MachineTable):
-    """The unbalanced magnetic pull on a rotor out of the middle of its stator: in proportion to its displacement and
-    along it, a spring of negative stiffness."""
+    """The unbalanced magnetic pull of an electrical machine: a spring of negative stiffness."""
 
     at: Identifier = Field(description="place of the rotor, as of a [[force]]")
     pull: Pull = Field(description="force over displacement; of a symmetric rotor at each of both journals")

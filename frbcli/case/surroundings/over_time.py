@@ -24,7 +24,7 @@ class OverTime(Model):
     source: Label = Field(default="", description="the file that they were read from")
     time: tuple[Entry, ...] = Field(description="in s, ascending")
     x: tuple[Entry, ...] = Field(description="value in x, or of the one quantity, at each time")
-    y: tuple[Entry, ...] = Field(default=(), description="value in y; that in x if not given")
+    y: tuple[Entry, ...] = Field(default=(), description="value in y; by default as x")
 
     @property
     def both(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

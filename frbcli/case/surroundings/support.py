@@ -23,10 +23,9 @@ Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 
 
 class Support(Model):
-    """The shell of a bearing as a body on springs and dampers; without a support it is fixed to ground or housing. It
-    moves in x and y and does not turn. Each of both equal bearings of a symmetric rotor has such a support."""
+    """The shell of a bearing as a body on springs and dampers; it moves in x and y and does not turn."""
 
-    mass: ShellMass = Field(description="of the shell and what moves with it, of one bearing; above 0")
+    mass: ShellMass = Field(description="of the shell and what moves with it, per bearing; above 0")
     stiffness: Stiffnesses = Field(description="of its springs to ground or housing: of both directions, or [x, y]")
     damping: Dampings = Field(
         default=(0.0, 0.0), description="of its dampers to ground or housing: of both directions, or [x, y]"
