@@ -10,8 +10,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import (
-    Density,
     KinematicViscosity,
+    OilDensity,
     Quantity,
     SpecificHeat,
     Temperature,
@@ -113,7 +113,7 @@ class Oil(Model):
         default=1.0,
         description="viscosity at 1e6 to 1e7 1/s over the one at low shear rates",
     )
-    density: Density = Field(
+    density: OilDensity = Field(
         default=USUAL_DENSITY,
         description="of the oil; by default of the grade at `temperature`, or at 80 degC",
     )

@@ -183,6 +183,7 @@ Viscosity = Annotated[float, Quantity("Pa*s", "12 mPa*s", above=0)]
 KinematicViscosity = Annotated[float, Quantity(KINEMATIC, "46 cSt", above=0)]
 Flow = Annotated[float, Quantity("m^3/s", "0.2 l/min", above=0)]
 Density = Annotated[float, Quantity("kg/m^3", "850 kg/m^3", above=0)]
+OilDensity = Annotated[float, Quantity("kg/m^3", "850 kg/m^3", least=10, most=2e4)]  # 0.85 was meant in g/cm^3
 Temperature = Annotated[float, Quantity("K", "100 degC", above=0)]
 VogelOffset = Annotated[float, Quantity(TEMPERATURE_DIFFERENCE, "-180 K")]
 TemperatureDifference = Annotated[float, Quantity(TEMPERATURE_DIFFERENCE, "900 K")]

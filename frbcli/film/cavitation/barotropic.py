@@ -153,7 +153,10 @@ def vapour_fraction(vapour: float, liquid: float, cavity: float) -> float:
         tension, _, lowest = mixture(pressure / vapour, vapour, liquid)
         return pressure - tension * lowest - cavity
 
-    return float(brentq(missing, 1e-9 * cavity, min(cavity, 0.5 * vapour), xtol=1e-12 * cavity, rtol=1e-14)) / vapour
+    thin, dense = 1e-9 * cavity, min(cavity, 0.5 * vapour)
+    if missing(thin) * missing(dense) > 0.0:
+        raise ValueError("the vapour is nowhere much lighter than the liquid")
+    return float(brentq(missing, thin, dense, xtol=1e-12 * cavity, rtol=1e-14)) / vapour
 
 
 def _fraction(u: Any, ratio: float) -> Any:

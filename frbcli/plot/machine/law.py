@@ -76,7 +76,7 @@ def _draw_models(axes: Axes, case: Case) -> None:
         for given in _compared(law, chosen):
             try:
                 fraction = law.scaled(given, over_cavity).curve(ratio)
-            except NotImplementedError:
+            except (NotImplementedError, ValueError):  # no law of the pressure alone, or not with this oil
                 continue
             own = law.name == case.film.cavitation and given == chosen
             _draw(axes, number, ratio * cavity, fraction, law.legend(given), own)

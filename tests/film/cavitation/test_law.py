@@ -10,6 +10,8 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run
+from frbcli.errors import InputError
+from frbcli.film.cavitation.barotropic import vapour_fraction
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
@@ -79,6 +81,22 @@ def test_picture_names_the_case_and_its_model(model: str) -> None:
     assert any("0.3" in label for label in labels)
     thick = [line for line in right.lines if line.get_linewidth() > 1.5]
     assert len(thick) == (0 if model == "half-sommerfeld" else 1)
+
+
+def test_laws_that_this_oil_cannot_have_are_left_out() -> None:
+    """A vapour as stiff as the oil, and one that is nowhere lighter: no law of Bayada and Chupin."""
+    with pytest.raises(ValueError, match="lighter than the liquid"):
+        vapour_fraction(8.3e-4 * 350.0**2, 8.3e-4 * 1400.0**2, 1e5)
+    speeds = ["film.barotropic.vapour_sound_speed=1400 m/s", "film.barotropic.liquid_sound_speed=1400 m/s"]
+    labels = [text.get_text() for text in law_figure(load_case("bearing", speeds)).axes[1].get_legend().get_texts()]
+    assert not any("Bayada" in label for label in labels)
+    assert any("Peeken" in label for label in labels)
+
+
+@pytest.mark.parametrize("density", ["0.83 kg/m^3", "0.83", "8.3e5 kg/m^3"])
+def test_density_of_no_oil_is_refused(density: str) -> None:
+    with pytest.raises(InputError, match=r"oil\.density.*must be at (least 10|most 20000) kg/m\^3"):
+        load_case("bearing", [f"oil.density={density}"])
 
 
 def test_command_draws_a_case(
