@@ -23,9 +23,6 @@ RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
 FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
-SECOND_FREQUENCY = Column("second_frequency", "Hz", "frequency beside the first one, of a torus point or a flip")
-SYNCHRONOUS = Column("synchronous", "", "whether the curve is of the synchronous response, with torus points or flips",
-                     lambda item: item[1].synchronous)  # fmt: skip
 DIGITS = 6  # of a value that is varied, in the terminal
 
 
@@ -209,13 +206,11 @@ def map_point_columns(films: Sequence[str]) -> tuple[Column, ...]:
         CRITICALITY,
         LYAPUNOV,
         Column("kind", "", "`bautin` or `cusp`", lambda point: point.kind or None),
-        SECOND_FREQUENCY,
     )
 
 
-def map_columns(over: str, over_unit: str, key: str, unit: str, crossings: bool = False) -> tuple[Column, ...]:
-    """The columns of a map in pandas: of the number of a curve, the curve and one of its points. crossings: whether
-    there are torus or flip points."""
+def map_columns(over: str, over_unit: str, key: str, unit: str) -> tuple[Column, ...]:
+    """The columns of a map in pandas: of the number of a curve, the curve and one of its points."""
     first = (
         Column(over, "", "value of the first number", lambda item: item[2].over),
         Column("over_unit", "", "its unit", lambda _: over_unit),
@@ -225,13 +220,12 @@ def map_columns(over: str, over_unit: str, key: str, unit: str, crossings: bool 
         Column(key, "", "value of the second number", lambda item: item[2].value),
         Column("unit", "", "its unit", lambda _: unit),
         Column("curve", "", "number of the curve, from 0", itemgetter(0)),
-        Column("kind", "", "`hopf`, `fold`, `torus` or `flip`, `bautin` or `cusp` on a curve",
+        Column("kind", "", "`hopf` or `fold`, `bautin` or `cusp` on a curve",
                lambda item: item[2].kind or item[1].kind),
         *named((SPEED_COLUMN, FREQUENCY,
                 Column("eccentricity_max", "", "largest eccentricity of all films",
                        lambda point: float(point.eccentricity_max.max())),
-                CRITICALITY, LYAPUNOV, *([SECOND_FREQUENCY] if crossings else [])), "", itemgetter(2)),
-        *([SYNCHRONOUS] if crossings else []),
+                CRITICALITY, LYAPUNOV), "", itemgetter(2)),
     )  # fmt: skip
 
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frbcli.scene.costs.preparation import Kernels
 
 ASKED = "asked"
-KINDS = {"hopf": "Hopf points", "fold": "folds", "torus": "torus points", "flip": "flips"}
+KINDS = {"hopf": "Hopf points", "fold": "folds"}
 
 
 @dataclass(frozen=True)
@@ -64,8 +64,7 @@ class Range:
                    "their points. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
               help="Compute, too, what stable cycles become with unbalance: whirls of two frequencies or "
-                   "locked in; in a map of --and the curves of torus points and flips, also of the synchronous "
-                   "response.")  # fmt: skip
+                   "locked in.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")
@@ -93,14 +92,14 @@ def command(
     along_speed = over == "speed"
     if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
-    if with_unbalance and key is None and not along_speed:
-        raise click.UsageError("--with-unbalance is of the diagram over the speed and of maps (--and).")
+    if with_unbalance and (key is not None or not along_speed):
+        raise click.UsageError("--with-unbalance is of the diagram over the speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
     places = outputs.check(here(case.name, f"-{drawn}.png"))
     at = speeds[0] if speeds else case.speed.end
     if varied.second is not None:
         across = None if along_speed or low is None or high is None else (over, low, high, at)
-        _map(terminal, case, (*varied.second, varied.points), across, with_unbalance, places)
+        _map(terminal, case, (*varied.second, varied.points), across, places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
     with computing(terminal, case, kernels=_kernels(case)) as shown:
@@ -137,7 +136,6 @@ def _map(
     case: Case,
     second: tuple[str, str, str, int],
     first: tuple[str, str, str, float] | None,
-    with_unbalance: bool,
     places: Outputs,
 ) -> None:
     """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
@@ -146,7 +144,7 @@ def _map(
 
     across = None if first is None else Across(*first)
     with computing(terminal, case, kernels=_kernels(case)) as shown:
-        found = stability_map(case, *second, shown.counting(), across, with_unbalance)
+        found = stability_map(case, *second, shown.counting(), across)
     _tell_map(terminal, found)
     names = tuple(place.name for place in film_places(case))
     written = places.write(terminal, found)
@@ -173,8 +171,7 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
     for curve in found.curves:
         values = [point.value for point in curve.points]
         told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
-        of = " of the synchronous response" if curve.synchronous else ""
-        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}{of}: {told}", *curve.notes]))
+        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}: {told}", *curve.notes]))
     for row in found.rows:
         if row.problem:
             terminal.sentence(f"{row.value:.4g} {found.unit}: {row.problem}")
@@ -201,7 +198,6 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
         "curves": [
             {
                 "kind": curve.kind,
-                "synchronous": curve.synchronous,
                 "points": documents(map_point_columns(names), curve.points),
                 "notes": curve.notes,
             }
