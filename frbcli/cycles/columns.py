@@ -15,7 +15,7 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
 FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
-STABLE = Column("stable", "", "whether all disturbances decay; none where it is not known")
+STABLE = Column("stable", "", "whether all disturbances decay")
 VALUE = Column("value", "", "value of the number that is varied", flat=False)
 TEMPERATURE = "temperature of a film, with heat"
 END_MEANING = "larger eccentricity of both ends, of films whose journals tilt"
@@ -95,7 +95,7 @@ def cycle_columns(films: Sequence[str], heat: bool = False, tilts: bool = False)
 def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
     """The columns of a SpectralLine in JSON."""
     return (
-        Column("name", "", "name of the line, such as `Omega - nu`"),
+        Column("name", "", "name of the line, such as `Omega / 2`"),
         FREQUENCY,
         Column("amplitude", "", "half the longer axis of its ellipse over the clearance, by film",
                lambda line: by_film(films, line.amplitude), flat=False),
@@ -107,22 +107,20 @@ def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
     return (
         SPEED_COLUMN,
         FREQUENCY,
-        Column("locked", "", "whether the whirl has locked in at half the speed"),
+        Column("locked", "", "true: the whirl has locked in at half the speed", lambda _: True),
         _largest(films),
         RINGS,
         *_temperatures(films, heat),
         STABLE,
-        Column("kind", "", "`fold` where whirls of two frequencies turn back in speed", lambda w: w.kind or None),
     )
 
 
 # Of a MissingWhirl in JSON
-MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl with the unbalance was found at a stable cycle"))
+MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl locks in at a stable cycle"))
 
 
 def _other_line(whirl: UnbalancedWhirl) -> str:
-    others = whirl.lines[2:3]
-    return "locks in" if whirl.locked else ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in others)
+    return ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in whirl.lines[2:3])
 
 
 # Of the number of a branch and one of its whirls with unbalance, for the terminal
@@ -131,8 +129,8 @@ WHIRLS = (
     *named((replace(SPEED_COLUMN, shown=(Shown("Hz", ".2f"),)), replace(FREQUENCY, shown=(Shown("whirl Hz", ".3f"),)),
             Column("eccentricity_max", "", "largest eccentricity", lambda whirl: whirl.eccentricity_max.max(),
                    shown=(Shown("eps max", ".4f"),)),
-            Column("at_nu", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
-                   shown=(Shown("at nu", ".4f"),)),
+            Column("at_half", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
+                   shown=(Shown("at Omega/2", ".4f"),)),
             Column("at_omega", "", "amplitude at the rotor speed", lambda whirl: whirl.lines[1].amplitude.max(),
                    shown=(Shown("at Omega", ".2g"),)),
             Column("other", "", "largest other line", _other_line, shown=(Shown("largest other line"),))),
@@ -258,8 +256,7 @@ def diagram_columns(
             SPEED_COLUMN,
             replace(FREQUENCY, value=_number("frequency_Hz")),
             STABLE,
-            Column("kind", "", "kind of a special point, or `asked`; `locked`, `two frequencies` or `fold` of a "
-                   "whirl with unbalance", _kind),
+            Column("kind", "", "kind of a special point, or `asked`; `locked` of a whirl with unbalance", _kind),
         ),
         *(column for quantity, unit, meaning, at_rest in per_film for film, name in enumerate(films)
           for column in of_point(Column(quantity.replace("temperatures_K", "temperature"), unit, meaning,
@@ -282,7 +279,7 @@ def diagram_columns(
 
 def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
     if isinstance(point, UnbalancedWhirl):
-        return point.kind or ("locked" if point.locked else "two frequencies")
+        return "locked"
     return point.kind if isinstance(point, CyclePoint) else ""
 
 

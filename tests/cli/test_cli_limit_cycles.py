@@ -105,7 +105,8 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert ",locked," in (tmp_path / "table.csv").read_text()
     assert run([*words, "--no-picture"]) == 0
     told = capsys.readouterr().out
-    assert "locks in" in told
+    assert "Locked in with unbalance" in told
+    assert "Omega/2" in told
     assert max(map(len, told.splitlines())) <= 80
     over = ["--over", "bearing.clearance", "--from", "30 um", "--to", "45 um"]
     assert run([*words, *over]) == 2

@@ -63,8 +63,7 @@ class Range:
               help="Number of values of --and at which diagrams are computed; the curves begin at "
                    "their points. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
-              help="Compute, too, what stable cycles become with unbalance: whirls of two frequencies or "
-                   "locked in.")  # fmt: skip
+              help="Compute, too, the whirls that lock in with the unbalance at half the speed.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")
@@ -82,7 +81,7 @@ def command(
     """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
     Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
-    with --with-unbalance the whirls with it.
+    with --with-unbalance the whirls that lock in with it.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
@@ -107,7 +106,7 @@ def command(
             found = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
             found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
-    _tell(terminal, found, with_unbalance)
+    _tell(terminal, found)
     terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
 
 
@@ -221,7 +220,7 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
     )
 
 
-def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
+def _tell(terminal: Terminal, found: LimitCycles) -> None:
     from frbcli.cycles.columns import special_columns
 
     terminal.show(found.case.heading, table_of(special_columns(found.films, found.over, found.unit), found.special))
@@ -238,7 +237,7 @@ def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
             if point.kind == ASKED:
                 terminal.result(f"{point.speed_Hz:.4g} Hz, branch {number + 1}: {_in_words(point)}")
     _tell_with_unbalance(terminal, found)
-    for note in (*found.notes, *_left_out(found, with_unbalance)):
+    for note in (*found.notes, *_left_out(found)):
         terminal.sentence(note)
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
 
@@ -255,31 +254,28 @@ def _in_words(point: CyclePoint) -> str:
 
 
 def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
-    """Where none was found with the unbalance and why, and a table of those that were."""
+    """Where no whirl locks in with the unbalance and why, and a table of those that do."""
     from frbcli.cycles.columns import WHIRLS
 
     for number, branch in enumerate(found.branches):
         for reason in dict.fromkeys(missing.reason for missing in branch.missing):
             speeds = [f"{missing.speed_Hz:.4g}" for missing in branch.missing if missing.reason == reason]
-            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl at {', '.join(speeds)} Hz: {reason}.")
+            at = ", ".join(speeds)
+            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl locks in at {at} Hz: {reason}.")
     whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
-    if not whirls:
-        return
-    terminal.show("With unbalance", table_of(WHIRLS, whirls))
-    for stable, told in ((False, "Unstable"), (None, "Whether it is stable could not be seen")):
-        speeds = [f"{whirl.speed_Hz:.4g}" for _, whirl in whirls if whirl.stable is stable and not whirl.kind]
-        if speeds:
-            terminal.result(f"{told}: the whirl at {', '.join(speeds)} Hz.")
+    if whirls:
+        terminal.show("Locked in with unbalance", table_of(WHIRLS, whirls))
 
 
-def _left_out(found: LimitCycles, with_unbalance: bool) -> list[str]:
+def _left_out(found: LimitCycles) -> list[str]:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.gate.cycles import drives
 
     notes = []
+    if any(point.kind == "torus" for point in found.special):
+        notes.append("Beyond a torus point the motion has a second frequency: a run (frb runup) shows it.")
     if driven := " and ".join(drives(found.case)):
-        more = "." if with_unbalance else ": with it a whirl has two frequencies (--with-unbalance)."
-        notes.append(f"Branches are those without {driven}{more}")
+        notes.append(f"Branches are those without {driven}; a run (frb runup) shows the whirl with it.")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
