@@ -199,6 +199,22 @@ def test_response_to_unbalance_is_where_a_run_with_heat_settles(tmp_path: Path) 
     assert found.torque_N_m * 2.0 * math.pi * 90.0 == pytest.approx(run["power_W"][later].mean(), rel=5e-4)
 
 
+@pytest.mark.nightly
+def test_a_whirl_that_locks_in_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
+    """The temperature of the run swings by 0.5 K within two turns, and with it the eccentricity by some 1e-3."""
+    light, speed = "rotor.unbalance=2 g*mm", 116.0
+    found = limit_cycles(jeffcott(*HEAT, light, "speed.from=115.5 Hz", f"speed.to={speed} Hz"), with_unbalance=True)
+    (branch,) = found.branches
+    whirl = max(branch.with_unbalance, key=lambda each: each.speed_Hz)
+    steady = [f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=6 s", "output.step=0.2 ms"]
+    run = runup(jeffcott(*HEAT, light, *steady, "start.displacement=[0.3, 0]"), tmp_path / "run.h5")
+    later = run["time_s"] > 5.0
+    assert whirl.stable
+    assert whirl.speed_Hz == pytest.approx(speed)
+    assert whirl.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=3e-3)
+    assert whirl.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.01)
+
+
 @pytest.mark.parametrize(
     ("settings", "whirls", "said"),
     [
