@@ -19,8 +19,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from frbcli.errors import printable
-from frbcli.results.files.kinds import TABLES, Kind
-from frbcli.results.files.mark import mark_table
+from frbcli.results.files.kinds import TABLES, Kind, mark_table
 from frbcli.results.files.place import TOKEN, part_of, real, refused, wrong_place
 
 if TYPE_CHECKING:
