@@ -16,9 +16,8 @@ from frbcli.cycles.method.courses import Changing, MachineCourse
 from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import at_rest, resting_along
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.method.mesh_error import OtherMesh
+from frbcli.cycles.method.mesh_error import OtherMesh, other_films, why_no_error
 from frbcli.cycles.parts.machine import make_machine
-from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response

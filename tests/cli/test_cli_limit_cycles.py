@@ -9,8 +9,7 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 
 import frbcli
 from frbcli.cli.main import run
-from frbcli.cycles.explain import explanations
-from frbcli.cycles.method.threshold import threshold_kind
+from frbcli.cycles.explain import explanations, threshold_kind
 from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.plot.spectra.run_track import run_tracks
 

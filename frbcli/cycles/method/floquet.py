@@ -14,8 +14,8 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import loads_along, unpacked
-from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, film_loads
+from frbcli.cycles.parts.states import StateSpace
 from frbcli.rotor.order import largest_first
 
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
@@ -68,7 +68,7 @@ def multipliers(
 ) -> Multipliers:
     """Multipliers of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
 
-    space: all states (linearised.py) or those that films see (reduced_states.py); near: those of a cycle close by, or
+    space: all states or those that films see (states.py); near: those of a cycle close by, or
     of the same with fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried.
     """
     harmonics = (len(y) - 2) // machine.size // 2

@@ -37,8 +37,6 @@ NOT_ALLOWED: Wrong = ("there is no permission to write it.", REMEDY)
 FORMULA = re.compile(r"[=@]|[+-](?![\d.][\w.,%°µΩ·*/^ ]*$)")
 
 
-
-
 def wrong_place(path: Path, kind: Kind, reads: Iterable[Path] = (), force: bool = False) -> Wrong | None:
     """Problem and remedy of a file that is to be written; None if there is no problem.
 
