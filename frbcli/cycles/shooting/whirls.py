@@ -10,12 +10,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.cycles.diagram import Observer
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.result import CycleBranch, MissingWhirl, UnbalancedWhirl, hertz
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, Wet
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
 from frbcli.cycles.unbalance.synchronous import WHIRLS
-from frbcli.cycles.unbalance.whirls import FREE, Observer, locked_lines, nearly_half, taken
+from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, taken
 
 APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
 SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl that locks in nearly repeats

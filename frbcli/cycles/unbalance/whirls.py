@@ -7,12 +7,13 @@ A whirl that does not lock in has a frequency of its own beside that of the roto
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from frbcli.arrays import Array, Complex
+from frbcli.cycles.diagram import Observer
 from frbcli.cycles.method.balance import moments, motion_along, unpacked
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MachineCourse
@@ -28,8 +29,6 @@ from frbcli.cycles.result import (
     hertz,
 )
 from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
-
-Observer = Callable[[int, float, float], None]
 
 APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
