@@ -91,7 +91,7 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     the library that draws.
     """
     from frbcli.results.files.kinds import PICTURES
-    from frbcli.results.files.place import require_places
+    from frbcli.results.files.write import require_places
 
     wanted = [(file, kind) for file, kind in files if file is not None]
     if picture is not None:

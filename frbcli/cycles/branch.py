@@ -139,7 +139,7 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
     place_there = _crossing(follower, finer, length, (before.multipliers, after.multipliers))
     if place_there is not None:
         crossed = follower.cycle(place_there, kind, after)
-        found.append(replace(crossed, kind=_kind_of(crossing(crossed)) or kind))
+        found.append(replace(crossed, kind=_kind_of(_nearest(crossed)) or kind))
     return found
 
 
@@ -152,7 +152,7 @@ def _kind(cycle: Cycle) -> str:
     return _kind_of(complex(outside[np.argmin(np.abs(outside))])) or FOLD
 
 
-def crossing(cycle: Cycle) -> complex:
+def _nearest(cycle: Cycle) -> complex:
     """The multiplier that is nearest to the unit circle, the trivial one apart."""
     others = cycle.multipliers.others
     return complex(others[np.argmin(np.abs(np.abs(others) - 1.0))])

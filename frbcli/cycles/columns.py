@@ -16,7 +16,7 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
 FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
-STABLE = Column("stable", "", "whether all disturbances decay; none where it is not known")
+STABLE = Column("stable", "", "whether all disturbances decay")
 VALUE = Column("value", "", "value of the number that is varied", flat=False)
 TEMPERATURE = "temperature of a film, with heat"
 END_MEANING = "larger eccentricity of both ends, of films whose journals tilt"
@@ -24,9 +24,6 @@ RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
 FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
-SECOND_FREQUENCY = Column("second_frequency", "Hz", "second frequency, of a torus point or a flip")
-SYNCHRONOUS = Column("synchronous", "", "whether the curve is of the synchronous response, with torus points or flips",
-                     lambda item: item[1].synchronous)  # fmt: skip
 DIGITS = 6  # of a value that is varied, in the terminal
 
 
@@ -99,7 +96,7 @@ def cycle_columns(films: Sequence[str], heat: bool = False, tilts: bool = False)
 def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
     """The columns of a SpectralLine in JSON."""
     return (
-        Column("name", "", "name of the line, such as `Omega - nu`"),
+        Column("name", "", "name of the line, such as `Omega / 2`"),
         FREQUENCY,
         Column("amplitude", "", "half the longer axis of its ellipse over the clearance, by film",
                lambda line: by_film(films, line.amplitude), flat=False),
@@ -111,22 +108,20 @@ def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
     return (
         SPEED_COLUMN,
         FREQUENCY,
-        Column("locked", "", "whether the whirl has locked in at half the speed"),
+        Column("locked", "", "true: the whirl has locked in at half the speed", lambda _: True),
         _largest(films),
         RINGS,
         *_temperatures(films, heat),
         STABLE,
-        Column("kind", "", "`fold` where whirls of two frequencies turn back in speed", lambda w: w.kind or None),
     )
 
 
 # Of a MissingWhirl in JSON
-MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl with the unbalance was found at a stable cycle"))
+MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl locks in at a stable cycle"))
 
 
 def _other_line(whirl: UnbalancedWhirl) -> str:
-    others = whirl.lines[2:3]
-    return "locks in" if whirl.locked else ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in others)
+    return ", ".join(f"{line.amplitude.max():.2g} at {line.name}" for line in whirl.lines[2:3])
 
 
 # Of the number of a branch and one of its whirls with unbalance, for the terminal
@@ -135,8 +130,8 @@ WHIRLS = (
     *named((replace(SPEED_COLUMN, shown=(speed_shown(".2f"),)), replace(FREQUENCY, shown=(Shown("whirl Hz", ".3f"),)),
             Column("eccentricity_max", "", "largest eccentricity", lambda whirl: whirl.eccentricity_max.max(),
                    shown=(Shown("eps max", ".4f"),)),
-            Column("at_nu", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
-                   shown=(Shown("at nu", ".4f"),)),
+            Column("at_half", "", "amplitude of the whirl", lambda whirl: whirl.lines[0].amplitude.max(),
+                   shown=(Shown("at Omega/2", ".4f"),)),
             Column("at_omega", "", "amplitude at the rotor speed", lambda whirl: whirl.lines[1].amplitude.max(),
                    shown=(Shown("at Omega", ".2g"),)),
             Column("other", "", "largest other line", _other_line, shown=(Shown("largest other line"),))),
@@ -211,13 +206,11 @@ def map_point_columns(films: Sequence[str]) -> tuple[Column, ...]:
         CRITICALITY,
         LYAPUNOV,
         Column("kind", "", "`bautin` or `cusp`", lambda point: point.kind or None),
-        SECOND_FREQUENCY,
     )
 
 
-def map_columns(over: str, over_unit: str, key: str, unit: str, crossings: bool = False) -> tuple[Column, ...]:
-    """The columns of a map in pandas: of the number of a curve, the curve and one of its points. crossings: whether
-    there are torus or flip points."""
+def map_columns(over: str, over_unit: str, key: str, unit: str) -> tuple[Column, ...]:
+    """The columns of a map in pandas: of the number of a curve, the curve and one of its points."""
     first = (
         Column(over, "", "value of the first number", lambda item: item[2].over),
         Column("over_unit", "", "its unit", lambda _: over_unit),
@@ -227,13 +220,12 @@ def map_columns(over: str, over_unit: str, key: str, unit: str, crossings: bool 
         Column(key, "", "value of the second number", lambda item: item[2].value),
         Column("unit", "", "its unit", lambda _: unit),
         Column("curve", "", "number of the curve, from 0", itemgetter(0)),
-        Column("kind", "", "`hopf`, `fold`, `torus` or `flip`, `bautin` or `cusp` on a curve",
+        Column("kind", "", "`hopf` or `fold`, `bautin` or `cusp` on a curve",
                lambda item: item[2].kind or item[1].kind),
         *named((SPEED_COLUMN, FREQUENCY,
                 Column("eccentricity_max", "", "largest eccentricity of all films",
                        lambda point: float(point.eccentricity_max.max())),
-                CRITICALITY, LYAPUNOV, *([SECOND_FREQUENCY] if crossings else [])), "", itemgetter(2)),
-        *([SYNCHRONOUS] if crossings else []),
+                CRITICALITY, LYAPUNOV), "", itemgetter(2)),
     )  # fmt: skip
 
 
@@ -266,8 +258,7 @@ def diagram_columns(
             SPEED_COLUMN,
             replace(FREQUENCY, value=_number("frequency_Hz")),
             STABLE,
-            Column("kind", "", "kind of a special point, or `asked`; `locked`, `two frequencies` or `fold` of a "
-                   "whirl with unbalance", _kind),
+            Column("kind", "", "kind of a special point, or `asked`; `locked` of a whirl with unbalance", _kind),
         ),
         *(column for quantity, unit, meaning, at_rest in per_film for film, name in enumerate(films)
           for column in of_point(Column(quantity.replace("temperatures_K", "temperature"), unit, meaning,
@@ -290,7 +281,7 @@ def diagram_columns(
 
 def _kind(point: RestingPoint | CyclePoint | UnbalancedWhirl) -> str:
     if isinstance(point, UnbalancedWhirl):
-        return point.kind or ("locked" if point.locked else "two frequencies")
+        return "locked"
     return point.kind if isinstance(point, CyclePoint) else ""
 
 

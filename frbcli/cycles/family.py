@@ -9,8 +9,8 @@ from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MOST_UNKNOWNS, Changing
+from frbcli.cycles.method.mesh_error import other_films
 from frbcli.cycles.parts.machine import Machine, make_machine
-from frbcli.cycles.parts.other_meshes import other_films
 from frbcli.errors import InputError, input_error
 from frbcli.scene.gate.analysis import CYCLES, SPEED_CYCLES, WHIRLS
 from frbcli.scene.gate.gate import require

@@ -16,13 +16,12 @@ from frbcli.cycles.method.courses import Changing, MachineCourse
 from frbcli.cycles.method.cycle import HOPF
 from frbcli.cycles.method.equilibria import at_rest, resting_along
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.method.mesh_error import OtherMesh
+from frbcli.cycles.method.mesh_error import OtherMesh, other_films, why_no_error
 from frbcli.cycles.parts.machine import make_machine
-from frbcli.cycles.parts.other_meshes import other_films, why_no_error
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
-from frbcli.cycles.unbalance.branches import of_no_whirl, whirls_with_unbalance
 from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
+from frbcli.cycles.unbalance.whirls import of_no_whirl, whirls_with_unbalance
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
@@ -51,7 +50,7 @@ def limit_cycles(
     observe : callable, optional
         Called with the number of cycles so far, and the speed in Hz and the largest eccentricity of the latest one.
     with_unbalance : bool
-        Whether the whirls with the unbalance are computed as well.
+        Whether the whirls that lock in with the unbalance are computed as well.
 
     Returns
     -------

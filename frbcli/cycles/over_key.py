@@ -18,8 +18,7 @@ from frbcli.cycles.family import Family, check, positive_range
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, settled
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.method.mesh_error import OtherMesh
-from frbcli.cycles.parts.other_meshes import other_films, why_no_error
+from frbcli.cycles.method.mesh_error import OtherMesh, other_films, why_no_error
 from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged

@@ -80,8 +80,8 @@ class CyclePoint:
 
 @dataclass(frozen=True)
 class SpectralLine:
-    """A harmonic of a motion with unbalance. name: such as "nu", "Omega", "Omega - nu" or "Omega / 2", nu the whirl and
-    Omega the rotor; amplitude: (F,) half the longer axis of its ellipse over the clearance."""
+    """A harmonic of a motion with unbalance. name: such as "Omega / 2" of the whirl, "Omega" of the rotor or
+    "3 Omega / 2"; amplitude: (F,) half the longer axis of its ellipse over the clearance."""
 
     name: str
     frequency_Hz: float
@@ -90,27 +90,22 @@ class SpectralLine:
 
 @dataclass(frozen=True)
 class UnbalancedWhirl:
-    """A whirl with the unbalance beside it. speed_Hz: of the rotor; frequency_Hz: of the whirl; locked: whether it has
-    locked in at half the speed, else the motion has two frequencies; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean;
-    lines: those of whirl and unbalance, then the largest others; stable: whether all disturbances decay, None if
-    that could not be seen of a motion of two frequencies, and at a fold; kind: "fold" where motions of two frequencies
-    turn back in speed, else ""; temperatures_K: (F,) of the films, empty without heat."""
+    """A whirl that has locked in with the unbalance, at half the speed. speed_Hz: of the rotor; frequency_Hz: of the
+    whirl; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; lines: those of whirl and unbalance, then the largest
+    others; stable: whether all disturbances decay; temperatures_K: (F,) of the films, empty without heat."""
 
     speed_Hz: float
     frequency_Hz: float
-    locked: bool
     eccentricity_max: Array
     ring_speeds_Hz: Array
     lines: tuple[SpectralLine, ...]
-    stable: bool | None
-    kind: str = ""
+    stable: bool
     temperatures_K: Array = field(default_factory=lambda: np.zeros(0))
 
 
 @dataclass(frozen=True)
 class MissingWhirl:
-    """A speed at which no whirl with the unbalance was found beside a stable cycle. reason: what is known of why, a
-    sentence without its end."""
+    """A speed at which no whirl locks in with the unbalance beside a stable cycle. reason: why, without a full stop."""
 
     speed_Hz: float
     reason: str
@@ -120,8 +115,7 @@ class MissingWhirl:
 class CycleBranch:
     """Cycles in their order from a Hopf point on. start: its number among the special points,
     None where the Hopf point lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones
-    become with the unbalance, and what these motions lead to behind folds, if asked for; missing: those of which that
-    is not known."""
+    lock in with, if asked for; missing: those of them that do not lock in."""
 
     start: int | None
     points: tuple[CyclePoint, ...]

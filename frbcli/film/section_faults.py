@@ -7,7 +7,7 @@ import math
 from typing import NamedTuple
 
 from frbcli.film.cavitation.law import Law
-from frbcli.film.gap import NO_BATH, Hole, Section, smallest_gap
+from frbcli.film.gap import NO_BATH, Hole, Section
 
 TURN = 2.0 * math.pi
 MOST_OPENED = 1.0 - 1e-6  # of a section by its openings: beyond, no film is left
@@ -51,9 +51,9 @@ def is_unfed(section: Section, law: type[Law]) -> bool:
     return runs_dry(section) if law.keeps_oil and not law.starves else starves(section)
 
 
-def section_faults(section: Section, d: tuple[float, float] = (0.0, 0.0)) -> list[SectionFault]:
-    """Everything that is wrong with a section and the displacement d (over the clearance), each with its remedy."""
-    return [*_size_faults(section), *_gap_faults(section, d), *_inlet_faults(section), *_overlaps(section)]
+def section_faults(section: Section) -> list[SectionFault]:
+    """Everything that is wrong with a section, each with its remedy."""
+    return [*_size_faults(section), *_lobe_faults(section), *_inlet_faults(section), *_overlaps(section)]
 
 
 def _size_faults(section: Section) -> list[SectionFault]:
@@ -72,15 +72,12 @@ def _size_faults(section: Section) -> list[SectionFault]:
     return faults
 
 
-def _gap_faults(section: Section, d: tuple[float, float]) -> list[SectionFault]:
+def _lobe_faults(section: Section) -> list[SectionFault]:
     lobes = section.lobes
     if lobes is not None and not (lobes.count >= 1 and 0.0 <= lobes.preload < 1.0):
         problem = f"{lobes.count:g} lobes with a preload of {lobes.preload:g}"
         return [SectionFault(problem, "The preload must be at least 0 and less than 1.")]
-    if smallest_gap(section, d) > 0.0:
-        return []
-    problem = f"the eccentricity is {math.hypot(*d):g}, which leaves no gap"
-    return [SectionFault(problem, "It must be less than 1 clearance.")]
+    return []
 
 
 def _inlet_faults(section: Section) -> list[SectionFault]:

@@ -34,10 +34,8 @@ from frbcli.plot.style import Picture, narrowed, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import event_name, told_amplitude, told_frequency
-from frbcli.results.files.kinds import PAGE
-from frbcli.results.files.mark import MARK
-from frbcli.results.files.place import require_places
-from frbcli.results.files.write import write
+from frbcli.results.files.kinds import MARK, PAGE
+from frbcli.results.files.write import require_places, write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.runs.errors.account import about_certainty, account, grows_late

@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from frbcli.errors import InputError, input_error
-from frbcli.results.files.kinds import ROSS, TABLES
-from frbcli.results.files.mark import MARK, mark_table
+from frbcli.results.files.kinds import MARK, ROSS, TABLES, mark_table
 from frbcli.results.files.write import harmless_text, write, written
 from frbcli.results.signals import Signal, pieces
 from frbcli.results.store import Run

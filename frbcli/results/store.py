@@ -24,7 +24,6 @@ from frbcli.nearest import did_you_mean
 from frbcli.results.columns import EVENTS
 from frbcli.results.files import parts
 from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
-from frbcli.results.files.stored import RunPlace, Stored, StoredArrays
 from frbcli.results.records import (
     LARGEST,
     MOST_EVENTS,
@@ -36,7 +35,7 @@ from frbcli.results.records import (
     wrong_unit,
     wrong_values,
 )
-from frbcli.results.signals import Signal
+from frbcli.results.signals import RunPlace, Signal, Stored, StoredArrays
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -103,6 +103,6 @@ class LoopOutput(NamedTuple):
         return LoopOutput(self.q[row:], self.v[row:], self.oil[row:], self.heat[row:])
 
 
-def make_output(rows: int, n: int, films: int = 0, columns: int = 0) -> LoopOutput:
-    """Output of a rotor with n degrees of freedom, of films that keep their oil, and with columns of heat."""
-    return LoopOutput(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, columns)))
+def make_output(rows: int, n: int, films: int = 0) -> LoopOutput:
+    """Output of a rotor with n degrees of freedom and of films that keep their oil, without heat."""
+    return LoopOutput(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, 0)))

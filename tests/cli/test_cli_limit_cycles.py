@@ -9,8 +9,7 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 
 import frbcli
 from frbcli.cli.main import run
-from frbcli.cycles.explain import explanations
-from frbcli.cycles.method.threshold import threshold_kind
+from frbcli.cycles.explain import explanations, threshold_kind
 from frbcli.cycles.over_key import limit_cycles_over
 from frbcli.plot.spectra.run_track import run_tracks
 
@@ -105,7 +104,8 @@ def test_whirls_with_unbalance_are_told(capsys: pytest.CaptureFixture[str], tmp_
     assert ",locked," in (tmp_path / "table.csv").read_text()
     assert run([*words, "--no-picture"]) == 0
     told = capsys.readouterr().out
-    assert "locks in" in told
+    assert "Locked in with unbalance" in told
+    assert "Omega/2" in told
     assert max(map(len, told.splitlines())) <= 80
     over = ["--over", "bearing.clearance", "--from", "30 um", "--to", "45 um"]
     assert run([*words, *over]) == 2

@@ -199,24 +199,20 @@ def test_response_to_unbalance_is_where_a_run_with_heat_settles(tmp_path: Path) 
     assert found.torque_N_m * 2.0 * math.pi * 90.0 == pytest.approx(run["power_W"][later].mean(), rel=5e-4)
 
 
-@pytest.mark.nightly  # 40 s: a whirl of nearly half the speed has many orders
-def test_whirl_with_unbalance_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
-    light, speed = "rotor.unbalance=2 g*mm", 130.0
-    found = limit_cycles(jeffcott(*HEAT, light, "speed.from=126 Hz", f"speed.to={speed} Hz"), with_unbalance=True)
+@pytest.mark.nightly
+def test_a_whirl_that_locks_in_is_where_a_run_with_heat_settles(tmp_path: Path) -> None:
+    """The temperature of the run swings by 0.5 K within two turns, and with it the eccentricity by some 1e-3."""
+    light, speed = "rotor.unbalance=2 g*mm", 116.0
+    found = limit_cycles(jeffcott(*HEAT, light, "speed.from=115.5 Hz", f"speed.to={speed} Hz"), with_unbalance=True)
     (branch,) = found.branches
     whirl = max(branch.with_unbalance, key=lambda each: each.speed_Hz)
-    assert not whirl.locked
-    assert whirl.stable
-    steady = [f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=3 s", "output.step=0.2 ms"]
+    steady = [f"speed.from={speed} Hz", f"speed.to={speed} Hz", "speed.duration=6 s", "output.step=0.2 ms"]
     run = runup(jeffcott(*HEAT, light, *steady, "start.displacement=[0.3, 0]"), tmp_path / "run.h5")
-    later = run["time_s"] > 1.5
+    later = run["time_s"] > 5.0
+    assert whirl.stable
     assert whirl.speed_Hz == pytest.approx(speed)
-    assert whirl.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=1e-3)
-    assert whirl.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.05)
-    x, y = (run[f"journal_{axis}_m"][later] for axis in "xy")
-    angle = np.unwrap(np.arctan2(y - y.mean(), x - x.mean()))
-    turns = (angle[-1] - angle[0]) / (2.0 * math.pi * (run["time_s"][later][-1] - run["time_s"][later][0]))
-    assert whirl.frequency_Hz == pytest.approx(turns, rel=1e-3)
+    assert whirl.eccentricity_max[0] == pytest.approx(run["eccentricity"][later].max(), rel=3e-3)
+    assert whirl.temperatures_K[0] == pytest.approx(run["temperature_K"][later].mean(), abs=0.01)
 
 
 @pytest.mark.parametrize(

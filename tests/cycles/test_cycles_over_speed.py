@@ -81,22 +81,6 @@ def test_coefficients_that_do_not_change_are_constant_ones() -> None:
     assert asked(one, 184.0).multipliers[1:3] == pytest.approx(asked(other, 184.0).multipliers[1:3], rel=1e-6)
 
 
-@pytest.mark.nightly  # 36 s; without unbalance: the next test
-def test_whirls_with_unbalance_have_the_coefficients_of_their_speed() -> None:
-    given = (tables((160.0, LOW), (200.0, HIGH)), 191.5), (constant(*at(194.0)), 193.0)
-    settings = "rotor.unbalance=0.05 g*mm", "speed.to=194.5 Hz"
-    found = [
-        [whirl for branch in limit_cycles(case(text, *settings, f"speed.from={low} Hz"), [194.0], None, True).branches
-         for whirl in branch.with_unbalance if abs(whirl.speed_Hz - 194.0) < 1e-3]
-        for text, low in given
-    ]  # fmt: skip
-    (one,), (other,) = found
-    assert not one.locked
-    assert one.frequency_Hz == pytest.approx(other.frequency_Hz, rel=1e-8)
-    assert one.eccentricity_max == pytest.approx(other.eccentricity_max, rel=1e-5)
-    assert [line.name for line in one.lines[:2]] == ["nu", "Omega"]
-
-
 def test_a_cycle_is_that_of_the_machine_with_the_coefficients_of_its_speed() -> None:
     near = "speed.from=193.5 Hz", "speed.to=195 Hz"
     found = limit_cycles(case(tables((160.0, LOW), (200.0, HIGH)), *near), [194.0])

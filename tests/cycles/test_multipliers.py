@@ -18,8 +18,7 @@ from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.floquet import multipliers
 from frbcli.cycles.method.follower import FoldFollower, Follower
-from frbcli.cycles.parts.linearised import state_space
-from frbcli.cycles.parts.reduced_states import reduced_space
+from frbcli.cycles.parts.states import reduced_space, state_space
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

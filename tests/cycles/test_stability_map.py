@@ -15,16 +15,11 @@ from scipy.interpolate import CubicSpline
 import frbcli
 from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run
-from frbcli.cycles.branch import crossing
-from frbcli.cycles.family import Family
-from frbcli.cycles.maps.crossings import CrossingCurve, starts_of
-from frbcli.cycles.maps.planes import SpeedPlane
 from frbcli.cycles.maps.stability_map import Across, StabilityMap
-from frbcli.cycles.method.continuation import corrected, unit_vector
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equations, synchronous_response
+from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 
@@ -116,18 +111,7 @@ def test_films_with_tables_have_curves_of_folds_as_well() -> None:
     assert tables[0] is tables[1]
 
 
-HEAVY = "rotor.unbalance=12 g*mm"
-
-
-@cache
-def map_with_unbalance() -> StabilityMap:
-    """Of the rigid rotor with unbalance over its viscosity, around Gamma = 1.44."""
-    low, high = (rigid(gamma, 2.5, 2.72).oil.viscosity for gamma in (1.42, 1.47))
-    case = rigid(1.44, 2.5, 2.72).with_settings(HEAVY)
-    return frbcli.stability_map(case, "oil.viscosity", f"{low!r} Pa*s", f"{high!r} Pa*s", 2, with_unbalance=True)
-
-
-def response_of(gamma: float, unbalance: str = HEAVY) -> dict[str, Cycle]:
+def response_of(gamma: float, unbalance: str) -> dict[str, Cycle]:
     """Where the synchronous response changes its stability, by the kind."""
     case = rigid(gamma, 2.5, 2.72).with_settings(unbalance)
     machine, speeds = machine_of(case), (2.0 * math.pi * 2.5 * UNIT_Hz, 2.0 * math.pi * 2.72 * UNIT_Hz)
@@ -142,67 +126,11 @@ def w_of(cycle: Cycle) -> float:
     return float(cycle.y[-1] * cycle.machine.pace) / (2.0 * math.pi * UNIT_Hz)
 
 
-@pytest.mark.parametrize("kind", ["torus", "flip"])
-def test_a_disturbance_that_neither_grows_nor_decays_is_where_a_multiplier_crosses(kind: str) -> None:
-    """Harmonics of the disturbance against the multipliers of the motion, integrated over a period: speed and second
-    frequency, from a start 1e-3 off."""
-    for gamma in (1.43, 1.46):
-        cycle = response_of(gamma)[kind]
-        case = rigid(gamma, 2.5, 2.72).with_settings(HEAVY)
-        value = case.oil.viscosity
-        family = Family(case, "oil.viscosity", value, "Pa*s", cycle.machine.pace)
-        plane = SpeedPlane(family, (2.0, cycle.machine.pace), 0.9)
-        (start,) = starts_of([cycle], 1.0, synchronous=True)
-        found = CrossingCurve(plane, synchronous_equations, kind == "torus")
-        off = start.y.copy()
-        off[-2] *= 1.001
-        place = corrected(found.equations(start.y), off, unit_vector(len(off)))
-        assert place is not None
-        assert place.y[-2] == pytest.approx(start.y[-2], rel=1e-5)
-        assert found.shift(place.y) == pytest.approx(abs(np.angle(crossing(cycle))) / (2.0 * np.pi), abs=1e-5)
-
-
-@pytest.mark.nightly
-@pytest.mark.parametrize("kind", ["torus", "flip"])
-def test_curves_of_torus_points_and_flips_are_those_of_responses(kind: str) -> None:
-    """At three viscosities that the map has not seen; the second frequency is that of the multiplier."""
-    (curve,) = (curve for curve in map_with_unbalance().curves if curve.kind == kind)
-    assert curve.synchronous
-    points = {round(gamma_of(point.value), 6): point for point in curve.points}  # curves begin on the border
-    gammas = sorted(points)
-    speeds = CubicSpline(gammas, [points[gamma].speed_Hz / UNIT_Hz for gamma in gammas])
-    shares = CubicSpline(gammas, [points[gamma].second_frequency_Hz / points[gamma].frequency_Hz for gamma in gammas])
-    for gamma in (1.43, 1.444, 1.46):
-        cycle = response_of(gamma)[kind]
-        assert float(speeds(gamma)) == pytest.approx(w_of(cycle), rel=1e-5)
-        assert float(shares(gamma)) == pytest.approx(abs(np.angle(crossing(cycle))) / (2.0 * np.pi), abs=1e-5)
-
-
 def test_torus_points_of_little_unbalance_come_to_the_hopf_point() -> None:
     """With the square of the unbalance: the whirl of a response of no size is that of the resting position."""
     w = 2.605840  # Hopf point of Gamma = 1.313 by its eigenvalues
     far, near = (w_of(response_of(1.313, f"rotor.unbalance={size} g*mm")["torus"]) - w for size in (4.0, 2.0))
     assert far / near == pytest.approx(4.0, rel=0.05)
-
-
-@pytest.mark.nightly
-def test_the_command_maps_torus_points_with_unbalance(monkeypatch: pytest.MonkeyPatch,
-                                                      capsys: pytest.CaptureFixture[str], tmp_path) -> None:  # type: ignore[no-untyped-def]  # fmt: skip
-    """In JSON, table and picture; without --and and over a key it is refused."""
-    found = map_with_unbalance()
-    monkeypatch.setattr("frbcli.cycles.maps.stability_map.stability_map", lambda *_: found)
-    (tmp_path / "rigid.toml").write_text(found.case.source_text)
-    over = ["--from", "1 mPa*s", "--to", "2 mPa*s", "--with-unbalance", "--json"]
-    words = ["limit-cycles", str(tmp_path / "rigid.toml"), *over]
-    places = ["-o", str(tmp_path / "map.png"), "--csv", str(tmp_path / "map.csv")]
-    assert run([*words, "--and", "oil.viscosity", *places]) == 0
-    curves = json.loads(capsys.readouterr().out)["curves"]
-    assert {curve["kind"] for curve in curves if curve["synchronous"]} == {"torus", "flip"}
-    flip = next(curve for curve in curves if curve["kind"] == "flip")["points"][0]
-    assert flip["second_frequency_Hz"] == pytest.approx(0.5 * flip["frequency_Hz"])
-    assert "synchronous" in (tmp_path / "map.csv").read_text().splitlines()[0]
-    assert (tmp_path / "map.png").exists()
-    assert run([*words, "--over", "oil.viscosity"]) == 2
 
 
 @cache
@@ -247,6 +175,7 @@ def test_the_command_draws_maps_over_two_keys(capsys: pytest.CaptureFixture[str]
     assert (tmp_path / "map.png").exists()
     assert (tmp_path / "map.csv").read_text().startswith("bearing.clearance,over_unit,bearing.width,unit")
     assert run(words) == 2
+    assert run([*words, "--and-from", "9 mm", "--and-to", "11 mm", "--with-unbalance"]) == 2
     assert run([*over, "--and-from", "9 mm", "--and-to", "11 mm"]) == 2
     assert run([*over, "--and", "bearing.clearance", "--and-from", "48 um", "--and-to", "52 um"]) == 2
     assert "both numbers of the map" in capsys.readouterr().err

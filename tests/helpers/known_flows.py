@@ -31,6 +31,7 @@ class KnownFlow:
     places: tuple[float, ...] = ()
     held: Array = field(default_factory=lambda: np.ones(1))
     slow: int = 4
+    size: int = 4
     driven: float = 0.0
 
     def wet(self, z: Array, omega: float) -> Wet:

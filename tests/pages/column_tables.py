@@ -103,7 +103,7 @@ TABLES: dict[str, Columns] = {
     "lines": of_json(line_columns(())),
     "missing whirls": of_json(MISSING),
     "special points": of_json(special_columns(())),
-    "map": of_pandas(map_columns("KEY", "", "KEY of --and", "", crossings=True)),
+    "map": of_pandas(map_columns("KEY", "", "KEY of --and", "")),
     "map points": of_json(map_point_columns(())),
     "sweep": without(point_columns(("KEY",), "runup"), "critical_", "self_excited_", "offset_", "lock_in_", "contact_"),
     "fit": FITTED,

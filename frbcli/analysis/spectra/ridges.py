@@ -43,7 +43,7 @@ class Ridges:
     onset_Hz: float
 
 
-def ridge_speeds(run: Run, signal: str = "journal") -> Array:
+def ridge_speeds(run: Run) -> Array:
     """(n,) rotor speeds in Hz that suit a run: as far from each other as its windows reach, at most MOST_SPEEDS."""
     speed, time = np.abs(run[SPEED]), run[TIME]
     top = int(np.argmax(speed))
@@ -51,7 +51,7 @@ def ridge_speeds(run: Run, signal: str = "journal") -> Array:
     count = int(min(MOST_SPEEDS, max(4.0, (time[top] - time[0]) / window)))
     low, high = max(LOWEST * speed[top], float(speed[0])), float(speed[top])
     reach = 0.5 * window * (high - float(speed[0])) / max(float(time[top] - time[0]), 1e-12)
-    assert located(run, signal)
+    assert located(run, "journal")
     return np.linspace(low + reach, high - 1.5 * reach, count)
 
 

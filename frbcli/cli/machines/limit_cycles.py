@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frbcli.scene.costs.preparation import Kernels
 
 ASKED = "asked"
-KINDS = {"hopf": "Hopf points", "fold": "folds", "torus": "torus points", "flip": "flips"}
+KINDS = {"hopf": "Hopf points", "fold": "folds"}
 
 
 @dataclass(frozen=True)
@@ -63,9 +63,7 @@ class Range:
               help="Number of values of --and at which diagrams are computed; the curves begin at "
                    "their points. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
-              help="Compute, too, what stable cycles become with unbalance: whirls of two frequencies or "
-                   "locked in; in a map of --and the curves of torus points and flips, also of the synchronous "
-                   "response.")  # fmt: skip
+              help="Compute, too, the whirls that lock in with the unbalance at half the speed.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
               help="Draw the eccentricities of runs of CASE over the diagram.")  # fmt: skip
 @outputs_options("CASE-limit-cycles.png, here")
@@ -83,7 +81,7 @@ def command(
     """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
     Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
-    with --with-unbalance the whirls with it.
+    with --with-unbalance the whirls that lock in with it.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
@@ -93,14 +91,14 @@ def command(
     along_speed = over == "speed"
     if ((key is not None or not along_speed) and (len(speeds) > 1 or runs)) or (key and along_speed and speeds):
         raise click.UsageError("--runs and several --speed are of the diagram of one case over its speed.")
-    if with_unbalance and key is None and not along_speed:
-        raise click.UsageError("--with-unbalance is of the diagram over the speed and of maps (--and).")
+    if with_unbalance and (key is not None or not along_speed):
+        raise click.UsageError("--with-unbalance is of the diagram over the speed.")
     drawn = "limit-cycles" if key is None else "stability-map"
     places = outputs.check(here(case.name, f"-{drawn}.png"))
     at = speeds[0] if speeds else case.speed.end
     if varied.second is not None:
         across = None if along_speed or low is None or high is None else (over, low, high, at)
-        _map(terminal, case, (*varied.second, varied.points), across, with_unbalance, places)
+        _map(terminal, case, (*varied.second, varied.points), across, places)
         return
     tracks = [track for name in runs for track in _tracks(name)]
     with computing(terminal, case, kernels=_kernels(case)) as shown:
@@ -108,7 +106,7 @@ def command(
             found = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
             found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
-    _tell(terminal, found, with_unbalance)
+    _tell(terminal, found)
     terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
 
 
@@ -137,7 +135,6 @@ def _map(
     case: Case,
     second: tuple[str, str, str, int],
     first: tuple[str, str, str, float] | None,
-    with_unbalance: bool,
     places: Outputs,
 ) -> None:
     """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
@@ -146,7 +143,7 @@ def _map(
 
     across = None if first is None else Across(*first)
     with computing(terminal, case, kernels=_kernels(case)) as shown:
-        found = stability_map(case, *second, shown.counting(), across, with_unbalance)
+        found = stability_map(case, *second, shown.counting(), across)
     _tell_map(terminal, found)
     names = tuple(place.name for place in film_places(case))
     written = places.write(terminal, found)
@@ -173,8 +170,7 @@ def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
     for curve in found.curves:
         values = [point.value for point in curve.points]
         told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
-        of = " of the synchronous response" if curve.synchronous else ""
-        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}{of}: {told}", *curve.notes]))
+        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}: {told}", *curve.notes]))
     for row in found.rows:
         if row.problem:
             terminal.sentence(f"{row.value:.4g} {found.unit}: {row.problem}")
@@ -201,7 +197,6 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
         "curves": [
             {
                 "kind": curve.kind,
-                "synchronous": curve.synchronous,
                 "points": documents(map_point_columns(names), curve.points),
                 "notes": curve.notes,
             }
@@ -225,7 +220,7 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
     )
 
 
-def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
+def _tell(terminal: Terminal, found: LimitCycles) -> None:
     from frbcli.cycles.columns import special_columns
     from frbcli.cycles.result import SPEED
 
@@ -247,7 +242,7 @@ def _tell(terminal: Terminal, found: LimitCycles, with_unbalance: bool) -> None:
                 at = terminal.speeds.words(point.speed_Hz)
                 terminal.result(f"{at}, branch {number + 1}: {_in_words(point)}")
     _tell_with_unbalance(terminal, found)
-    for note in (*found.notes, *_left_out(found, with_unbalance)):
+    for note in (*found.notes, *_left_out(found)):
         terminal.sentence(note)
     terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
 
@@ -264,31 +259,27 @@ def _in_words(point: CyclePoint) -> str:
 
 
 def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
-    """Where none was found with the unbalance and why, and a table of those that were."""
+    """Where no whirl locks in with the unbalance and why, and a table of those that do."""
     from frbcli.cycles.columns import WHIRLS
 
     for number, branch in enumerate(found.branches):
         for reason in dict.fromkeys(missing.reason for missing in branch.missing):
             at = terminal.speeds.listed(missing.speed_Hz for missing in branch.missing if missing.reason == reason)
-            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl at {at}: {reason}.")
+            terminal.sentence(f"Branch {number + 1} with unbalance, no whirl locks in at {at}: {reason}.")
     whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
-    if not whirls:
-        return
-    terminal.show("With unbalance", table_of(WHIRLS, whirls))
-    for stable, told in ((False, "Unstable"), (None, "Whether it is stable could not be seen")):
-        speeds = [whirl.speed_Hz for _, whirl in whirls if whirl.stable is stable and not whirl.kind]
-        if speeds:
-            terminal.result(f"{told}: the whirl at {terminal.speeds.listed(speeds)}.")
+    if whirls:
+        terminal.show("Locked in with unbalance", table_of(WHIRLS, whirls))
 
 
-def _left_out(found: LimitCycles, with_unbalance: bool) -> list[str]:
+def _left_out(found: LimitCycles) -> list[str]:
     from frbcli.scene.clearance_steps import step_times
     from frbcli.scene.gate.cycles import drives
 
     notes = []
+    if any(point.kind == "torus" for point in found.special):
+        notes.append("Beyond a torus point the motion has a second frequency: a run (frb runup) shows it.")
     if driven := " and ".join(drives(found.case)):
-        more = "." if with_unbalance else ": with it a whirl has two frequencies (--with-unbalance)."
-        notes.append(f"Branches are those without {driven}{more}")
+        notes.append(f"Branches are those without {driven}; a run (frb runup) shows the whirl with it.")
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes

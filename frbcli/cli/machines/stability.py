@@ -26,7 +26,7 @@ from frbcli.units import PER_MINUTE, SpeedUnit
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.method.threshold import ThresholdKind
+    from frbcli.cycles.explain import ThresholdKind
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.linear.threshold import Threshold
@@ -58,7 +58,7 @@ def command(
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
-    from frbcli.cycles.method.threshold import threshold_kind
+    from frbcli.cycles.explain import threshold_kind
     from frbcli.errors import NotConverged
     from frbcli.linear.modes import natural_modes, own_reduction
     from frbcli.linear.stability import stability

@@ -205,19 +205,15 @@ def _stepped(
         return None
 
 
-def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Place, before: int = 0) -> Place | None:
-    """A place with as many harmonics as its motion needs, up to a largest number. before: unknowns that stand before
-    the motion."""
+def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Place) -> Place | None:
+    """A place with as many harmonics as its motion needs, up to a largest number."""
     for _ in range(8):
-        machine, motion = plane.machine(place.y), place.y[before:]
-        harmonics = (len(motion) - 3) // machine.size // 2
-        if harmonics >= MOST_HARMONICS or left_out(machine, plane.cycle(motion)) < TAIL:
+        machine = plane.machine(place.y)
+        harmonics = (len(place.y) - 3) // machine.size // 2
+        if harmonics >= MOST_HARMONICS or left_out(machine, plane.cycle(place.y)) < TAIL:
             return place
         more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
-        y, tangent = (
-            np.concatenate([vector[:before], with_harmonics(vector[before:], machine.size, more, 3)])
-            for vector in (place.y, place.tangent)
-        )
+        y, tangent = (with_harmonics(vector, machine.size, more, 3) for vector in (place.y, place.tangent))
         found = corrected(equations(y), y, tangent / np.linalg.norm(tangent))
         if found is None:
             return None

@@ -12,16 +12,14 @@ from typing import ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.cycles.branch import Branch
 from frbcli.cycles.diagram import Walk
 from frbcli.cycles.family import Family
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.method.follower import FoldFollower, Follower
+from frbcli.cycles.method.follower import FoldFollower
 from frbcli.cycles.over_key import resting_over
 from frbcli.cycles.parts.machine import Machine
 from frbcli.cycles.result import SPEED, hertz
-from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
 
 FAMILIES = 8  # that are kept, of values of the second number
 
@@ -46,13 +44,8 @@ class MapPlane(ABC):
         """The unknowns with the speed of the rotor over the pace in place of both numbers."""
 
     @abstractmethod
-    def walk(self, share: float, crossings: bool = False) -> Walk:
-        """Over the first number at a value of the second. crossings: whether torus and flip points of its branches are
-        located as well. Raises NotConverged, Unreachable."""
-
-    def response(self, _walk: Walk) -> Branch | None:
-        """The synchronous response to the unbalance over a walk, None where none is computed."""
-        return None
+    def walk(self, share: float) -> Walk:
+        """Over the first number at a value of the second. Raises NotConverged, Unreachable."""
 
 
 class SpeedPlane(MapPlane):
@@ -74,16 +67,11 @@ class SpeedPlane(MapPlane):
         """See MapPlane."""
         return y[:-1]
 
-    def walk(self, share: float, crossings: bool = False) -> Walk:
+    def walk(self, share: float) -> Walk:
         """See MapPlane."""
         machine, lowest = self.second.machine_at(share), float(self.corners[0][0])
         resting = resting_curve(self.second.system(share), machine, *self.speeds)
-        return Walk(resting, (Follower if crossings else FoldFollower)(MachineCourse(machine), lowest))
-
-    def response(self, walk: Walk) -> Branch | None:
-        """See MapPlane."""
-        fastest = walk.resting.points[-1]
-        return synchronous_response(Synchronous(walk.course, walk.follower.range[0], fastest.value), fastest)
+        return Walk(resting, FoldFollower(MachineCourse(machine), lowest))
 
 
 class KeyPlane(MapPlane):
@@ -105,7 +93,7 @@ class KeyPlane(MapPlane):
         """See MapPlane."""
         return np.append(y[:-2], self._omega / self.machine(y).pace)
 
-    def walk(self, share: float, crossings: bool = False) -> Walk:
+    def walk(self, share: float) -> Walk:
         """See MapPlane."""
         family, lowest = self._family(share), self._lowest
-        return Walk(resting_over(family, lowest), (Follower if crossings else FoldFollower)(family, lowest))
+        return Walk(resting_over(family, lowest), FoldFollower(family, lowest))

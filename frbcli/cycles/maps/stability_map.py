@@ -1,5 +1,5 @@
 """A stability map: the curves of Hopf points and of folds over two numbers, the rotor speed and one of the case or two
-of the case, those of torus and flip points if they are asked for, and where the resting position is unstable."""
+of the case, and where the resting position is unstable."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
 from frbcli.cycles.family import Family, check, positive_range
-from frbcli.cycles.maps.crossings import CrossingCurve, CrossingStart, starts_of
 from frbcli.cycles.maps.curves import (
     MOST_HARMONICS,
     fitted,
@@ -27,14 +26,12 @@ from frbcli.cycles.maps.curves import (
     hopf_equations,
 )
 from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
-from frbcli.cycles.method.balance import Balance
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, located
 from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FLIP, FOLD, HOPF, TORUS, amplitude, eccentricities, with_harmonics
+from frbcli.cycles.method.cycle import FOLD, HOPF, amplitude, eccentricities, with_harmonics
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
-from frbcli.cycles.unbalance.synchronous import synchronous_equations
 from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular
 
@@ -50,8 +47,7 @@ MET = "It meets the curve of Hopf points."
 class MapPoint:
     """A point of a curve. over, value: of the first and the second number, the speed in Hz; eccentricity_max: (F,);
     criticality, lyapunov: of Hopf points, see SpecialPoint; kind: "", "bautin" where the criticality changes, "cusp"
-    where a curve of folds turns back; second_frequency_Hz: of torus and flip points, with which the motion that begins
-    there swings beside the first one, at most half of it."""
+    where a curve of folds turns back."""
 
     over: float
     value: float
@@ -61,18 +57,15 @@ class MapPoint:
     criticality: str | None = None
     lyapunov: float = math.nan
     kind: str = ""
-    second_frequency_Hz: float = math.nan
 
 
 @dataclass(frozen=True)
 class MapCurve:
-    """A curve of Hopf points, folds, torus or flip points; notes: why it ends within the map, if it does; synchronous:
-    whether its points are those of the synchronous response to the unbalance, not of limit cycles."""
+    """A curve of Hopf points or folds; notes: why it ends within the map, if it does."""
 
     kind: str
     points: tuple[MapPoint, ...]
     notes: tuple[str, ...]
-    synchronous: bool = False
 
 
 @dataclass(frozen=True)
@@ -117,8 +110,7 @@ class StabilityMap(Tabular):
 
     def table(self) -> Table:
         """One row per point of a curve."""
-        crossings = any(curve.kind in (TORUS, FLIP) for curve in self.curves)
-        columns = map_columns(self.over, self.over_unit, self.key, self.unit, crossings)
+        columns = map_columns(self.over, self.over_unit, self.key, self.unit)
         points = ((number, curve, point) for number, curve in enumerate(self.curves) for point in curve.points)
         return table_of(columns, points)
 
@@ -142,7 +134,6 @@ def stability_map(
     count: int = 3,
     observe: Callable[[int, int], None] | None = None,
     across: Across | None = None,
-    with_unbalance: bool = False,
 ) -> StabilityMap:
     """Map Hopf points and folds of limit cycles over the speed and a key of the case.
 
@@ -160,9 +151,6 @@ def stability_map(
         Called with the number of each of them and their number.
     across : Across, optional
         Another number, in place of the speed.
-    with_unbalance : bool
-        Whether curves of torus and flip points are followed as well: of the limit cycles and, over the speed, of the
-        synchronous response to the unbalance.
 
     Returns
     -------
@@ -172,7 +160,7 @@ def stability_map(
     Raises
     ------
     InputError
-        If the values are none, or if the case cannot have one of them; with_unbalance for a case without unbalance.
+        If the values are none, or if the case cannot have one of them.
 
     Examples
     --------
@@ -180,12 +168,11 @@ def stability_map(
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
     >>> found = frbcli.stability_map(case, "oil.viscosity", "8 mPa*s", "14 mPa*s")  # doctest: +SKIP
     """
-    check(case, with_unbalance=with_unbalance)
     plane = _plane(case, (key, low, high), across)
     lowest = float(plane.corners[0][1])
-    rows, begun = [], _Begun([], [], [])
+    rows, begun = [], _Begun([], [])
     for number, share in enumerate(np.linspace(lowest, 1.0, count)):
-        rows.append(_row(plane, float(share), begun, with_unbalance))
+        rows.append(_row(plane, float(share), begun))
         if observe is not None:
             observe(number + 1, count)
     return StabilityMap(
@@ -224,14 +211,13 @@ class _Begun:
 
     hopf: list[Array]
     folds: list[Array]
-    crossings: list[CrossingStart]
 
 
-def _row(plane: MapPlane, share: float, begun: _Begun, with_unbalance: bool) -> MapRow:
+def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
     """The special points at a share, which are added to `begun`, too."""
     value = share * plane.second.high
     try:
-        walk = plane.walk(share, crossings=with_unbalance)
+        walk = plane.walk(share)
     except (NotConverged, Unreachable) as error:
         return MapRow(value, (), str(error) or "The resting positions could not be followed.")
     special: list[SpecialPoint] = []
@@ -243,14 +229,7 @@ def _row(plane: MapPlane, share: float, begun: _Begun, with_unbalance: bool) -> 
         for cycle in branch.cycles:
             if cycle.kind == FOLD:
                 begun.folds.append(np.append(cycle.place.y, share))
-            if cycle.kind in (FOLD, TORUS, FLIP):
                 special.append(cycle_special(walk, cycle, number))
-        begun.crossings.extend(starts_of(branch.cycles, share, synchronous=False))
-    response = plane.response(walk) if with_unbalance else None
-    for cycle in () if response is None else response.cycles:
-        if cycle.kind in (TORUS, FLIP):
-            special.append(replace(cycle_special(walk, cycle, 0), branch=None))
-    begun.crossings.extend(starts_of(() if response is None else response.cycles, share, synchronous=True))
     return MapRow(value, tuple(special))
 
 
@@ -261,8 +240,6 @@ def _curves(plane: MapPlane, begun: _Begun) -> tuple[MapCurve, ...]:
         curves += _new_curve(plane, curves, HOPF, hopf)
     for fold in begun.folds:
         curves += _new_curve(plane, curves, FOLD, fold)
-    for start in begun.crossings:
-        curves += _new_crossing(plane, curves, start)
     return tuple(curves)
 
 
@@ -295,26 +272,6 @@ def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Arr
     for special, point in zip(between, points[1:], strict=True):
         told += [*special, point]
     return [MapCurve(kind, tuple(told), tuple(filter(None, found.notes)))]
-
-
-def _new_crossing(plane: MapPlane, known: Sequence[MapCurve], start: CrossingStart) -> list[MapCurve]:
-    """The curve of torus or flip points through one, unless it is known or not found."""
-    crossing = CrossingCurve(plane, synchronous_equations if start.synchronous else Balance, start.kind == TORUS)
-
-    def told(y: Array) -> MapPoint:
-        point = _point(plane, FOLD, crossing.motion_of(y))
-        return replace(point, second_frequency_Hz=crossing.shift(y) * point.frequency_Hz)
-
-    own = [curve for curve in known if (curve.kind, curve.synchronous) == (start.kind, start.synchronous)]
-    if any(_lies_on(plane, curve, told(start.y)) for curve in own):
-        return []
-    found = follow_both(crossing.equations, start.y, plane.corners, crossing.fitted, crossing.ends)
-    if found is None:
-        return []
-    points = tuple(told(place.y) for place in found.places)
-    if any(_lies_on(plane, curve, points[0]) for curve in own):
-        return []
-    return [MapCurve(start.kind, points, tuple(filter(None, found.notes)), start.synchronous)]
 
 
 def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:

@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.equilibria import HopfPoint
-from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import film_loads
+from frbcli.cycles.parts.states import state_space
 from frbcli.film.kinds.samples import have_closed_forms
 
 States = Mapping[int, NDArray[Any]]

@@ -24,8 +24,8 @@ from frbcli.cycles.method.continuation import (
     unit_vector,
 )
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.parts.linearised import state_space
 from frbcli.cycles.parts.machine import Machine, film_loads, transfer
+from frbcli.cycles.parts.states import state_space
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.rotor.order import first_largest

@@ -14,8 +14,8 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import loads_along, unpacked
-from frbcli.cycles.parts.linearised import StateSpace
 from frbcli.cycles.parts.machine import Machine, film_loads
+from frbcli.cycles.parts.states import StateSpace
 from frbcli.rotor.order import largest_first
 
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
@@ -68,7 +68,7 @@ def multipliers(
 ) -> Multipliers:
     """Multipliers of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
 
-    space: all states (linearised.py) or those that films see (reduced_states.py); near: those of a cycle close by, or
+    space: all states or those that films see (states.py); near: those of a cycle close by, or
     of the same with fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried.
     """
     harmonics = (len(y) - 2) // machine.size // 2
@@ -96,16 +96,12 @@ def multipliers(
 def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
     """(N, N): what one period makes of a disturbance, with `count` equal intervals."""
     nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
-    u, rate = _at(unpacked(y[:-2], machine.size), moments_within(count))
-    return through_all(transitions(machine, space, u, nu * rate, omega, 2.0 * np.pi / (nu * count)))
+    phases = 2.0 * np.pi * (np.arange(count)[:, None] + NODES).ravel() / count
+    u, rate = _at(unpacked(y[:-2], machine.size), phases)
+    return _through_all(_transitions(machine, space, u, nu * rate, omega, 2.0 * np.pi / (nu * count)))
 
 
-def moments_within(count: int) -> Array:
-    """(3 count,): the phases of the nodes of `count` equal intervals of a period."""
-    return np.asarray(2.0 * np.pi * (np.arange(count)[:, None] + NODES) / count).ravel()
-
-
-def transitions(machine: Machine, space: StateSpace, u: Array, v: Array, omega: float, h: float) -> Array:
+def _transitions(machine: Machine, space: StateSpace, u: Array, v: Array, omega: float, h: float) -> Array:
     """(count, N, N): what each interval of the length h in s makes of a disturbance. u, v: (3 count, c) the motion and
     its rate in 1/s at the nodes; omega: rad/s."""
     c, s = machine.size, len(NODES)
@@ -119,7 +115,7 @@ def transitions(machine: Machine, space: StateSpace, u: Array, v: Array, omega: 
     return np.asarray(by_start[-1] + by_loads[-1] @ answer)
 
 
-def through_all(steps: Array) -> Array:
+def _through_all(steps: Array) -> Array:
     """(N, N): the product of steps (count, N, N), the first one on the right."""
     while len(steps) > 1:
         if len(steps) % 2:

@@ -1,27 +1,23 @@
-"""The whirls of a branch in films on cells with the unbalance: what its stable cycles become, motions of two
-frequencies (invariant_curve.py) or such as have locked in at half the speed."""
+"""The whirls of a branch in films on cells with the unbalance: what its stable cycles of nearly half the speed lock in
+with, if a run comes to it."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.cycles.method.continuation import Unreachable, halved_until
+from frbcli.cycles.diagram import Observer
+from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.result import CycleBranch, MissingWhirl, UnbalancedWhirl, hertz
-from frbcli.cycles.shooting.invariant_curve import InvariantCurve, along_cycle, invariant_curve
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, Wet
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
-from frbcli.cycles.unbalance.branches import taken
 from frbcli.cycles.unbalance.synchronous import WHIRLS
-from frbcli.cycles.unbalance.whirls import free_lines, locked_lines, nearly_half
+from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, taken
 
-Observer = Callable[[int, float, float], None]
-
-SMALLEST = 0.25  # share of the unbalance in a step, where one does not lead to all of it
 APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
 SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl that locks in nearly repeats
 RUNS = 5  # each of as many periods, as long as the whirl nearly repeats
@@ -34,24 +30,19 @@ def whirls_of_branch(
 ) -> CycleBranch:
     """A branch with its whirls. shots: of its points but the first, which is at rest; range_: of the speeds in rad/s;
     observe: see limit_cycles."""
-    driven, whirls, missing = shooting.with_all_unbalance, [], []
-    before: InvariantCurve | None = None
+    driven, whirls, missing = shooting.with_all_unbalance, list[UnbalancedWhirl](), list[MissingWhirl]()
     for place in taken(branch, APART * hertz(range_)):
         if place == 0:
             continue
         point, shot = branch.points[place], shots[place - 1]
-        half = nearly_half(point.frequency_Hz, point.speed_Hz)
-        omega = driven.unit * math.exp(shot.p[1])
-        run, locked = _locking(driven, shot.wet, omega) if half else (None, None)
-        found = _curve(shooting, shot, before) if locked is None else None
-        if locked is not None:
-            whirls.append(_locked_whirl(driven, locked))
-        elif found is not None:
-            before = found
-            whirls.append(_free_whirl(driven, found))
-        else:
-            missing.append(MissingWhirl(point.speed_Hz, _why(run if half else _run(driven, shot.wet, omega))))
+        if not nearly_half(point):
+            missing.append(MissingWhirl(point.speed_Hz, FREE))
             continue
+        run, locked = _locking(driven, shot.wet, driven.unit * math.exp(shot.p[1]))
+        if locked is None:
+            missing.append(MissingWhirl(point.speed_Hz, _why(run)))
+            continue
+        whirls.append(_whirl(driven, locked))
         if observe is not None:
             observe(len(whirls), point.speed_Hz, float(whirls[-1].eccentricity_max.max()))
     return replace(branch, with_unbalance=tuple(whirls), missing=tuple(missing))
@@ -91,7 +82,7 @@ def _run(driven: Shooting, wet: Wet, omega: float) -> HeldRun | None:
 
 
 def _why(run: HeldRun | None) -> str:
-    """Why no whirl was found, by what the time loop makes of the cycle."""
+    """Why no whirl locks in, by what the time loop makes of the cycle."""
     if run is None:
         return "a run from the cycle ends early, as where a journal touches its shell"
     if run.moved[0] < REPEATS:
@@ -99,33 +90,7 @@ def _why(run: HeldRun | None) -> str:
     if run.moved[1] < REPEATS:
         return "a run from the cycle nearly repeats after two turns of the rotor, and slowly goes on"
     seen = f"{abs(hertz(run.frequency)):.4g} Hz and an eccentricity of {np.hypot(*run.last.T).max():.3f}"
-    return f"a run from the cycle whirls on with {seen}, and the iteration does not converge to it"
-
-
-def _curve(shooting: Shooting, shot: Shot, before: InvariantCurve | None) -> InvariantCurve | None:
-    """The curve that a cycle becomes: from the cycle, else from the curve before, else with the unbalance raised in
-    steps."""
-    flow, omega = shooting.with_all_unbalance.flow, shooting.unit * math.exp(shot.p[1])
-    try:
-        start = along_cycle(shooting, shot)
-    except Unreachable:
-        return None
-    starts = [start] if before is None else [start, (before.wets, before.rho)]
-    for each in starts:
-        found = invariant_curve(flow, shooting.unit, omega, each)
-        if found is not None:
-            return found
-    share = 0.0
-
-    def raised(by: float) -> InvariantCurve | None:
-        return invariant_curve(replace(flow, driven=share + by), shooting.unit, omega, start)
-
-    while share < 1.0:
-        found, step = halved_until(raised, min(1.0 - share, 0.5), SMALLEST)
-        if found is None:
-            return None
-        start, share = (found.wets, found.rho), share + step
-    return found
+    return f"a run from the cycle whirls on with {seen}"
 
 
 def _locking(driven: Shooting, wet: Wet, omega: float) -> tuple[HeldRun | None, Shot | None]:
@@ -151,33 +116,14 @@ def _locked(driven: Shooting, run: HeldRun) -> Shot | None:
     return found if float(np.abs(half).max()) > WHIRLS else None
 
 
-def _free_whirl(driven: Shooting, curve: InvariantCurve) -> UnbalancedWhirl:
-    middles = driven.flow.middles(curve.displacements)
-    orders, harmonics = curve.harmonics(middles)
-    return UnbalancedWhirl(
-        speed_Hz=hertz(curve.omega),
-        frequency_Hz=hertz(curve.rho * curve.omega),
-        locked=False,
-        eccentricity_max=replace(curve, displacements=middles).largest,
-        ring_speeds_Hz=np.mean([_turning(driven, wet) for wet in curve.wets], axis=0),
-        lines=free_lines(orders, curve.omega * (orders @ [curve.rho, 1.0]), harmonics.reshape(len(orders), -1)),
-        stable=curve.stable,
-    )
-
-
-def _locked_whirl(driven: Shooting, shot: Shot) -> UnbalancedWhirl:
+def _whirl(driven: Shooting, shot: Shot) -> UnbalancedWhirl:
     middles, speed = driven.flow.middles(shot.displacements), driven.speed_Hz(shot)
     harmonics = np.fft.rfft(middles[:SAMPLES], axis=0, norm="forward")[: SAMPLES // 4]
     return UnbalancedWhirl(
         speed_Hz=speed,
         frequency_Hz=0.5 * speed,
-        locked=True,
         eccentricity_max=largest(middles),
-        ring_speeds_Hz=_turning(driven, shot.wet),
+        ring_speeds_Hz=shot.wet.v[list(driven.flow.system.spins)] / (2.0 * math.pi),
         lines=locked_lines(2.0 * math.pi * speed, harmonics.reshape(len(harmonics), -1)),
         stable=shot.multipliers.stable,
     )
-
-
-def _turning(driven: Shooting, wet: Wet) -> np.ndarray:
-    return np.asarray(wet.v[list(driven.flow.system.spins)] / (2.0 * math.pi))

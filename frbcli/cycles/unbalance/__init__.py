@@ -1,1 +1,1 @@
-"""Motions with the unbalance beside the branches of limit cycles: synchronous, locked in, of two frequencies."""
+"""Motions with the unbalance beside the branches of limit cycles: synchronous, and whirls that lock in."""

@@ -2,8 +2,7 @@
 
 With an unbalance at 2 mu, which is shifted against the whirl by an angle theta, a cycle of some frequency mu(theta)
 exists; it goes on from the one without unbalance, mu = nu. Where mu = Omega / 2 for some theta the whirl locks in, for
-one theta with a stable motion, for another one with an unstable one. If no theta has it, there is a motion of two
-frequencies instead (two_frequencies.py).
+one theta with a stable motion, for another one with an unstable one. If no theta has it, the whirl does not lock in.
 """
 
 from __future__ import annotations

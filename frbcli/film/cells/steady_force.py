@@ -40,9 +40,9 @@ def film_at(film: VolumeFilm, eccentricity: float, omega: float) -> VolumeFilm:
     return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference, film.edged)
 
 
-def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
+def steady_solution(film: VolumeFilm, motion: Motion) -> VolumeSolution:
     """The steady film for a motion. Raises NotConverged."""
-    return FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega)).steady(motion, start)
+    return FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega)).steady(motion)
 
 
 def steady_force(

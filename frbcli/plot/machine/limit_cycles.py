@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from scipy.interpolate import PchipInterpolator
 
 from frbcli.arrays import Array, Truths
-from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint, UnbalancedWhirl
+from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint
 from frbcli.plot.spectra.run_track import RunTrack
 from frbcli.plot.style import (
     BAND,
@@ -36,14 +36,7 @@ UP, DOWN = "-", (0, (4, 1, 1, 1))  # lines of the ways of a run
 MARKS = {"hopf": ("o", "Hopf point"), "fold": ("D", "fold"), "flip": ("s", "flip"), "torus": ("^", "torus point")}
 ROOM = 1.05  # top of the frequencies over the largest one
 PIECES = 8  # straight pieces between two cycles
-WHIRL = "whirl with unbalance"
-# Marker, face ("" the colour of the branch), size and label
-WHIRL_MARKS = {
-    "": ("o", "white", 3.2, WHIRL),
-    "locked": ("o", "", 3.2, f"{WHIRL}, locked in"),
-    "unstable": ("x", "", 3.2, f"{WHIRL}, unstable"),
-    "fold": ("D", "white", 4.0, f"{WHIRL}, fold"),
-}
+WHIRL = "whirl locked in with unbalance"
 ERROR = "error by the mesh"
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
@@ -181,27 +174,11 @@ def _bars(axes: Axes, x: Sequence[float], y: Sequence[float], by_x: Sequence[flo
 
 
 def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, told: bool = True) -> None:
-    """The whirls of a branch with unbalance: full dots where they have locked in, rings where they have two
-    frequencies, crosses where these are unstable, and a diamond where they turn back."""
-    colour = COLOURS[number % len(COLOURS)]
-    for shown, (marker, fill, size, label) in WHIRL_MARKS.items():
-        at = [
-            (whirl.speed_Hz, value)
-            for whirl, value in zip(branch.with_unbalance, values, strict=True)
-            if _mark_of(whirl) == shown
-        ]
-        named = told and label not in axes.get_legend_handles_labels()[1]
-        if at:
-            axes.plot(*zip(*at, strict=True), linestyle="", marker=marker, markersize=size, color=colour,
-                      markerfacecolor=fill or colour, label=label if named else None, clip_on=False,
-                      zorder=3)  # fmt: skip
-
-
-def _mark_of(whirl: UnbalancedWhirl) -> str:
-    """Key of WHIRL_MARKS."""
-    if whirl.kind:
-        return whirl.kind
-    return "locked" if whirl.locked else "unstable" if whirl.stable is False else ""
+    """The whirls of a branch that have locked in with the unbalance, as dots."""
+    colour, named = COLOURS[number % len(COLOURS)], told and WHIRL not in axes.get_legend_handles_labels()[1]
+    if values:
+        axes.plot([whirl.speed_Hz for whirl in branch.with_unbalance], values, linestyle="", marker="o", markersize=3.2,
+                  color=colour, label=WHIRL if named else None, clip_on=False, zorder=3)  # fmt: skip
 
 
 def _line(axes: Axes, x: Array, y: Array, stable: Truths, colour: str, label: str | None) -> None:

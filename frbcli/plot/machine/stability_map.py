@@ -1,5 +1,5 @@
-"""The stability map: curves of Hopf points, folds, torus and flip points over the rotor speed and a number of the case,
-or over two numbers of it."""
+"""The stability map: curves of Hopf points and folds over the rotor speed and a number of the case, or over two numbers
+of it."""
 
 from __future__ import annotations
 
@@ -16,8 +16,6 @@ from frbcli.plot.style import (
     BLUE,
     GREEN,
     GREY,
-    ORANGE,
-    PURPLE,
     VERMILION,
     legend_below,
     name_of_key,
@@ -30,14 +28,6 @@ HOPF_STYLES = {
     SUBCRITICAL: (VERMILION, "-", "Hopf points, hard"),
     None: (GREY, "--", "Hopf points, soft or hard not told"),
 }
-CROSSINGS = ("flip", "torus")
-CURVES = {
-    ("fold", False): (GREEN, "-", "folds"),
-    ("torus", False): (ORANGE, "-", "torus points"),
-    ("flip", False): (PURPLE, "-", "flips"),
-    ("torus", True): (ORANGE, "--", "torus points, synchronous"),
-    ("flip", True): (PURPLE, "--", "flips, synchronous"),
-}
 MARKS = {BAUTIN: ("o", "soft changes to hard"), CUSP: ("^", "cusp of folds")}
 UNSTABLE = "#f3e3d3"
 MARGIN = 0.15  # of the range of the curves, on both sides
@@ -47,9 +37,7 @@ def stability_map_figure(found: StabilityMap) -> Figure:
     """The curves with the first number to the right and the second one upwards; shaded where rest is unstable."""
     case = found.case
     with styled():
-        more = any(curve.kind in CROSSINGS for curve in found.curves)
-        points = "Hopf points, folds, torus and flip points" if more else "Hopf points and folds"
-        figure = new_figure(case.heading, f"curves of {points} of limit cycles")
+        figure = new_figure(case.heading, "curves of Hopf points and folds of limit cycles")
         axes = figure.subplots()
         _shade(axes, found)
         for curve in found.curves:
@@ -59,10 +47,6 @@ def stability_map_figure(found: StabilityMap) -> Figure:
             if at:
                 over, values = zip(*at, strict=True)
                 axes.plot(over, values, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label)
-        starts = [(p.value, row.value) for row in found.rows for p in row.special if p.kind in CROSSINGS]
-        if starts:
-            over, values = zip(*starts, strict=True)
-            axes.plot(over, values, linestyle="", marker="s", color=ORANGE, markersize=4.0, label="flip, torus point")
         axes.set_xlim(*_limits(found))
         axes.set_ylim(found.growth.values[0], found.growth.values[-1])
         axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.over_unit))
@@ -95,8 +79,7 @@ def _shade(axes: Axes, found: StabilityMap) -> None:
 def _curve(axes: Axes, curve: MapCurve) -> None:
     if curve.kind != "hopf":
         values = [point.value for point in curve.points]
-        colour, style, label = CURVES[curve.kind, curve.synchronous]
-        axes.plot([point.over for point in curve.points], values, color=colour, linestyle=style, label=label)
+        axes.plot([point.over for point in curve.points], values, color=GREEN, label="folds")
         return
     for one, other in itertools.pairwise(curve.points):
         colour, style, label = HOPF_STYLES[one.criticality if not one.kind else other.criticality]

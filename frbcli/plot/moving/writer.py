@@ -14,10 +14,8 @@ from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from frbcli.plot.style import refused
-from frbcli.results.files.kinds import PICTURES
-from frbcli.results.files.mark import MARK
-from frbcli.results.files.place import require_places
-from frbcli.results.files.write import written
+from frbcli.results.files.kinds import MARK, PICTURES
+from frbcli.results.files.write import require_places, written
 
 FORMATS = (".gif", ".mp4")
 FRAMES, PER_SECOND = 80, 20

@@ -36,12 +36,12 @@ class Levels:
     lines: tuple[tuple[str, Array], ...]
 
 
-def levels(run: Run, signal: str, found: Spectrogram, levels_dB: tuple[float, float] = LEVELS_dB) -> Levels:
+def levels(run: Run, signal: str, found: Spectrogram) -> Levels:
     """The spectra of a run over time, in at most ROWS times COLUMNS numbers, each the largest of its own."""
     rows, columns = (_starts(count, most) for count, most in zip(found.level_dB.shape, (ROWS, COLUMNS), strict=True))
     largest = np.maximum.reduceat(np.maximum.reduceat(found.level_dB, rows, axis=0), columns, axis=1)
     content = io.BytesIO()
-    image.imsave(content, largest, vmin=levels_dB[0], vmax=levels_dB[1], cmap=LEVEL_MAP, origin="lower", format="png")
+    image.imsave(content, largest, vmin=LEVELS_dB[0], vmax=LEVELS_dB[1], cmap=LEVEL_MAP, origin="lower", format="png")
     lines = tuple((name.replace("$", ""), _means(values, columns)) for name, values in orders(run, signal, found))
     return Levels(
         time_s=_means(found.time_s, columns),

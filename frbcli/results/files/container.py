@@ -3,21 +3,24 @@
 HDF5 allows a block in front of its own data that its readers skip. A run file puts one line of text there: that it is
 a run of frb, how long the HDF5 part is, and its checksum. So a file that was cut short or damaged is recognised before
 the HDF5 library, which trusts its input, looks at it; every other HDF5 program still opens the file.
+
+One thing is asked of a file whose checksum is right. Its texts lie in collections (HDF5 file format 3.0, III.E), whose
+objects the library walks one after the other: at an object of no size it never ends (seen with HDF5 2.0).
 """
 
 from __future__ import annotations
 
 import os
 import re
+import struct
 import zlib
+from collections.abc import Iterable
 from io import BufferedReader
 from pathlib import Path
 
 from frbcli.errors import Fault, RunFileError
-from frbcli.results.files import heaps
 from frbcli.results.files.kinds import RUN, RUN_BEGINS
-from frbcli.results.files.place import wrong_place
-from frbcli.results.files.write import written
+from frbcli.results.files.write import written, wrong_place
 
 MAGIC = RUN_BEGINS + b"1 "
 REMEDY = "Free some space and continue with --resume, or choose another place with -o."
@@ -27,6 +30,11 @@ LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has abou
 SUFFIXES = (".h5", ".hdf5")
 OTHERS = (".png", ".pdf", ".svg", ".html", ".csv", ".json", ".toml", ".mat", ".parquet", ".xlsx", ".gif", ".mp4")
 PIECE = 4 * 1024**2  # bytes of a file that are held at a time
+# Of a collection: what it begins with, the bytes of its head and of that of an object.
+COLLECTION, HEAD = b"GCOL\x01", 16
+MOST_COLLECTIONS, MOST_IN_THEM = 10_000, 16 * 1024**2  # a run has a handful; bytes
+SUPERBLOCK = 24  # bytes
+SIZES = {0: slice(13, 15), 1: slice(13, 15), 2: slice(9, 11), 3: slice(9, 11)}  # by the version of the superblock
 
 
 def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
@@ -85,10 +93,10 @@ def _check_seal(path: Path, file: BufferedReader) -> None:
         raise refuse(path, f"is larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step and run the case again.")
     whole = head.startswith(_beginning(length)) and file.peek(len(SIGNATURE)).startswith(SIGNATURE)
     checksum, places = _checksum(file) if whole else (0, [])
-    crowded = len(places) > heaps.MOST
+    crowded = len(places) > MOST_COLLECTIONS
     if not whole or (head != _user_block(length, checksum) and not crowded):
         raise refuse(path, "was cut short or changed after frb wrote it.", "Run the case again.")
-    if crowded or not heaps.are_sound(file, USER_BLOCK, USER_BLOCK + length, places):
+    if crowded or not _texts_end(file, USER_BLOCK + length, places):
         raise refuse(path, "is not a complete run: its texts cannot be found.", "Run the case again.")
     file.seek(0)
 
@@ -97,13 +105,44 @@ def _checksum(file: BufferedReader) -> tuple[int, list[int]]:
     """The checksum of what follows, and where a collection of texts may begin in it."""
     checksum, before = 0, b""
     places: list[int] = []
-    while len(places) <= heaps.MOST and (piece := file.read(PIECE)):
+    while len(places) <= MOST_COLLECTIONS and (piece := file.read(PIECE)):
         checksum = zlib.crc32(piece, checksum)
         seen = before + piece
         first = file.tell() - len(seen)
-        places += [first + match.start() for match in re.finditer(heaps.BEGINNING, seen)]
-        before = seen[1 - len(heaps.BEGINNING) :]
+        places += [first + match.start() for match in re.finditer(COLLECTION, seen)]
+        before = seen[1 - len(COLLECTION) :]
     return checksum, places
+
+
+def _texts_end(file: BufferedReader, end: int, places: Iterable[int]) -> bool:
+    """Whether the collections at some places of a file can be walked to their ends. One whose size leads beyond the end
+    of the file is none, and the library refuses it."""
+    file.seek(USER_BLOCK)
+    superblock = file.read(SUPERBLOCK)
+    if superblock[SIZES.get(superblock[8], slice(0))] != b"\x08\x08":  # addresses and sizes of 8 bytes
+        return False
+    left = MOST_IN_THEM
+    for place in places:
+        file.seek(place + 8)
+        (size,) = struct.unpack("<Q", file.read(8).ljust(8, b"\xff"))
+        if place + size <= end:
+            left -= size
+            file.seek(place)
+            if left < 0 or not _ends(file.read(size)):
+                return False
+    return True
+
+
+def _ends(collection: bytes) -> bool:
+    """Whether a walk from object to object leaves the collection at its end."""
+    at = HEAD
+    while at + HEAD <= len(collection):
+        index, _, size = struct.unpack_from("<HH4xQ", collection, at)
+        taken = size if index == 0 else HEAD + -(-size // 8) * 8
+        if taken < HEAD:
+            return False
+        at += taken
+    return at <= len(collection)
 
 
 def _beginning(length: int) -> bytes:

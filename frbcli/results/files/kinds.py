@@ -1,13 +1,92 @@
-"""The kinds of files that frb writes, by what they begin with: a result takes the place of one of its kind alone."""
+"""The kinds of files that frb writes, and what tells its files from those of others: a text in their metadata, a
+checksum in tables as CSV. A result takes the place of a file of its kind alone.
+
+A table as CSV has no place for a text that other programs do not take for data. Its checksum stands behind the digits
+of its last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
+not fit its checksum any more, and is theirs.
+"""
 
 from __future__ import annotations
 
+import os
 import re
-from collections.abc import Callable
+import zlib
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import BinaryIO
 
-from frbcli.results.files.mark import has_checksum, has_mark
+MARK = "frbcli: written by frb"
+ENDS = 65_536  # bytes at both ends of a file in which the mark is looked for
+ZEROS, DIGITS = 25, 10  # between the digits of the number and those of the checksum; of the checksum
+PIECE = 4 * 1024**2  # bytes of a file that are held at a time
+
+# Numbers of fields, their digits and their exponents
+_NUMBER = re.compile(rb"(?:^|(?<=,))(-?\d+\.\d+)(e[+-]?\d+)?(?=[,\r\n])")
+_CHECKSUM = re.compile(rb"0{%d}(\d{%d})$" % (ZEROS, DIGITS))
+
+
+def has_mark(path: Path) -> bool:
+    """Whether the beginning or the end of a file has the mark. Raises OSError."""
+    with path.open("rb") as file:
+        head = file.read(ENDS)
+        file.seek(max(len(head), os.fstat(file.fileno()).st_size - ENDS))
+        return MARK.encode() in head or MARK.encode() in file.read(ENDS)
+
+
+def mark_table(path: Path) -> None:
+    """Put the checksum of a table as CSV into its last number with a point; a table without one stays as it is. Raises
+    OSError."""
+    with path.open("r+b") as file:
+        begin, tail = _tail(file)
+        for at, number in _numbers(tail):
+            digits, exponent = number[1], number[2] or b""
+            if float(digits + b"0" * ZEROS + b"9" * DIGITS + exponent) == float(digits + exponent):
+                checksum, end = _checksum(file, begin + len(tail)), at + number.end(1)
+                file.seek(begin + end)
+                file.write(b"0" * ZEROS + b"%0*d" % (DIGITS, checksum) + tail[end:])
+                return
+
+
+def has_checksum(path: Path) -> bool:
+    """Whether a table as CSV is as `mark_table` has left it. Raises OSError."""
+    with path.open("rb") as file:
+        begin, tail = _tail(file)
+        for at, number in _numbers(tail):
+            if found := _CHECKSUM.search(number[1]):
+                before = _checksum(file, begin + at + number.start(1) + found.start())
+                return zlib.crc32(tail[at + number.end(1) :], before) == int(found[1])
+    return False
+
+
+def _tail(file: BinaryIO) -> tuple[int, bytes]:
+    """Where the last whole lines of a file begin, without its head, and these lines; empty if the last one does not
+    end."""
+    size = os.fstat(file.fileno()).st_size
+    file.seek(max(0, size - ENDS))
+    tail = file.read(ENDS)
+    tail = tail[tail.find(b"\n") + 1 :] if tail.endswith(b"\n") else b""
+    return size - len(tail), tail
+
+
+def _numbers(tail: bytes) -> Iterator[tuple[int, re.Match[bytes]]]:
+    """(where a line begins, a number with a point in it in front of any text in quotes), from the last line upwards."""
+    end = len(tail)
+    while end > 0:
+        begin = tail.rfind(b"\n", 0, end - 1) + 1
+        for number in _NUMBER.finditer(tail[begin:end].partition(b'"')[0]):
+            yield begin, number
+        end = begin
+
+
+def _checksum(file: BinaryIO, length: int) -> int:
+    """Of the first bytes of a file."""
+    checksum = 0
+    file.seek(0)
+    while length and (piece := file.read(min(PIECE, length))):
+        checksum, length = zlib.crc32(piece, checksum), length - len(piece)
+    return checksum
+
 
 HEAD = 4096  # bytes by which a kind is recognised
 

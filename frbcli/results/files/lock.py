@@ -12,7 +12,7 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from frbcli.errors import InputError
-from frbcli.results.files.place import PART, TOKEN, part_of, real, refused
+from frbcli.results.files.write import PART, TOKEN, part_of, real, refused
 
 LOCK = ".lock"
 MARK = "frb "  # begins the text of a lock, which is followed by process and machine

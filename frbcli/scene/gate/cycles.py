@@ -103,7 +103,7 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
 def unbalance_faults(case: Case) -> Iterator[Fault]:
     """Whirls with unbalance are those of rotors that have one."""
     if not drives(case):
-        problem, remedy = "is zero: no whirl has two frequencies.", 'Write e.g. rotor.unbalance = "3 g*mm".'
+        problem, remedy = "is zero: no whirl can lock in with it.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
 
 

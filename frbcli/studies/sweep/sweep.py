@@ -22,9 +22,8 @@ from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import InputError
 from frbcli.html import Tabular
-from frbcli.results.files.kinds import TABLES
+from frbcli.results.files.kinds import MARK, TABLES
 from frbcli.results.files.lock import locked
-from frbcli.results.files.mark import MARK
 from frbcli.results.files.write import write_table as write_csv
 from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan

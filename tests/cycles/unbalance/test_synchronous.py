@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import json
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from cycle_machines import machine_of
 
 import frbcli
 from frbcli.cli.main import run as frb
+from frbcli.cycles.parts.machine import driven_motions
+
+SHORT = "film.theory=short"
 
 
-@pytest.mark.nightly  # 7 s; of a force: test_two_frequencies.py
+def jeffcott(unbalance: float, *settings: str) -> frbcli.Case:
+    return frbcli.load_case("jeffcott", [f"rotor.unbalance={unbalance} g*mm", *settings])
+
+
+@pytest.mark.nightly  # 7 s; of a force: the next test
 def test_a_small_synchronous_motion_is_the_linear_response() -> None:
     """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
     stability and is zero where that changes."""
@@ -29,6 +38,49 @@ def test_a_small_synchronous_motion_is_the_linear_response() -> None:
             assert abs(linear.growth[number]) < 1e-4
         else:
             assert point.stable == (linear.growth[number] < 0.0)
+
+
+def test_a_small_force_of_order_two_has_the_linear_response() -> None:
+    push = 'force=[{at="disk", force=["0.2 N", "0.1 N"], order=2}]'
+    case = jeffcott(0.0, SHORT, "speed.from=60 Hz", "speed.to=61 Hz", push)
+    point = frbcli.limit_cycles(case).synchronous[0]
+    linear = frbcli.response(case, [point.speed_Hz], excitation="force 1")
+    journal = linear.motion[0, linear.points.index("journal")]
+    found = 2.0 * 35e-6 * point.harmonics[2].ravel()
+    assert np.abs(found).max() > 1e-4 * 35e-6
+    np.testing.assert_allclose(found, journal, atol=1e-3 * np.abs(journal).max())
+    np.testing.assert_allclose(point.harmonics[1], 0.0, atol=1e-4)
+
+
+def test_a_force_that_turns_with_the_rotor_is_an_unbalance() -> None:
+    """Of Omega^2 times the unbalance, at the one speed at which it has this size."""
+    omega = 2.0 * math.pi * 120.0
+    push = f'force=[{{at="disk", force=["0 N", "{30e-6 * omega**2!r} N"], rotating=true}}]'
+    one, other = (
+        sum(motion for order, motion in driven_motions(machine_of(case), omega) if order == 1)
+        for case in (jeffcott(30.0, SHORT), jeffcott(0.0, SHORT, push))
+    )
+    assert np.abs(one).max() > 1e-2
+    np.testing.assert_allclose(other, one, atol=1e-9)
+
+
+def test_a_ground_that_moves_with_the_rotor_drives_as_the_inertia_of_all_masses() -> None:
+    """Of order 2: forces of mass times acceleration on the disk and on both journals."""
+    omega = 2.0 * math.pi * 80.0
+    base = 'base={acceleration=["2 m/s^2", "1 m/s^2"], order=2}'
+    plain = jeffcott(0.0, SHORT, base)
+    assert plain.rotor.kind == "jeffcott"
+    push = [
+        {"at": place, "force": [-2.0 * mass, -1.0 * mass], "order": 2.0}
+        for place, mass in (("disk", plain.rotor.mass), ("journal", 0.5 * plain.rotor.journal_mass))
+    ]
+    pushed = jeffcott(0.0, SHORT).with_settings({"force": push})
+    shaken, forced = (
+        sum(motion for order, motion in driven_motions(machine_of(case), omega) if order == 2)
+        for case in (plain, pushed)
+    )
+    assert np.abs(shaken).max() > 0.0
+    np.testing.assert_allclose(shaken, forced, rtol=1e-9)
 
 
 def test_the_synchronous_motion_is_that_of_a_run(tmp_path) -> None:  # type: ignore[no-untyped-def]

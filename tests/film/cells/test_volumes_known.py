@@ -279,7 +279,7 @@ def test_viscosity_and_speed_scale_the_pressure() -> None:
 
 
 def test_faults_of_a_section() -> None:
-    assert section_faults(section_of("axial-groove", 2e5), (0.3, 0.4)) == []
+    assert section_faults(section_of("axial-groove", 2e5)) == []
     assert section_faults(with_bores(1e-3)) == []
     dry = section_of("none", ends="free-to-air")
     assert runs_dry(dry)
@@ -288,18 +288,17 @@ def test_faults_of_a_section() -> None:
     plain = section_of("none")
     hole = Hole(0.0, 2e-3, 0.1, 1e-3, 1e5, round=True)
     cases = {
-        "runs dry": (dry, (0.0, 0.0)),
-        "less than 1": (plain, (0.6, 0.8)),
-        "clearance is": (replace(plain, clearance=-1e-6), (0.0, 0.0)),
-        "grooves at": (replace(plain, grooves=(AxialGroove(0.0, 0.3, 0.0), AxialGroove(6.2, 0.3, 0.0))), (0.0, 0.0)),
-        "holes at": (replace(plain, holes=(hole, replace(hole, position=0.15))), (0.0, 0.0)),
-        "a groove and a hole": (replace(plain, grooves=(AxialGroove(0.1, 0.2, 0.0),), holes=(hole,)), (0.0, 0.0)),
-        "out of the film": (replace(plain, holes=(replace(hole, axial=0.5e-3),)), (0.0, 0.0)),
-        "has no size": (replace(plain, holes=(replace(hole, half_width=0.0),)), (0.0, 0.0)),
-        "360 deg": (replace(plain, grooves=(AxialGroove(0.0, 7.0, 0.0),)), (0.0, 0.0)),
+        "runs dry": dry,
+        "clearance is": replace(plain, clearance=-1e-6),
+        "grooves at": replace(plain, grooves=(AxialGroove(0.0, 0.3, 0.0), AxialGroove(6.2, 0.3, 0.0))),
+        "holes at": replace(plain, holes=(hole, replace(hole, position=0.15))),
+        "a groove and a hole": replace(plain, grooves=(AxialGroove(0.1, 0.2, 0.0),), holes=(hole,)),
+        "out of the film": replace(plain, holes=(replace(hole, axial=0.5e-3),)),
+        "has no size": replace(plain, holes=(replace(hole, half_width=0.0),)),
+        "360 deg": replace(plain, grooves=(AxialGroove(0.0, 7.0, 0.0),)),
     }
-    for expected, (section, d) in cases.items():
-        faults = section_faults(section, d)
+    for expected, section in cases.items():
+        faults = section_faults(section)
         assert len(faults) == 1, (expected, faults)
         assert expected in " ".join(faults[0])
 

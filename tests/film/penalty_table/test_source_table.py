@@ -11,7 +11,7 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import load_case
-from frbcli.cycles.parts.other_meshes import other_films
+from frbcli.cycles.method.mesh_error import other_films
 from frbcli.errors import InputError
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cells.film import VolumeFilm

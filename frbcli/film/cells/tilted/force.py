@@ -148,13 +148,13 @@ def settled_force(film: TiltedFilm, place: Array, rate: Array, total: float) -> 
     return force
 
 
-def land_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
-    """The steady solution of a land, sought from the field `start`, then from a full film. Raises FilmUnsolved."""
-    return _solved(film, motion, start)[1]
+def land_solution(film: VolumeFilm, motion: Motion) -> VolumeSolution:
+    """The steady solution of a land. Raises FilmUnsolved."""
+    return _solved(film, motion, None)[1]
 
 
 def _solved(film: VolumeFilm, motion: Motion, start: Array | None) -> tuple[FilmSolver, VolumeSolution]:
-    """See land_solution."""
+    """The steady solution of a land, sought from the field `start`, then from a full film. Raises FilmUnsolved."""
     solver = FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega))
     try:
         return solver, solver.steady(motion, start)
