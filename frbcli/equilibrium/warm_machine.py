@@ -123,9 +123,10 @@ class WarmMachines:
         """The machine at omega rad/s, sought from the state of a machine `near`. Raises NotConverged."""
         search = CLOSE_ON_CELLS if self._plan.form.by_cells else SEARCH
         system, resting = self._system, None if near is None else near.resting
-        begin, speeds = self._heat.start, np.append(omega, np.zeros(system.ring_count))
+        begin, slope = self._heat.start, None
+        speeds = np.append(omega, np.zeros(system.ring_count))
         if near is not None:
-            begin = near.steady.temperatures + (omega - near.omega) * near.by_omega
+            slope, begin = near.steady.slope, near.steady.temperatures + (omega - near.omega) * near.by_omega
             speeds = near.steady.films.speeds * (omega / near.omega)
 
         def solve(viscosities: Array, clearances: Array) -> FilmHeat:
@@ -140,7 +141,7 @@ class WarmMachines:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
 
-        found = steady_heat(self._heat.model, system.names, solve, begin, speeds, near and near.steady.slope)
+        found = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None
         return self._machine(system, resting, found, near)
 

@@ -66,7 +66,8 @@ def steady_heat(
     or closes.
     """
     temperatures, slope = start.copy(), -np.eye(len(start)) if slope is None else slope
-    step = change = np.zeros(len(start))
+    step: Array = np.zeros(len(start))
+    change: Array = np.zeros(len(start))
     for rounds in range(ROUNDS):
         viscosities, clearances = viscosities_at(model, temperatures), clearances_at(model, temperatures, speeds)
         _check(model, names, temperatures, clearances)
@@ -77,7 +78,7 @@ def steady_heat(
         left, speeds = float(np.abs(change).max()), films.speeds
         if left < SETTLED and rounds > 0:
             return _found(model, temperatures, viscosities, clearances, films, slope)
-        step = np.linalg.lstsq(slope, -change)[0] if rounds < ROUNDS // 2 else 0.5 * change
+        step = np.asarray(np.linalg.lstsq(slope, -change)[0] if rounds < ROUNDS // 2 else 0.5 * change)
         step *= min(1.0, FURTHEST / max(float(np.abs(step).max()), 1e-300))
         temperatures = temperatures + step
     raise NotConverged(f"The temperatures do not settle: they still change by {left:.2g} K after {ROUNDS} rounds.")
