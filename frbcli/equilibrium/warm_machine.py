@@ -20,7 +20,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
-CLOSE_ON_CELLS = replace(SEARCH, untaken=1e-8)  # temperatures settle to 1e-5 K, 1e-7 of a viscosity
+CLOSE_ON_CELLS = replace(SEARCH, untaken=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
 APART = 1e-4  # of the speed: machines that are closer do not tell how their temperatures change
 
 
@@ -123,7 +123,7 @@ class WarmMachines:
         """The machine at omega rad/s, sought from the state of a machine `near`. Raises NotConverged."""
         search = CLOSE_ON_CELLS if self._plan.form.by_cells else SEARCH
         system, resting = self._system, None if near is None else near.resting
-        begin, slope = self._heat.start, None
+        begin, slope = self._heat.start, np.asarray(-np.eye(len(self._heat.start)))
         speeds = np.append(omega, np.zeros(system.ring_count))
         if near is not None:
             slope, begin = near.steady.slope, near.steady.temperatures + (omega - near.omega) * near.by_omega

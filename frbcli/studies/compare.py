@@ -33,7 +33,7 @@ from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
-from frbcli.studies.side_by_side import COMMANDS, Ended, Tell, Work, in_turn, side_by_side
+from frbcli.studies.side_by_side import COMMANDS, Ended, RunTask, Tell, in_turn, side_by_side
 
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
@@ -188,14 +188,16 @@ def compare(
     with _directory(keep) as folder:
         paths = [folder / f"{variant.name.replace(' ', '-')}.h5" for variant in variants]
         begun = [_is_begun(test, its_case, path) for its_case, path in zip(cases, paths, strict=True)]
-        numbers = range(1, 1 + len(variants))
-        works = [Work(number, test, *each) for number, *each in zip(numbers, cases, paths, begun, strict=True)]
+        tasks = [
+            RunTask(number, test, its_case, path, resume)
+            for number, (its_case, path, resume) in enumerate(zip(cases, paths, begun, strict=True), start=1)
+        ]
 
         def tell(number: int, progress: Progress) -> None:
             if observe is not None:
                 observe(variants[number - 1], number, len(variants), progress)
 
-        ended = dict(_ended(works, tell))
+        ended = dict(_ended(tasks, tell))
     runs = {number: run for number, run in sorted(ended.items()) if isinstance(run, Run)}
     failures = [end for _, end in sorted(ended.items()) if not isinstance(end, Run)]
     if 1 not in runs:
@@ -206,20 +208,20 @@ def compare(
     return Comparison(case, test, tuple(results), status, message)
 
 
-def _ended(works: Sequence[Work], tell: Tell) -> Iterator[tuple[int, Ended]]:
+def _ended(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
     """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
     models: laws and bearing models that Python has added are known to this one alone."""
-    costs = {work.number: _cost_s(work) for work in works}
-    shipped = all(law_named(law).__module__.startswith("frbcli.") for work in works for law in work.case.cavitations)
-    own = not shipped or any(work.case.film.bearing_model for work in works)
+    costs = {task.number: _cost_s(task) for task in tasks}
+    shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
+    own = not shipped or any(task.case.film.bearing_model for task in tasks)
     if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
-        return in_turn(works, tell)
-    return side_by_side(sorted(works, key=lambda work: -costs[work.number]), tell)
+        return in_turn(tasks, tell)
+    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), tell)
 
 
-def _cost_s(work: Work) -> float:
+def _cost_s(task: RunTask) -> float:
     """Expected CPU time."""
-    return cost_of_run(work.case, make_plan(work.case), PROFILES[work.command](work.case)).total_s
+    return cost_of_run(task.case, make_plan(task.case), PROFILES[task.command](task.case)).total_s
 
 
 def _planned(case: Case, variant: Variant) -> Case:

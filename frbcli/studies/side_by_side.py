@@ -29,7 +29,7 @@ Tell = Callable[[int, Progress], None]
 Ended = Run | KeyboardInterrupt | NotConverged | InputError
 
 @dataclass(frozen=True)
-class Work:
+class RunTask:
     """A run. number: from 1; command: of COMMANDS; path: of its file; resume: whether it goes on."""
 
     number: int
@@ -43,26 +43,26 @@ class Work:
         return COMMANDS[self.command](self.case, self.path, self.resume, partial(tell, self.number))
 
 
-def in_turn(works: Sequence[Work], tell: Tell) -> Iterator[tuple[int, Ended]]:
+def in_turn(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
     """The numbers of runs and how each has ended, up to the first that was interrupted or did not begin."""
-    for work in works:
-        ended = _ended(work, tell)
-        yield work.number, ended
+    for task in tasks:
+        ended = _ended(task, tell)
+        yield task.number, ended
         if not isinstance(ended, Run) or ended.status == "interrupted":
             return
 
 
-def side_by_side(works: Sequence[Work], tell: Tell) -> Iterator[tuple[int, Ended]]:
+def side_by_side(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
     """As in_turn, all at once: in the order given they get the cores of this machine, one each. Ctrl-C ends those
     under way as it does a run in this process."""
-    over, jobs = Event(), min(len(works), joblib.cpu_count())
+    over, jobs = Event(), min(len(tasks), joblib.cpu_count())
     with TemporaryDirectory(prefix="frb-progress-") as name, held_back() as interrupt:
         listener = Thread(target=_listen, args=(Path(name), interrupt, over, tell))
         listener.start()
         try:
             with joblib.parallel_config("loky", inner_max_num_threads=1), deaf():  # the processes start in it
                 run = joblib.Parallel(jobs, batch_size=1, pre_dispatch=jobs, return_as="generator_unordered")
-                found = run(joblib.delayed(_in_process)(work, Path(name)) for work in works)
+                found = run(joblib.delayed(_in_process)(task, Path(name)) for task in tasks)
             for number, ended in found:
                 yield number, ended if not isinstance(ended, tuple) else ended[0](*ended[1:])
         except BrokenExecutor as death:
@@ -84,9 +84,9 @@ def _listen(folder: Path, interrupt: Interrupt, over: Event, tell: Tell) -> None
                 tell(*pickle.loads(said))
 
 
-def _in_process(work: Work, folder: Path) -> tuple[int, Any]:
+def _in_process(task: RunTask, folder: Path) -> tuple[int, Any]:
     """The number of a run and how it has ended; an InputError in its parts, since processes cannot pass it on."""
-    stop, file = folder / STOP, folder / f"{work.number}.progress"
+    stop, file = folder / STOP, folder / f"{task.number}.progress"
 
     def tell(number: int, progress: Progress) -> None:
         new = file.with_suffix(".new")
@@ -97,15 +97,15 @@ def _in_process(work: Work, folder: Path) -> tuple[int, Any]:
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        ended = KeyboardInterrupt() if stop.exists() else _ended(work, tell)
+        ended = KeyboardInterrupt() if stop.exists() else _ended(task, tell)
         parts = (type(ended), ended.source, ended.faults) if isinstance(ended, InputError) else ended
-        return work.number, parts
+        return task.number, parts
     finally:
         signal.signal(signal.SIGINT, before)
 
 
-def _ended(work: Work, tell: Tell) -> Ended:
+def _ended(task: RunTask, tell: Tell) -> Ended:
     try:
-        return work.run(tell)
+        return task.run(tell)
     except (KeyboardInterrupt, NotConverged, InputError) as end:
         return end

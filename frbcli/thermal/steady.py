@@ -16,7 +16,7 @@ from frbcli.compiled import Array
 from frbcli.errors import NotConverged
 from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
 
-SETTLED = 1e-5  # K: a change of all temperatures below this ends the iteration
+SETTLED = 1e-6  # K: a step of all temperatures below this ends the iteration
 ROUNDS, ITERATIONS = 60, 200
 LONGEST = 30.0  # K by which a temperature changes in one iteration of Newton's method
 FURTHEST = 100.0  # K by which it changes from one solution of the films to the next
@@ -75,11 +75,13 @@ def steady_heat(
         change = _balanced(model, names, temperatures, viscosities, clearances, films) - temperatures
         if rounds > 0 and (size := float(step @ step)) > LEAST_CHANGE**2:
             slope = slope + np.outer(change - before - slope @ step, step) / size
-        left, speeds = float(np.abs(change).max()), films.speeds
+        step = np.asarray(np.linalg.lstsq(slope, -change)[0])
+        left, speeds = float(np.abs(step).max()), films.speeds
         if left < SETTLED and rounds > 0:
             return _found(model, temperatures, viscosities, clearances, films, slope)
-        step = np.asarray(np.linalg.lstsq(slope, -change)[0] if rounds < ROUNDS // 2 else 0.5 * change)
-        step *= min(1.0, FURTHEST / max(float(np.abs(step).max()), 1e-300))
+        if rounds >= ROUNDS // 2:
+            step = 0.5 * change
+        step *= min(1.0, FURTHEST / max(left, 1e-300))
         temperatures = temperatures + step
     raise NotConverged(f"The temperatures do not settle: they still change by {left:.2g} K after {ROUNDS} rounds.")
 

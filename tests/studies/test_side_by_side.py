@@ -13,16 +13,17 @@ from frbcli.errors import InputError
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.studies import compare
-from frbcli.studies.side_by_side import Tell, Work, in_turn, side_by_side
+from frbcli.studies.side_by_side import RunTask, Tell, in_turn, side_by_side
 
 QUICK = ("speed.from=20 Hz", "speed.to=120 Hz", "film.theory=short", "output.step=2e-4 s")
 LAWS = ("half-sommerfeld", "sommerfeld")
 
 
-def works(folder: Path, duration: str) -> list[Work]:
+def tasks(folder: Path, duration: str) -> list[RunTask]:
     settings = (*QUICK, f"speed.duration={duration}")
     cases = [load_case("jeffcott", (*settings, f"film.cavitation={law}")) for law in LAWS]
-    return [Work(number, "runup", case, folder / f"{number}.h5", False) for number, case in enumerate(cases, start=1)]
+    numbered = enumerate(cases, start=1)
+    return [RunTask(number, "runup", case, folder / f"{number}.h5", False) for number, case in numbered]
 
 
 def untold(number: int, progress: Progress) -> None:
@@ -33,8 +34,8 @@ def test_runs_beside_each_other_are_those_one_after_the_other(tmp_path: Path) ->
     for name in ("alone", "beside"):
         (tmp_path / name).mkdir()
     (tmp_path / "beside" / "2.h5").write_text("not a run")  # in the way of the second one
-    alone = dict(in_turn(works(tmp_path / "alone", "0.2 s"), untold))
-    beside = dict(side_by_side(works(tmp_path / "beside", "0.2 s"), untold))
+    alone = dict(in_turn(tasks(tmp_path / "alone", "0.2 s"), untold))
+    beside = dict(side_by_side(tasks(tmp_path / "beside", "0.2 s"), untold))
     first, second = alone[1], beside[1]
     assert isinstance(first, Run)
     assert isinstance(second, Run)
@@ -56,7 +57,7 @@ def test_ctrl_c_ends_all_runs_under_way_as_it_does_one(tmp_path: Path) -> None:
         if numbers == {1, 2}:
             signal.raise_signal(signal.SIGINT)
 
-    ended = dict(side_by_side(works(tmp_path, "400 s"), tell))
+    ended = dict(side_by_side(tasks(tmp_path, "400 s"), tell))
     statuses = {number: run.status for number, run in ended.items() if isinstance(run, Run)}
     assert statuses == {1: "interrupted", 2: "interrupted"}
     assert sorted(file.name for file in tmp_path.iterdir()) == ["1.h5", "2.h5"]
@@ -67,9 +68,9 @@ def test_long_comparisons_run_side_by_side(monkeypatch: pytest.MonkeyPatch) -> N
     monkeypatch.setattr("joblib.cpu_count", lambda: 2)
     given: list[str] = []
 
-    def all_at_once(works: list[Work], tell: Tell) -> object:
-        given.extend(work.case.film.theory for work in works)
-        return in_turn(sorted(works, key=lambda work: work.number), tell)
+    def all_at_once(tasks: list[RunTask], tell: Tell) -> object:
+        given.extend(task.case.film.theory for task in tasks)
+        return in_turn(sorted(tasks, key=lambda task: task.number), tell)
 
     monkeypatch.setattr(compare, "side_by_side", all_at_once)
     case = load_case("jeffcott", (*QUICK, "speed.duration=0.05 s", "accuracy.mesh=[4, 48]"))
