@@ -316,14 +316,11 @@ def _following(
     count, rings = len(position), system.ring_count
     if not rings:
         return np.zeros(count), np.zeros((count, position.size))
-    at = partial(balanced_speeds, system, held, omega)
-    drag, by_place, by_drag = drags(system, position, films), np.zeros((rings, position.size)), np.zeros((rings, count))
-    for column, step in enumerate(NUDGE * np.repeat(system.clearances, 2)):
-        moved = step * np.eye(position.size)[column].reshape(-1, 2)
-        by_place[:, column] = (at(position + moved, drag) - at(position - moved, drag)) / (2.0 * step)
-    for i, step in enumerate(NUDGE * drag):
-        more = step * np.eye(count)[i]
-        by_drag[:, i] = (at(position, drag + more) - at(position, drag - more)) / (2.0 * step)
+    at, drag = partial(balanced_speeds, system, held, omega), drags(system, position, films)
+    steps = (NUDGE * np.repeat(system.clearances, 2))[:, None]
+    moved, pulled = (steps * np.eye(position.size)).reshape(-1, count, 2), NUDGE * np.diag(drag)
+    by_place = (at(position + moved, drag) - at(position - moved, drag)).T / (2.0 * steps.T)
+    by_drag = (at(position, drag + pulled) - at(position, drag - pulled)).T / (2.0 * NUDGE * drag)
     along, by_total = _drag_slopes(system, omega, position, films)
     by_place += (by_drag[:, :, None] * along).reshape(rings, -1)
     off = at(position, drag) - speeds
@@ -340,17 +337,19 @@ def _drag_slopes(
     omega_S (films,), as the films foresee their oil."""
 
     def moved(step: Array, faster: float) -> Array:
-        oil = tuple(
+        oil = films if not follows else tuple(
             film if film.slopes is None else film.foreseen(place, film.slopes.total + faster)
             for film, place in zip(films, position + step, strict=True)
-        )
+        )  # fmt: skip
         return drags(system, position + step, oil)
+
+    follows = any(system.remembering)
 
     by_place, clearances = np.zeros_like(position), np.array(system.clearances)
     for column, unit in enumerate(np.eye(2)):
         step = NUDGE * np.outer(clearances, unit)
         by_place[:, column] = (moved(step, 0.0) - moved(-step, 0.0)) / (2.0 * NUDGE * clearances)
-    if all(film.slopes is None for film in films):
+    if not follows:
         return by_place, np.zeros(len(films))
     still, faster = np.zeros_like(position), NUDGE * max(abs(omega), 1.0)
     return by_place, (moved(still, faster) - moved(still, -faster)) / (2.0 * faster)

@@ -66,19 +66,20 @@ def ring_speeds(
 
 
 def balanced_speeds(system: System, held: HeldRotor, omega: float, position: Array, drag: Array) -> Array:
-    """ring_speeds with the drags (films,) of the films."""
-    carried = (held.load - held.stiffness @ position.ravel()).reshape(-1, 2) / system.rotor.multiplicity[:, None]
-    moment = 0.5 * (position[:, 0] * carried[:, 1] - position[:, 1] * carried[:, 0])
-    if system.torque != "all":
-        moment = np.zeros_like(moment)
-    speeds = np.zeros(system.ring_count)
-    for ring in np.flatnonzero(~system.pinned):
-        outer, inner = (system.bodies == ring).T
-        driving = omega * drag[inner] + moment[inner] + moment[outer]  # of a cartridge at both ends
-        held_by = np.sum(drag[inner] + drag[outer])
-        speeds[ring] = np.sum(driving) / held_by
-        if system.rough_rings:
-            speeds[ring] = _rubbed(system, int(ring), omega, position, speeds, float(held_by))
+    """(..., rings) ring_speeds with the journals in `position` (..., films, 2) and the drags (..., films) of films."""
+    drag = np.broadcast_to(drag, np.broadcast_shapes(drag.shape, position.shape[:-1]))
+    position = np.broadcast_to(position, (*drag.shape, 2))
+    outer, inner = (system.bodies[:, side, None] == np.arange(system.ring_count) for side in (0, 1))
+    carried = (held.load - position.reshape(*drag.shape[:-1], -1) @ held.stiffness.T).reshape(position.shape)
+    moment = 0.5 * (position[..., 0] * carried[..., 1] - position[..., 1] * carried[..., 0])
+    moment = moment / system.rotor.multiplicity
+    touched = outer | inner  # of a cartridge at both ends
+    driving = omega * drag @ inner + (moment @ touched if system.torque == "all" else 0.0)
+    held_by = drag @ touched
+    speeds = np.where(system.pinned, 0.0, driving / held_by)
+    for at in np.ndindex(speeds.shape[:-1]) if system.rough_rings else ():
+        for ring in np.flatnonzero(~system.pinned):
+            speeds[at][ring] = _rubbed(system, int(ring), omega, position[at], speeds[at], float(held_by[at][ring]))
     return speeds
 
 

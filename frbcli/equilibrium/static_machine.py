@@ -36,7 +36,7 @@ ON_CELLS = replace(SEARCH, untaken=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
 # Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
 # law follows, those of others are exact, and a step leaves its square over the gap.
-NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5)
+NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, untaken=1e-6)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
 # meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, that of the
@@ -67,13 +67,6 @@ class MachineAtRest:
     def system(self) -> System:
         """The machine."""
         return self.static.system
-
-    @property
-    def apart(self) -> Array | float:
-        """(n,) how far its displacements on the first other mesh are from its own, 0 without any."""
-        if not self.others:
-            return 0.0
-        return self.others[0][0].position.displacements - self.at_rest.position.displacements
 
     @cached_property
     def oscillator(self) -> Oscillator:
@@ -149,23 +142,22 @@ class StaticMachines:
                 np.array([getattr(film, name) for film in warm.films]) for name in ("viscosity", "clearance")
             )
             static, start = static.warm(viscosities, clearances), warm.resting.displacements
-        others: list[tuple[FilmsAtRest, float]] = []
         settled, with_error = not self._memory, with_error and not self._memory
         held = held_in_plane(static.system, omega)
         remembers = static.system.remembers
-        follows = not (with_error or (remembers and self._heat))
-        beside = None
-        if near is not None and follows:
-            beside = near.at_rest.position if remembers else None
-        elif static.on_cells:  # a coarse mesh also brings the journals near to where they rest
+        others: list[tuple[FilmsAtRest, float]] | None = None
+        # what fronts of oil leave differs from speed to speed: only what the memory of the oil needs follows them
+        follows = near is not None and not (remembers and (with_error or self._heat))
+        beside = near.at_rest.position if near is not None and follows and static.on_cells else None
+        if not follows and static.on_cells:  # a coarse mesh also brings the journals near to where they rest
             coarse = static.others if with_error else static.others[:1]
             start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
         position = resting_position(static.system, omega, start, self._search, held, beside)
         found = films_at_rest(static.system, omega, position, settled)
-        if with_error and not static.on_cells:
-            begun = position.displacements + (0.0 if near is None else near.apart)
-            _, others = _on_others(static.others, omega, begun, _nearly(static.system, held), held)
-        counted = others if with_error else []
+        if with_error and others is None:
+            search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, held)
+            _, others = _on_others(static.others, omega, position.displacements, search, held, settled, near)
+        counted = others if with_error and others else []
         films = tuple(_resting_film(static, omega, i, found, counted) for i in range(len(found.forces)))
         dynamic = _dynamic(static.system, omega, found) if self._memory else ()
         changes = _by_omega(near, omega, position.displacements)
@@ -225,16 +217,21 @@ def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicF
 
 def _on_others(
     meshes: tuple[MeshFilms, ...], omega: float, start: Array | None, search: Search, held: HeldRotor,
-    settled: bool = True,
+    settled: bool = True, near: MachineAtRest | None = None,
 ) -> tuple[Array | None, list[tuple[FilmsAtRest, float]]]:  # fmt: skip
-    """The displacements on the last of several meshes, each sought from those on the one before, and the films of all;
-    meshes on which no position is found are left out."""
-    found = []
-    for mesh in meshes:
+    """The displacements on the last of several meshes, each sought from those on the one before, or where the machine
+    `near` has the same meshes, from `start` as far off and with the films as there; and the films of all; meshes on
+    which no position is found are left out."""
+    found, same = [], near is not None and len(near.others) == len(meshes)
+    for number, mesh in enumerate(meshes):
+        beside, begun = None, start
+        if near is not None and same and start is not None:
+            beside = near.others[number][0].position
+            begun = start + beside.displacements - near.at_rest.position.displacements
         try:
-            position = resting_position(mesh.system, omega, start, search, held)
+            position = resting_position(mesh.system, omega, begun, search, held, beside)
             found.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
-            start = position.displacements
+            start = start if same else position.displacements
         except NotConverged:
             continue
     return start, found

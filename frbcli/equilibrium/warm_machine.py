@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.equilibrium.resting import RestingPosition, resting_position
+from frbcli.equilibrium.resting import SEARCH, RestingPosition, resting_position
 from frbcli.film.grid import Array
 from frbcli.scene.gate.analysis import HEAT
 from frbcli.scene.gate.gate import require
@@ -19,6 +19,9 @@ from frbcli.scene.machine.warm import warm_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
+
+CLOSE_ON_CELLS = replace(SEARCH, untaken=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
+APART = 1e-4  # of the speed: machines that are closer do not tell how their temperatures change
 
 
 @dataclass(frozen=True)
@@ -47,14 +50,20 @@ class RingTemperature:
 @dataclass(frozen=True)
 class WarmMachine:
     """A machine whose heat balances. system: at its viscosities and clearances; resting: where it rests;
-    steady: what the balance says; films, rings: the same by name; carried, given: W that the oil and the walls take;
-    balance: what is left over, relative to the power."""
+    steady: what the balance says; films, rings: the same by name; by_omega: (n,) K s how temperatures change with the
+    speed, as from a machine near it, 0 without one."""
 
     system: System
     resting: RestingPosition
     steady: SteadyHeat
     films: tuple[FilmTemperature, ...]
     rings: tuple[RingTemperature, ...]
+    by_omega: Array
+
+    @property
+    def omega(self) -> float:
+        """Speed of the rotor in rad/s."""
+        return float(self.steady.films.speeds[0])
 
     @property
     def balance(self) -> float:
@@ -112,28 +121,37 @@ class WarmMachines:
 
     def at(self, omega: float, near: WarmMachine | None = None) -> WarmMachine:
         """The machine at omega rad/s, sought from the state of a machine `near`. Raises NotConverged."""
-        system = self._system
-        resting = None if near is None else near.resting
+        search = CLOSE_ON_CELLS if self._plan.form.by_cells else SEARCH
+        system, resting = self._system, None if near is None else near.resting
+        begin, slope = self._heat.start, np.asarray(-np.eye(len(self._heat.start)))
+        speeds = np.append(omega, np.zeros(system.ring_count))
+        if near is not None:
+            slope, begin = near.steady.slope, near.steady.temperatures + (omega - near.omega) * near.by_omega
+            speeds = near.steady.films.speeds * (omega / near.omega)
 
         def solve(viscosities: Array, clearances: Array) -> FilmHeat:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
-            resting = resting_position(system, omega, None if resting is None else resting.displacements)
+            start = None if resting is None else resting.displacements
+            beside = None if system.remembers else resting  # what fronts of oil leave is not that of another speed
+            resting = resting_position(system, omega, start, search, beside=beside)
             bodies = np.concatenate([[omega], resting.ring_speeds])
             power, flow = _film_heat(system, resting.journals, bodies)
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
 
-        begin = self._heat.start if near is None else near.steady.temperatures
-        speeds = np.zeros(1 + system.ring_count)
-        speeds[0] = omega
-        found = steady_heat(self._heat.model, system.names, solve, begin, speeds)
+        found = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None
-        return self._machine(system, resting, found)
+        return self._machine(system, resting, found, near)
 
-    def _machine(self, system: System, resting: RestingPosition, found: SteadyHeat) -> WarmMachine:
+    def _machine(
+        self, system: System, resting: RestingPosition, found: SteadyHeat, near: WarmMachine | None
+    ) -> WarmMachine:
         t, films = found.temperatures, found.films
+        by_omega = np.zeros_like(t) if near is None else near.by_omega
+        if near is not None and abs(change := float(films.speeds[0]) - near.omega) > APART * near.omega:
+            by_omega = (t - near.steady.temperatures) / change
         rings = tuple(
             RingTemperature(
                 ring.name or "ring",
@@ -143,7 +161,7 @@ class WarmMachines:
             )
             for ring in self._heat.rings
         )
-        return WarmMachine(system, resting, found, film_temperatures(found, system.names), rings)
+        return WarmMachine(system, resting, found, film_temperatures(found, system.names), rings, by_omega)
 
 
 def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:

@@ -126,10 +126,8 @@ def natural_modes(
     >>> modes = frbcli.natural_modes(frbcli.load_case("turbocharger-car"), 1e7)  # doctest: +SKIP
     """
     require(case)
-    what = "these are the modes of a shaft on springs to the ground"
-    remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
-    if stiffness is not None and (faults := support_faults(case, what, remedy)):
-        raise InputError(case.name or "case", tuple(faults))
+    if stiffness is not None:
+        _check_held(case)
     if stiffness == "bearings":
         _check_own(case)
         stiffness = []
@@ -223,6 +221,14 @@ def _springs(case: Case, stiffness: float | Sequence[float] | None) -> Array:
         fault = Fault("stiffness", f"{len(given)} values", None, "are not as many as bearings.", "Give one for each.")
         raise InputError(case.name or "case", (fault,))
     return np.array(given, dtype=np.float64)
+
+
+def _check_held(case: Case) -> None:
+    """Raises InputError where the bearings of a case have supports."""
+    what = "these are the modes of a shaft on springs to the ground"
+    remedy = "Leave the stiffness out, or take the damped modes, frb stability --shapes SPEED, which have supports."
+    if faults := support_faults(case, what, remedy):
+        raise InputError(case.name or "case", tuple(faults))
 
 
 def _check_own(case: Case) -> None:

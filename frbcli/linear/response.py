@@ -53,7 +53,7 @@ from frbcli.rotor.loads import Harmonic
 from frbcli.scene.gate.analysis import FILMS, RANGE
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.elements import element_forces, harmonics_of
-from frbcli.scene.machine.system import elastic_shell
+from frbcli.scene.machine.system import System, elastic_shell
 from frbcli.scene.speeds import default_speeds
 
 UNBALANCE = "unbalance"  # as excitation
@@ -247,6 +247,17 @@ def response(
     critical, known = critical_speeds_of(resting, excitation, operating_Hz, solved)
     if speeds_Hz is None:
         resting = known
+    return _response(case, system, resting, critical, excitation)
+
+
+def _response(
+    case: Case,
+    system: System,
+    resting: Sequence[StabilityPoint],
+    critical: tuple[CriticalSpeed, ...],
+    excitation: str,
+) -> Response:
+    """The motion at the points of a machine that rest."""
     rotors = [point.rotor for point in resting if point.rotor is not None]
     found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
     motions, forces, journals = zip(*found, strict=True)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import functools
 import json
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import joblib
 import numpy as np
 
 from frbcli.arrays import Array
@@ -18,28 +18,27 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged, input_error
 from frbcli.film.bearing_model.table import models
-from frbcli.film.cavitation.table import laws, names
+from frbcli.film.cavitation.table import law_named, laws, names
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER
 from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
-from frbcli.runs.run import rundown, runup
+from frbcli.runs.run import PROFILES
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.analysis import COMPARISON
 from frbcli.scene.gate.gate import require
+from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
+from frbcli.studies.side_by_side import COMMANDS, Ended, RunTask, Tell, in_turn, side_by_side
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-COMMANDS = {"runup": runup, "rundown": rundown}
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
 FINISHED, INTERRUPTED = "finished", "interrupted"
+WORTH_A_PROCESS_s = 20.0  # expected CPU time of the runs but the longest: a process takes about 2 s to begin
 LAST = 0.02  # share of a run
 UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever their films
 
@@ -168,7 +167,7 @@ def compare(
     -------
     Comparison
         The runs, their events, deviations and cost. Ctrl-C, or a variant that does not begin, ends the comparison with
-        the runs that there are by then.
+        the runs that there are by then. Long runs go side by side, one on each core; costs are those of each run.
 
     Raises
     ------
@@ -186,27 +185,43 @@ def compare(
     _check_test(test)
     variants = make_variants(case, cavitations, theories, couplings, thermals)
     cases = [_planned(case, variant) for variant in variants]
-    runs: list[Run] = []
-    status, message = FINISHED, ""
     with _directory(keep) as folder:
         paths = [folder / f"{variant.name.replace(' ', '-')}.h5" for variant in variants]
         begun = [_is_begun(test, its_case, path) for its_case, path in zip(cases, paths, strict=True)]
-        try:
-            for number, (variant, its_case, path, resume) in enumerate(
-                zip(variants, cases, paths, begun, strict=True), start=1
-            ):
-                tell = None if observe is None else functools.partial(observe, variant, number, len(variants))
-                runs.append(COMMANDS[test](its_case, path, resume, tell))
-                if runs[-1].status == INTERRUPTED:
-                    raise KeyboardInterrupt
-        except (KeyboardInterrupt, NotConverged, InputError) as end:
-            if not runs:
-                raise
-            status, message = _status(end), str(end)
-    results = [
-        VariantResult(variant, run, deviation(run, runs[0])) for variant, run in zip(variants, runs, strict=False)
-    ]
+        tasks = [
+            RunTask(number, test, its_case, path, resume)
+            for number, (its_case, path, resume) in enumerate(zip(cases, paths, begun, strict=True), start=1)
+        ]
+
+        def tell(number: int, progress: Progress) -> None:
+            if observe is not None:
+                observe(variants[number - 1], number, len(variants), progress)
+
+        ended = dict(_ended(tasks, tell))
+    runs = {number: run for number, run in sorted(ended.items()) if isinstance(run, Run)}
+    failures = [end for _, end in sorted(ended.items()) if not isinstance(end, Run)]
+    if 1 not in runs:
+        raise failures[0]
+    failures += [KeyboardInterrupt() for run in runs.values() if run.status == INTERRUPTED]
+    status, message = (_status(failures[0]), str(failures[0])) if failures else (FINISHED, "")
+    results = [VariantResult(variants[number - 1], run, deviation(run, runs[1])) for number, run in runs.items()]
     return Comparison(case, test, tuple(results), status, message)
+
+
+def _ended(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
+    """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
+    models: laws and bearing models that Python has added are known to this one alone."""
+    costs = {task.number: _cost_s(task) for task in tasks}
+    shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
+    own = not shipped or any(task.case.film.bearing_model for task in tasks)
+    if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
+        return in_turn(tasks, tell)
+    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), tell)
+
+
+def _cost_s(task: RunTask) -> float:
+    """Expected CPU time."""
+    return cost_of_run(task.case, make_plan(task.case), PROFILES[task.command](task.case)).total_s
 
 
 def _planned(case: Case, variant: Variant) -> Case:

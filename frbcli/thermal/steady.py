@@ -1,8 +1,8 @@
 """The steady temperatures of a machine: what the films dissipate leaves with the oil and through the walls.
 
-Power and flow of the films follow from their solution, which depends on the viscosities. Between two solutions both are
-taken as powers of the viscosity; the exponents begin as those of a concentric film, 1 and -1, and then follow from the
-last two solutions.
+Power and flow of the films follow from their solution. Next to it both are taken as those of concentric films, whose
+power is in proportion to the viscosity and whose flow to its inverse; what the temperatures that then balance lack
+follows from one solution to the next, and from one speed to the next (Broyden, Math. Comp. 19, 1965).
 """
 
 from __future__ import annotations
@@ -16,12 +16,12 @@ from frbcli.compiled import Array
 from frbcli.errors import NotConverged
 from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
 
-SETTLED = 1e-5  # K: a change of all temperatures below this ends the iteration
+SETTLED = 1e-6  # K: a step of all temperatures below this ends the iteration
 ROUNDS, ITERATIONS = 60, 200
 LONGEST = 30.0  # K by which a temperature changes in one iteration of Newton's method
+FURTHEST = 100.0  # K by which it changes from one solution of the films to the next
 DIFFERENCE = 1e-4  # K
-POWER_EXPONENTS, FLOW_EXPONENTS = (0.0, 1.5), (-1.5, 0.5)
-LEAST_CHANGE = 1e-6  # of a viscosity from which exponents follow
+LEAST_CHANGE = 1e-9  # K from which a change tells a slope
 COLDEST = 5.0  # K above the pole of the viscosity law
 
 
@@ -38,7 +38,8 @@ class FilmHeat:
 @dataclass(frozen=True)
 class SteadyHeat:
     """Steady temperatures (n,) K; viscosities (F,) Pa s, clearances (F,) m; films: what they dissipate then; carried: W
-    by the oil, given: W to places of given temperature; balance: what is left over of the power, relative."""
+    by the oil, given: W to places of given temperature; balance: what is left over of the power, relative; slope:
+    (n, n) of what balances less the temperatures themselves, by the latter."""
 
     temperatures: Array
     viscosities: Array
@@ -47,70 +48,65 @@ class SteadyHeat:
     carried: float
     given: float
     balance: float
+    slope: Array
 
 
 def steady_heat(
-    model: HeatModel, names: tuple[str, ...], solve: Callable[[Array, Array], FilmHeat], start: Array, speeds: Array
+    model: HeatModel,
+    names: tuple[str, ...],
+    solve: Callable[[Array, Array], FilmHeat],
+    start: Array,
+    speeds: Array,
+    slope: Array | None = None,
 ) -> SteadyHeat:
     """The temperatures at which the heat of all nodes balances.
 
     solve: of viscosities and clearances (F,) what the films dissipate, may raise NotConverged; start (n,) K, speeds
-    (bodies,) rad/s: to begin from. Raises NotConverged, with the film that boils, freezes or closes.
+    (bodies,) rad/s, slope (n, n) of SteadyHeat: to begin from. Raises NotConverged, with the film that boils, freezes
+    or closes.
     """
-    temperatures, before = start.copy(), None
-    slopes = np.ones(len(names)), -np.ones(len(names))
+    temperatures, slope = start.copy(), -np.eye(len(start)) if slope is None else slope
+    step: Array = np.zeros(len(start))
+    change: Array = np.zeros(len(start))
     for rounds in range(ROUNDS):
         viscosities, clearances = viscosities_at(model, temperatures), clearances_at(model, temperatures, speeds)
         _check(model, names, temperatures, clearances)
-        films = solve(viscosities, clearances)
-        if before is not None:
-            slopes = _exponents(slopes, before, (viscosities, films))
-        after = _balanced(model, names, temperatures, viscosities, clearances, films, slopes)
-        change = float(np.abs(after - temperatures).max())
-        speeds, before = films.speeds, (viscosities, films)
-        if change < SETTLED and rounds > 0:
-            return _found(model, temperatures, viscosities, clearances, films)
-        temperatures = after if rounds < ROUNDS // 2 else 0.5 * (after + temperatures)
-    raise NotConverged(f"The temperatures do not settle: they still change by {change:.2g} K after {ROUNDS} rounds.")
+        films, before = solve(viscosities, clearances), change
+        change = _balanced(model, names, temperatures, viscosities, clearances, films) - temperatures
+        if rounds > 0 and (size := float(step @ step)) > LEAST_CHANGE**2:
+            slope = slope + np.outer(change - before - slope @ step, step) / size
+        step = np.asarray(np.linalg.lstsq(slope, -change)[0])
+        left, speeds = float(np.abs(step).max()), films.speeds
+        if left < SETTLED and rounds > 0:
+            return _found(model, temperatures, viscosities, clearances, films, slope)
+        if rounds >= ROUNDS // 2:
+            step = 0.5 * change
+        step *= min(1.0, FURTHEST / max(left, 1e-300))
+        temperatures = temperatures + step
+    raise NotConverged(f"The temperatures do not settle: they still change by {left:.2g} K after {ROUNDS} rounds.")
 
 
-def _found(model: HeatModel, t: Array, viscosities: Array, clearances: Array, films: FilmHeat) -> SteadyHeat:
+def _found(
+    model: HeatModel, t: Array, viscosities: Array, clearances: Array, films: FilmHeat, slope: Array
+) -> SteadyHeat:
     gain, whole = rates(model, t, films.power, films.flow, clearances), float(films.power.sum())
     held = np.isinf(model.capacity)
     given, left = float(gain[held].sum()), float(gain[~held].sum())
     balance = abs(left) / whole if whole > 0.0 else 0.0
-    return SteadyHeat(t, viscosities, clearances, films, whole - given - left, given, balance)
-
-
-def _exponents(
-    slopes: tuple[Array, Array], before: tuple[Array, FilmHeat], now: tuple[Array, FilmHeat]
-) -> tuple[Array, Array]:
-    """d ln P / d ln eta and d ln Q / d ln eta of each film, by its last two solutions where these differ enough."""
-    apart = np.log(now[0] / before[0])
-    moved = np.abs(apart) > LEAST_CHANGE
-    found = []
-    for old, first, last, (least, most) in (
-        (slopes[0], before[1].power, now[1].power, POWER_EXPONENTS),
-        (slopes[1], before[1].flow, now[1].flow, FLOW_EXPONENTS),
-    ):
-        known = moved & (first > 0.0) & (last > 0.0)
-        ratio = np.log(np.where(known, last, 1.0) / np.where(known, first, 1.0)) / np.where(known, apart, 1.0)
-        found.append(np.where(known, np.clip(ratio, least, most), old))
-    return found[0], found[1]
+    return SteadyHeat(t, viscosities, clearances, films, whole - given - left, given, balance, slope)
 
 
 def _balanced(
-    model: HeatModel, names: tuple[str, ...], start: Array, viscosities: Array, clearances: Array, films: FilmHeat,
-    slopes: tuple[Array, Array],
-) -> Array:  # fmt: skip
-    """The temperatures at which all balances, by Newton's method, with power and flow as powers of the viscosity."""
+    model: HeatModel, names: tuple[str, ...], start: Array, viscosities: Array, clearances: Array, films: FilmHeat
+) -> Array:
+    """The temperatures at which all balances, by Newton's method, with power and flow as concentric films have them."""
     free = np.isfinite(model.capacity)
     if free.all() and float(films.flow.sum()) <= 0.0:
         raise NotConverged(_no_way_out(names, films))
 
     def gain(t: Array) -> Array:
         ratio = viscosities_at(model, t) / viscosities
-        return rates(model, t, films.power * ratio ** slopes[0], films.flow * ratio ** slopes[1], clearances)[free]
+        return rates(model, t, films.power * ratio, films.flow / ratio, clearances)[free]
 
     t, lowest = start.copy(), COLDEST - float(model.viscosity[2])
     places = np.flatnonzero(free)

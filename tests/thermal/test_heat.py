@@ -15,7 +15,8 @@ from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.equilibrium.warm_machine import warm_machine
+from frbcli.equilibrium import warm_machine as warm_machines
+from frbcli.equilibrium.warm_machine import WarmMachines, warm_machine
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
 from frbcli.materials.oils import OILS
@@ -393,3 +394,20 @@ def test_heat_that_does_not_balance_is_told(settings: list[str], words: str) -> 
 def test_heat_is_refused_where_it_is_not_modelled() -> None:
     with pytest.raises(InputError, match=r"\[thermal\]"):
         make_plan(single("film.cavitation=two-phase", "film.two-phase.form=published"))
+
+
+def test_a_speed_near_by_needs_few_solutions_of_the_films(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The temperatures begin on a straight line, and how they follow is known; they are those from afar."""
+    case = ring_case("rotor.gravity=9.81 m/s^2")
+    plan, solved = make_plan(case), []
+    film_heat = warm_machines._film_heat
+    monkeypatch.setattr(warm_machines, "_film_heat", lambda *state: (solved.append(1), film_heat(*state))[1])
+    machines, near, counts = WarmMachines(case, plan, make_system(case, plan)), None, []
+    for speed in (300.0, 297.0, 294.0, 291.0):
+        solved.clear()
+        near = machines.at(2.0 * math.pi * speed, near)
+        counts.append(len(solved))
+    assert max(counts[2:]) <= 3 < counts[0], counts
+    assert near is not None
+    afar = machines.at(near.omega)
+    assert near.steady.temperatures == pytest.approx(afar.steady.temperatures, abs=3e-5)

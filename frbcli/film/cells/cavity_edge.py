@@ -11,8 +11,6 @@ more out of it than into it. It is balanced with a source of A (1 - s)^2 / 2, an
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -50,9 +48,10 @@ def full_cells(film: VolumeFilm, motion: Motion) -> Array:
     return film.full() + above
 
 
-def set_edges(film: VolumeFilm, motion: Motion, w: Array, states: Array) -> None:
-    """states (STATES, m, k), as the law has them without it <- with the edge of the cavity within cells."""
-    state = film.law.edged(CellState(*states[:CARRIED_GAS]), w, film.scales, *gap_rise(film, motion))
+def set_edges(film: VolumeFilm, rise: GapRise, w: Array, states: Array) -> None:
+    """states (STATES, m, k), as the law has them without it <- with the edge of the cavity within cells. rise: of the
+    gap, see gap_rise."""
+    state = film.law.edged(CellState(*states[:CARRIED_GAS]), w, film.scales, *rise)
     free = ~film.grid.fixed
     for layer, values in (
         (PRESSURE, state.pressure),
@@ -65,19 +64,23 @@ def set_edges(film: VolumeFilm, motion: Motion, w: Array, states: Array) -> None
 
 def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Array, Array]:
     """(m, k, 2) derivatives of the sources of cells with scaled gauge pressures (m, k) by displacement over the
-    clearance, and by its rate."""
+    clearance, and by its rate: both change how the gap opens, in which the sources are smooth."""
+    rise, phi, centre = gap_rise(film, motion), film.grid.phi, film.grid.centre
 
-    def moved(x: float, y: float) -> Motion:
-        return replace(motion, d=(motion.d[0] + x, motion.d[1] + y))
+    def slope(rate: Array | float, through: Array | float) -> Array:
+        """(m, k, 1) derivative by one of both; the nudge of the other is 0."""
+        ahead, behind = (
+            film.law.edge_source(pressure, film.scales, rise.rate + side * rate, rise.through + side * through)
+            for side in (1.0, -1.0)
+        )
+        return np.asarray((ahead - behind) / (2.0 * (rate + through)) * ~film.grid.fixed)[:, :, None]
 
-    def hastened(x: float, y: float) -> Motion:
-        return replace(motion, v=(motion.v[0] + x, motion.v[1] + y))
+    def sides(angles: Array) -> Array:
+        """(n, 2) derivatives of H by the displacement."""
+        return np.column_stack([np.sin(angles), -np.cos(angles)])
 
-    def slope(change: Callable[[float, float], Motion], nudge: float) -> Array:
-        def source(x: float, y: float) -> Array:
-            return film.law.edge_source(pressure, film.scales, *gap_rise(film, change(x, y)))
-
-        by_x, by_y = source(nudge, 0.0) - source(-nudge, 0.0), source(0.0, nudge) - source(0.0, -nudge)
-        return np.stack([by_x, by_y], axis=-1) / (2.0 * nudge) * ~film.grid.fixed[:, :, None]
-
-    return slope(moved, NUDGE), slope(hastened, NUDGE * motion.rate)
+    by_rate, by_through = slope(NUDGE * motion.rate, 0.0), slope(0.0, NUDGE * rise.through)
+    carried = 0.5 * motion.omega * np.diff(sides(phi), axis=0) / np.diff(phi)[:, None]
+    wider = 3.0 * rise.through / film.gap(motion.d, centre)[:, None] * sides(centre)
+    by_place = by_rate * carried[:, None] + by_through * wider[:, None]
+    return by_place, by_rate * sides(centre)[:, None]

@@ -42,7 +42,7 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
-from frbcli.film.cells.cavity_edge import full_cells, set_edges
+from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
 from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
@@ -104,9 +104,11 @@ def _alone(film: VolumeFilm) -> VolumeFilms:
 class FilmSolver:
     """Solves one film for any motion. Its arrays are filled anew in every iteration."""
 
-    def __init__(self, film: VolumeFilm) -> None:
-        kept, (m, k) = _alone(film), film.grid.shape
+    def __init__(self, film: VolumeFilm, like: VolumeFilm | None = None) -> None:
+        """like: a film that differs from this one in the numbers of its law alone, if its arrays may be at hand."""
+        kept, (m, k) = _alone(film if like is None else like), film.grid.shape
         self.film, self.data = film, kept._replace(films=kept.films.copy())  # how full its openings are is set here
+        self.data.films["parameters"][0] = given_parameters(film.law)
         self._parts = self.data.films[0], self.data.ring[0], self.data.width[0], self.data.cells[0]
         self._places = land_places(film.grid)
         self._carries, self._off = False, 0.0  # whether free gas goes with the oil; what it has changed by last
@@ -274,8 +276,9 @@ class FilmSolver:
         passed, mixing = self._passed(motion), GasMixing(self.film.law.gas_content) if self._carries else None
         pseudo_rate, left_before, largest_before = motion.rate / attempt.first, math.inf, math.inf
         worst, off_before = np.zeros_like(w), math.inf
+        rise = gap_rise(self.film, motion) if self.film.edged else None
         for iteration in range(1, 2 * attempt.limit + 1):
-            residual = self._assemble(motion, w, storage, mixing, attempt.gas)
+            residual = self._assemble(motion, w, storage, rise, mixing, attempt.gas)
             with np.errstate(over="ignore"):  # on the way to a failure
                 worst = np.abs(residual) / self._terms(passed, w, storage)
             largest, left = float(np.max(worst)), float(np.abs(residual).sum())
@@ -298,13 +301,15 @@ class FilmSolver:
                 return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
         return w, 2 * attempt.limit, self._where(worst)
 
-    def _assemble(self, motion: Motion, w: Array, storage: Storage, mixing: GasMixing | None, gas: float) -> Array:
-        """(m, k) what does not balance, and in the arrays of the solver Newton's equations. mixing: of the gas that the
-        oil carries; gas: see Attempt."""
+    def _assemble(
+        self, motion: Motion, w: Array, storage: Storage, rise: GapRise | None, mixing: GasMixing | None, gas: float
+    ) -> Array:
+        """(m, k) what does not balance, and in the arrays of the solver Newton's equations. rise: of the gap where the
+        edge of the cavity lies within cells; mixing: of the gas that the oil carries; gas: see Attempt."""
         self._states[BEFORE_UPSTREAM] = self._before
         self._set_states(w)
-        if self.film.edged:
-            set_edges(self.film, motion, w, self._states)
+        if rise is not None:
+            set_edges(self.film, rise, w, self._states)
         if mixing is not None:
             carried = self._states[CARRIED_GAS:BEFORE_UPSTREAM]
             before = carried.copy()

@@ -20,7 +20,7 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
-from frbcli.film.cells.cavity_edge import edge_slopes, set_edges
+from frbcli.film.cells.cavity_edge import edge_slopes, gap_rise, set_edges
 from frbcli.film.cells.data import AREA, BY_ITSELF, BY_X, BY_Y, SIDES
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
@@ -40,9 +40,13 @@ def film_at(film: VolumeFilm, eccentricity: float, omega: float) -> VolumeFilm:
     return film if law == film.law else VolumeFilm(film.section, film.grid, law, film.scales.reference, film.edged)
 
 
-def steady_solution(film: VolumeFilm, motion: Motion) -> VolumeSolution:
+def _solver(film: VolumeFilm, motion: Motion) -> FilmSolver:
+    return FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega), film)
+
+
+def steady_solution(film: VolumeFilm, motion: Motion, start: Array | None = None) -> VolumeSolution:
     """The steady film for a motion. Raises NotConverged."""
-    return FilmSolver(film_at(film, math.hypot(*motion.d), motion.omega)).steady(motion)
+    return _solver(film, motion).steady(motion, start)
 
 
 def steady_force(
@@ -53,7 +57,7 @@ def steady_force(
     c = film.section.clearance
     d, v = np.asarray(displacement) / c, np.asarray(velocity) / c
     motion = Motion((float(d[0]), float(d[1])), (float(v[0]), float(v[1])), omega)
-    solver = FilmSolver(film_at(film, math.hypot(*motion.d), omega))
+    solver = _solver(film, motion)
     try:
         solution = solver.steady(motion, start)
     except FilmUnsolved:
@@ -76,7 +80,7 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
     states[BEFORE_UPSTREAM] = solution.before
     cell_states(own, cells, law, 0.0, solution.w, states)
     if film.edged:
-        set_edges(film, motion, solution.w, states)
+        set_edges(film, gap_rise(film, motion), solution.w, states)
     stencil, by_place, by_rate, by_total = oil_slopes(own, ring, width, cells, states, motion)
     if film.edged:
         for slopes, source in zip((by_place, by_rate), edge_slopes(film, motion, states[PRESSURE]), strict=True):
@@ -92,7 +96,7 @@ def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) 
 
     moved, moving, faster = np.split(fields[:, :, k:], [2, 4], axis=2)
     followed = None
-    if film.law.keeps_oil and not film.law.carries_gas:
+    if not film.law.carries_gas:
         place, fraction = clearance * np.array(motion.d), solution.state.fraction_slope
         followed = FieldSlopes(place, motion.omega, moved / clearance, faster[:, :, 0], fraction, pushed(faster)[:, 0])
     return FilmForce(
@@ -121,8 +125,9 @@ def oil_slopes(
         balances(own, ring, width, cells, states, at, nothing, stencil, fields, np.zeros(FLOWS))
         return -fields[:, :, k:]
 
-    by_total = (left(motion.omega + step, 0.0) - left(motion.omega, 0.0))[:, :, [BY_ITSELF]] / step
-    by_both, by_rate = (left(motion.omega, g)[:, :, [BY_X, BY_Y]] for g in (1.0, 0.0))
+    faster, both, here = left(motion.omega + step, 0.0), left(motion.omega, 1.0), left(motion.omega, 0.0)
+    by_total = (faster - here)[:, :, [BY_ITSELF]] / step
+    by_both, by_rate = (each[:, :, [BY_X, BY_Y]] for each in (both, here))
     return stencil, by_both - by_rate, by_rate, by_total
 
 

@@ -107,8 +107,8 @@ class CellFilms(Films):
         return np.asarray(areas.sum(axis=1) / sheared.sum(axis=1))
 
     def sheared_oil(self, places: Array, films: Sequence[FilmForce]) -> Array:
-        shares = np.ones(self.count)
-        if self.factor == "none":
+        shares = np.ones(self.count)  # of films that are full by their law, too
+        if self.factor == "none" or not any(self.remembering):
             return shares
         for i, (own, place, film) in enumerate(
             zip(self.own, places / np.array(self.clearances)[:, None], films, strict=True)

@@ -72,7 +72,7 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 
 @dataclass(frozen=True)
 class FieldSlopes:
-    """How a settled film on cells that keeps its oil follows a journal at rest at `place` (c,) in m and rad, and
+    """How a settled film on cells follows a journal at rest at `place` (c,) in m and rad, and
     `total`, omega_J + omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the
     oil fractions by the field; force: (c,) of the force by the total, in N s and N m s."""
 
@@ -88,7 +88,7 @@ class FieldSlopes:
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
     field: of a film on cells, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
-    fractions, None of others; slopes: of the field, None of films that follow at once and where they are not known."""
+    fractions, None of others; slopes: of the field, None of films without one and where they are not known."""
 
     force: Array
     by_displacement: Array

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,7 +17,7 @@ from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.mesh import bores
-from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights, volume_grid
+from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights, run_grid, volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Hole, Section
@@ -214,3 +215,15 @@ def test_local_solutions_balance_together() -> None:
     together = np.tensordot(at[inner], out[inner], axes=([1, 2], [1, 2]))
     size_of = np.sqrt(np.abs(np.tensordot(np.abs(at[inner]), np.abs(at[inner]), axes=([1, 2], [1, 2])).diagonal()))
     assert np.abs(together + together.T).max() < 1e-3 * size_of.max() ** 2
+
+
+def test_a_warm_film_has_the_cells_of_the_cold_one() -> None:
+    """Its pressures alone have another scale."""
+    cold = bored(0.3)
+    warm = replace(cold, viscosity=0.3 * cold.viscosity, clearance=1.1 * cold.clearance)
+    own, other = run_grid(cold, (24, 6)), run_grid(warm, (24, 6))
+    assert own.around is other.around
+    for section, grid in ((cold, own), (warm, other)):
+        expected = volume_grid(section, grid.phi, grid.z)
+        for name in ("around", "along", "at", "area", "load", "cover", "fixed_pressure"):
+            np.testing.assert_array_equal(getattr(grid, name), getattr(expected, name))

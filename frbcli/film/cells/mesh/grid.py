@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
@@ -182,6 +182,14 @@ def _to_edge(opening: Opening, around: Array, along: Array, phi: Array, z: Array
 def run_grid(section: Section, cells: tuple[int, int]) -> VolumeGrid:
     """Equal cells, for the narrowest gap moves: (around, along), but for those that a groove's edges cut. Their number
     around is the given one, or what the pieces between edges need (least_around) if that is more."""
+    in_pascal = _equal_cells(replace(section, viscosity=1.0 / 12.0, clearance=section.radius), cells)
+    return replace(in_pascal, fixed_pressure=in_pascal.fixed_pressure / section.pressure_scale)
+
+
+@lru_cache(maxsize=FEW)
+def _equal_cells(section: Section, cells: tuple[int, int]) -> VolumeGrid:
+    """run_grid of a section whose scale of the pressure is 1. Warm films differ in viscosity and clearance alone, on
+    which cells do not depend: their solutions around bores (bores.py) take longer than a film does."""
     around, along = cells
     edges = [groove.position + side * 0.5 * groove.opening for groove in section.grooves for side in (-1.0, 1.0)]
     ring = graded_ring(around, 0.0, 1.0, np.array(edges), exact=True)
