@@ -84,7 +84,7 @@ def look_options(function: Function) -> Function:
         _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", help=f"Resolution of a PNG. [{DPI}]"),
         _option("--xlim", "x_limits", type=Span(), metavar="A,B", help="Limits of the horizontal axis."),
         _option("--ylim", "y_limits", type=Span(), metavar="A,B", help="Limits of the vertical axis."),
-        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds in revolutions per minute."),
+        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds in rpm. [as the case gives them]"),
     )
     for option in reversed(options):
         function = option(function)
