@@ -47,7 +47,6 @@ _LIBRARY: Any = getattr(codegen, "JITCodeLibrary", object)
 _PARTS = hasattr(_LIBRARY, "_optimize_final_module") and hasattr(_LIBRARY, "_finalize_final_module")
 _PARTS = _PARTS and hasattr(getattr(dispatcher, "_FunctionCompiler", None), "_get_implementation")
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 

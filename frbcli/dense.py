@@ -6,7 +6,8 @@ here have two to some sixty unknowns.
 
 from __future__ import annotations
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 
 
 @compiled()

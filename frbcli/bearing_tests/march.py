@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.feed import ALL, RESPONSE, supply_line
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.grid import Array
 
 RISE_TIME = 0.01  # s, t_1 of (4.49)
 FAST = 1e6  # 1/s: oil that is replaced so fast has no time for an exchange of gas

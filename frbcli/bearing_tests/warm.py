@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.history import mean_heat
 from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
-from frbcli.film.grid import Array
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.warm import warm_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan

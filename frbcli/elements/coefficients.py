@@ -12,12 +12,13 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.elements import AXES, EMPTY_MATRIX, CoefficientsBearing
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import Link
-from frbcli.rotor.over_speed import Array, LinearPart
+from frbcli.rotor.over_speed import LinearPart
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,11 @@ from typing import ClassVar, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.housing import KEY, SYMMETRIC_PLACE, Housing, shape
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.rotor.body import Array, Body, free_body
+from frbcli.rotor.body import Body, free_body
 from frbcli.units import display
 
 NODE = "housing"  # the centre of mass, or all of the housing of a symmetric rotor

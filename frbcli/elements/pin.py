@@ -15,10 +15,10 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.bearing import Pin
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Site
-from frbcli.rotor.linear import Array
 from frbcli.units import display
 
 PLAY, STIFFNESS, DAMPING = range(3)  # columns of pin_rows

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.equilibrium.resting import STILL, RestingPosition
 from frbcli.equilibrium.static_films import StaticFilms
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.machine.system import System
-
-Array = NDArray[np.float64]
 
 LEAST = 3e-5  # of the error: what the interpolation of tables leaves, the same on every mesh
 NO_STIFFNESS = 1e-9  # of omega times the damping: round-off

@@ -18,8 +18,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.equilibrium.ring_speed import memoryless
 from frbcli.film.cells.dynamic_stiffness import (
     DynamicStiffness,
@@ -31,9 +31,6 @@ from frbcli.film.cells.dynamic_stiffness import (
 from frbcli.film.cells.linearised import LinearFilm
 from frbcli.film.kinds.contract import LinearOf
 from frbcli.film.rectangles.film import FilmForce
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 # Cells around, and along a half of the width, with their weights in the extrapolation.
 MESHES = (((96, 12), 2.0), ((48, 6), -1.0))

@@ -16,9 +16,8 @@ from typing import Generic, Protocol, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Complex
 from frbcli.rotor.order import fastest_first
-
-Complex = NDArray[np.complex128]
 
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 HALVINGS = 30  # of an interval with several Hopf points

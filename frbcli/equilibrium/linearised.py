@@ -11,17 +11,14 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array, Complex
 from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.coefficients import FilmsAtRest
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.ring_speed import SUM, memoryless, ring_torques, rubbed_rings, turned_by
 from frbcli.rotor.linear import LinearRotor, with_precession
 from frbcli.scene.machine.system import System
-
-Array = NDArray[np.float64]
-Complex = NDArray[np.complex128]
 
 
 def rotor_at_rest(

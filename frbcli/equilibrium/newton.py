@@ -10,11 +10,10 @@ from dataclasses import dataclass, replace
 from typing import Generic, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.parabola import share_within
 
-Array = NDArray[np.float64]
 Films = TypeVar("Films")
 
 ITERATIONS = 80

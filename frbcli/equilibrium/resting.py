@@ -15,6 +15,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.equilibrium.newton import ForceBalance, Search, search_rest
 from frbcli.equilibrium.ring_speed import (
     NUDGE,
@@ -33,8 +34,6 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.rotor.held import HeldRotor, held_rotor, whole_rotor
 from frbcli.scene.machine.system import System
-
-Array = NDArray[np.float64]
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight

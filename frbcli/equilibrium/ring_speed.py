@@ -14,8 +14,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_angle
 from frbcli.film.rectangles.film import FilmForce, none_of
@@ -23,8 +23,6 @@ from frbcli.film.roughness.rub_slopes import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON
 from frbcli.rotor.held import HeldRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.system import System, film_drag
-
-Array = NDArray[np.float64]
 
 NUDGE = 1e-6  # of the clearance: of the differences by which the drag follows a journal
 CLOSE, ROUND_OFF = 1e-13, 1e-14  # of the rotor's speed and of a ring's, to which the speed of a ring is found

@@ -13,9 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.law import FRONTS
@@ -34,8 +32,6 @@ from frbcli.scene.machine.warm import warm_case, warm_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH, choose_films, form_of
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-
-Array = NDArray[np.float64]
 
 CELLS = (144, 20)  # around and along a section, equal: 0.1 % of the force up to an eccentricity of 0.9
 # How far coefficients are off is not even from mesh to mesh as edges of cavities cross cells, so that one coarser mesh

@@ -8,9 +8,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import SEARCH, RestingPosition, resting_position
-from frbcli.film.grid import Array
 from frbcli.scene.gate.analysis import HEAT
 from frbcli.scene.gate.gate import require
 from frbcli.scene.machine.heat import Heat, heat_of

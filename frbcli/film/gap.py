@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 Displacement = tuple[float, float] | tuple[Array, Array]  # x, y over the clearance; along the axis if it tilts
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"

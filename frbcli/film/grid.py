@@ -8,9 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 # Axial modes of films between axial grooves, of those that a load independent of z excites: the next has a hundredth of
 # a per cent of the force.

@@ -18,8 +18,9 @@ from typing import ParamSpec
 import numba
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.caches import store, stored
-from frbcli.compiled import Array, folder_of, sources_digest
+from frbcli.compiled import folder_of, sources_digest
 
 SUFFIX = ".table"
 MOST_KEPT = 64  # files in a folder; those that were used last

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import math
 
+from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array
 
 
 @compiled()

@@ -13,8 +13,9 @@ from functools import reduce
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.rotor.body import COORDINATES, PLANE, Body
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart
 

@@ -14,12 +14,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
+
+from frbcli.arrays import Array
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_array
 
-Array = NDArray[np.float64]
 
 SAME_PLACE = 1e-6  # of the shaft's length: nodes that are closer are one
 ELEMENTS = 80  # of a shaft, at least

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 # Of a node, in the order of the rows of its map: displacements along x and y, then small rotations about x and y.
 COORDINATES = ("x", "y", "tilt_x", "tilt_y")

@@ -7,9 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,9 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.rotor.loads import Load
 from frbcli.rotor.over_speed import LinearPart, summed
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

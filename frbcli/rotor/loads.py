@@ -13,7 +13,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 
 @dataclass(frozen=True)

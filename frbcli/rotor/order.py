@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 EQUAL = 1e-9  # of the largest size
 

@@ -24,12 +24,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.rotor.beam import Plane
-
-Array = NDArray[np.float64]
 
 RIGID = 2  # modes of a rigid body in one plane: translation, tilt
 STILL = 1e-9  # of the fastest mode: slower motions are none

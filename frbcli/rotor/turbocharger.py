@@ -7,13 +7,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.rotor.beam import BeamSection, Plane, beam
 from frbcli.rotor.body import Body
 from frbcli.rotor.reduction import FreeModes
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.collar.motion import AxialMotion, axial_motion
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.rotor.speed_profile import SpeedProfile
 from frbcli.scene.machine.rotor import collar_tilt
 from frbcli.scene.shafts.table import shaft_of
-from frbcli.solve.state import Array
 
 POSITION, THICKNESS, LOSS = (column.name for column in AXIAL_SIGNALS)
 

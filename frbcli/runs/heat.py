@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import first
 from frbcli.errors import NotConverged
@@ -20,7 +21,6 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.machine.warm import warm_system
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, LumpedHeat, NoHeat, columns_of
-from frbcli.solve.state import Array
 from frbcli.thermal.exchange import (
     BOOKS,
     CARRIED,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
@@ -16,7 +17,6 @@ from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System
 from frbcli.solve.inputs import Inputs
-from frbcli.solve.state import Array
 
 LEAST_SHARE = 1e-9  # of the largest gauge pressure: a supply at the ambient pressure counts as having so little
 PRESSURE, TEMPERATURE = ("supply_pressure_{}_Pa", "Pa"), ("supply_temperature_{}_K", "K")

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
@@ -45,7 +46,6 @@ from frbcli.solve.state import (
     STUCK,
     TIME,
     TURNS,
-    Array,
     LoopOutput,
 )
 from frbcli.solve.tableau import METHODS

@@ -10,6 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.course.control import Start
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
@@ -41,7 +42,6 @@ from frbcli.solve.state import (
     STEP_DONE,
     STEPS,
     TIME,
-    Array,
     Control,
     RotorData,
     State,

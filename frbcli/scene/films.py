@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.films.film_model import FilmModel
@@ -20,7 +21,6 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.gap import NO_BATH, Section, ends_at_ambient
-from frbcli.film.grid import Array
 from frbcli.scene.channels import centrifugal_pressure, coupled, feed_holes_in_outer_film
 from frbcli.scene.section import diffusion_of, film_section
 

@@ -14,7 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import CELLS, MODELS, kind_of
 from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale

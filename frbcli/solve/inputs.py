@@ -15,7 +15,8 @@ from typing import Any, NamedTuple
 
 from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, Array, Indices, compiled, compiled_for
+from frbcli.arrays import Array
+from frbcli.compiled import AS_KERNELS, Indices, compiled, compiled_for
 from frbcli.film.cells.cell_ends import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.solve.films.kinds import by_kind

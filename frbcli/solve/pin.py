@@ -6,7 +6,8 @@ pull at it. Machines without pins have an array without rows. Its torque over th
 
 from __future__ import annotations
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 
 # Of a ring: play in rad, N m/rad, N m s/rad, and m from the axis; a ring without a pin has no stiffness
 PLAY, STIFFNESS, DAMPING, RADIUS, PIN = range(5)

@@ -6,7 +6,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, Indices, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.pin import pinned

@@ -9,11 +9,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.solve.stage.cones import prepare_cones
 from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING
 from frbcli.solve.stage.inverse import prepare
 from frbcli.solve.stage.loads import prepare_loads
-from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, Array, RotorData
+from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 
 class Scratch(NamedTuple):

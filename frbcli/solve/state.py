@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED = range(5)  # what advance returns
 # omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.solve.rotation import rotation
 from frbcli.solve.state import (
     CONTACT,

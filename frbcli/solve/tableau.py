@@ -12,7 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
+
 Indices = NDArray[np.int64]
 
 NOISE = 0.1  # how much the amplification of errors counts against the reach of an extrapolation

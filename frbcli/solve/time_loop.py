@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba.extending import overload
 
+from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled, folder_of
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
@@ -33,7 +34,6 @@ from frbcli.solve.state import (
     SOLVES,
     STEP_DONE,
     STUCK,
-    Array,
     Control,
     LoopOutput,
     RotorData,

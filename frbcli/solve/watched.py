@@ -10,13 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.state import PASSED
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
-from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Array, Control, LoopOutput, RotorData, State
+from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Control, LoopOutput, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
 

@@ -10,7 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.dense import solve_dense
 from frbcli.thermal.model import AT_ZERO, SLOPE, HeatModel
 

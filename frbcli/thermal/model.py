@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.compiled import Array
+from frbcli.arrays import Array
 
 FROM_SUPPLY = -1
 OIL_AT = 353.15, 393.15  # K between which the heat capacity of the oil is taken as linear

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.compiled import Array
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
 

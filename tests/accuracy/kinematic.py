@@ -8,13 +8,11 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import rotation
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError, NotConverged
-
-Array = NDArray[np.float64]
 
 KINEMATIC = ("bearing", "bearing-axial-groove")
 MODELS = ("half-sommerfeld", "reynolds", "penalty", "peeken", "elrod", "two-phase")

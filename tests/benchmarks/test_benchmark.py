@@ -18,12 +18,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import spsolve
 from skfem import Basis, BilinearForm, ElementQuad2, LinearForm, MeshQuad
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.film.gap import Section
 from frbcli.results.store import Run
@@ -33,7 +33,6 @@ from frbcli.scene.planning.plan import make_plan
 
 pytestmark = [pytest.mark.nightly, pytest.mark.timing]
 
-Array = NDArray[np.float64]
 AXIAL, AROUND = 10, 20  # the mesh of the naive film, as published
 WINDOW_s = 5e-4  # of the run-up that the naive way is timed on, at each of these times
 WINDOW_STARTS_s = (2.0, 4.5)

@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.film import kept
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.penalty_table import film as penalty_film
 from frbcli.film.rectangles import film
 from frbcli.film.rectangles.table import force_table

@@ -10,8 +10,8 @@ import films
 import numpy as np
 import pytest
 from marches import rigid
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law, Scales
@@ -35,7 +35,6 @@ from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA,
 from frbcli.solve.stage.journal_newton import forces
 from frbcli.solve.state import FINISHED, RUNNING, Control
 
-Array = NDArray[np.float64]
 BASE = "axial-groove-two-phase"
 TOUCHES = [0.98, 0.995, 0.9995]  # from where the gap is kept
 SOFT = 1e-6  # N/m: a spring that presses with nothing worth the name

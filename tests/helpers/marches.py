@@ -10,6 +10,7 @@ from films import rectangular, system_of
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.cells.data import volume_films
@@ -27,8 +28,6 @@ from frbcli.scene.machine.system import System
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
-
-Array = NDArray[np.float64]
 
 MESH = Mesh(6, 96)
 BEARING = rectangular(

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import frbcli
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
@@ -16,7 +17,6 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.film.cells.film import VolumeSolution
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.grid import Array
 from frbcli.linear.bearing_sheet import sommerfeld_chart
 from frbcli.linear.film_state import FilmState
 from frbcli.linear.stability import stability_points

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from scipy.linalg import expm
 from scipy.optimize import brentq
 
@@ -28,8 +27,6 @@ from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.shafts.table import shaft_of
-
-Array = NDArray[np.float64]
 
 GRAVITY = 9.81
 SPRING = 5e6

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from flows import net_flow
 from marches import control, slope
-from numpy.typing import NDArray
 
 import frbcli
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -31,7 +31,6 @@ from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS,
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
-Array = NDArray[np.float64]
 SHORT = ["speed.duration=0.1s", "speed.to=30Hz", "speed.from=20Hz", "output.step=0.5ms", "accuracy.mesh=[5,32]"]
 
 

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from flows import net_flow
 from numba import njit
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -42,7 +42,6 @@ from frbcli.solve.state import RUNNING, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
-Array = NDArray[np.float64]
 COUPLED = ("bearing.channels=coupled", "accuracy.mesh=[5,32]", "output.step=1e-4")
 AT_END = ('bearing.outer.supply={kind="circumferential-groove", pressure="2 bar", axial_position=1}',)
 TWO_PHASE = ("film.cavitation=two-phase", "film.two-phase.steepness=0.9")

@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from flows import net_flow
-from numpy.typing import NDArray
 
 import frbcli
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
@@ -25,7 +25,6 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, RUNNING, State
 
-Array = NDArray[np.float64]
 STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]
 RESTING = [*STEADY, "start.position=resting"]
 CELLS = ["accuracy.mesh=[4,32]", "bearing.supply.pressure=2bar"]

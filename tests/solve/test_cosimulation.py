@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -26,8 +26,6 @@ from frbcli.solve.state import FINISHED, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 from frbcli.studies.compare import compare
-
-Array = NDArray[np.float64]
 
 HEAVY = ("film.theory=short", "speed.from=20 Hz", "speed.to=22 Hz", "speed.duration=0.05 s", "output.step=1e-4 s")
 WET = ("film.cavitation=two-phase", "bearing.supply.pressure=2 bar", "accuracy.mesh=[3, 12]", "speed.from=20 Hz",

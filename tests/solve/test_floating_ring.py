@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
@@ -27,8 +27,6 @@ from frbcli.scene.films import centrifugal_pressures
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.compare import compare
-
-Array = NDArray[np.float64]
 
 STEP = 5e-5
 COARSE = ("accuracy.mesh=[3,16]", f"output.step={STEP}")

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.sparse import lil_matrix
 from scipy.sparse.linalg import spsolve
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 from frbcli.materials.viscosity import VogelLaw
 
 AROUND, ALONG = 72, 8  # cells; along over half the width

@@ -19,6 +19,7 @@ from scipy.linalg import eigh
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 
+from frbcli.arrays import Array
 from frbcli.case.elements import AXES
 from frbcli.case.files.number_table import Refused
 from frbcli.case.files.ross_file import REMEDY, RossElement, ross_elements, shaft_of_file
@@ -29,7 +30,6 @@ LOOSE = 1e-12  # of the largest square of a frequency
 SAME_PLACE = 1e-6  # of the length of the shaft
 GIVE_SUPPORTS = "Give bearings [bearing.support], which takes any mass, stiffness and damping."
 
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.arrays import Truths
+from frbcli.arrays import Array, Truths
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
@@ -42,7 +42,6 @@ from frbcli.solve.state import (
     RUNNING,
     STEP,
     STEP_DONE,
-    Array,
     Control,
     State,
     make_output,

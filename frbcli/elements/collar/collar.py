@@ -15,9 +15,9 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 
+from frbcli.arrays import Array
 from frbcli.case.elements import AnyLoad, LoadAtSpeed, ThrustBearing
 from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
@@ -28,8 +28,6 @@ from frbcli.film.pads.geometry import Pad
 from frbcli.film.pads.table import GapTable, ScaledPads, gap_table
 from frbcli.rotor.over_speed import LinearPart
 from frbcli.units import display
-
-Floats = NDArray[np.float64]
 
 BOTH, LEFT, RIGHT = "both", "left", "right"
 LEAST_GAP = 1e-6  # m, of a load that is carried: thinner films lie below the roughness of surfaces
@@ -64,8 +62,8 @@ class CollarRest:
     torque: float
     stiffness: float
     damping: float
-    tilt_stiffness: Floats
-    tilt_damping: Floats
+    tilt_stiffness: Array
+    tilt_damping: Array
     viscosities: tuple[float, ...]
 
 
@@ -131,7 +129,7 @@ class Collar:
         table = self._table
         return table.at(min(max(gap, table.thin), table.wide))
 
-    def torques(self, gaps: Floats) -> Floats:
+    def torques(self, gaps: Array) -> Array:
         """(k,) torques of one side over viscosity and speed, in m^3, at gaps in m."""
         table = self._table
         return table.torques(np.clip(gaps, table.thin, table.wide))

@@ -11,9 +11,9 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.integrate import OdeSolution, solve_ivp
 
+from frbcli.arrays import Array
 from frbcli.case.elements import LoadAtSpeed
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
@@ -23,8 +23,6 @@ from frbcli.film.pads.film import PadOil, RunnerMotion, pad_film
 from frbcli.film.pads.geometry import COARSE, SOMMERFELD
 from frbcli.film.pads.mesh import pad_mesh
 from frbcli.rotor.speed_profile import SpeedProfile
-
-Floats = NDArray[np.float64]
 
 TO_RIGHT, TO_LEFT = -1.0, 1.0  # change of the gap by a displacement, of pads on that side
 RELATIVE, ABSOLUTE = 1e-6, (1e-11, 1e-7)  # tolerances: m and m/s
@@ -43,7 +41,7 @@ class AxialMotion:
     pieces: tuple[OdeSolution, ...] = ()
     end: float = 0.0
 
-    def at(self, times: Floats) -> tuple[Floats, Floats, Floats]:
+    def at(self, times: Array) -> tuple[Array, Array, Array]:
         """(k,) each at times in s: position in m, smaller gap over the lands in m, loss in W. Beyond its end it stays
         as it is there."""
         known = np.minimum(times, self.end)
@@ -65,10 +63,10 @@ class AxialMotion:
         side = self.collar.bearing.side
         return (TO_RIGHT, TO_LEFT) if side == BOTH else (TO_LEFT,) if side == LEFT else (TO_RIGHT,)
 
-    def _gap(self, side: float, position: Floats) -> Floats:
+    def _gap(self, side: float, position: Array) -> Array:
         return (self.collar.wide if self.collar.bearing.side == BOTH else 0.0) + side * position
 
-    def _state(self, t: float) -> Floats:
+    def _state(self, t: float) -> Array:
         piece = next(each for each in self.pieces if t <= each.t_max)
         return np.asarray(piece(t))
 
@@ -89,7 +87,7 @@ class AxialMotion:
         values = [rest.viscosities[0 if is_loaded else -1] for rest in rests]
         return float(np.interp(omega, [rest.omega for rest in rests], values))
 
-    def slope(self, t: float, state: Floats) -> list[float]:
+    def slope(self, t: float, state: Array) -> list[float]:
         """Velocity in m/s and acceleration in m/s^2."""
         omega, force = float(self.profile.speed(np.array([t]))[0]), self.load(t)
         for side in self._sides:
@@ -98,7 +96,7 @@ class AxialMotion:
             force += side * viscosity * (omega * films.load - films.damping * side * state[1])
         return [float(state[1]), force / self.mass]
 
-    def room(self, t: float, state: Floats) -> float:
+    def room(self, t: float, state: Array) -> float:
         """The smaller gap less that of contact, in m."""
         return min(float(self._gap(side, state[:1])[0]) for side in self._sides) - self.collar.thin
 
@@ -142,7 +140,7 @@ def axial_motion(case: Case, profile: SpeedProfile, mass: float) -> AxialMotion 
     start = replace(collar, load=moving.load(float(profile.times[0]))).rest(float(profile.speeds[0]))
     state, pieces, end = np.array([collar.position(start), 0.0]), [], 0.0
 
-    def touch(t: float, state: Floats) -> float:
+    def touch(t: float, state: Array) -> float:
         return moving.room(t, state)
 
     touch.terminal = True  # type: ignore[attr-defined]

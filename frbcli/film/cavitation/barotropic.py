@@ -24,7 +24,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 ITERATIONS, SETTLED = 60, 1e-14  # of Newton's method, which takes five on the average
 

@@ -28,7 +28,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, CellState, CellWithGas, FilmOil, Key, Law, Numbers, Scales
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import CellState, CellWithGas, FilmOil, Key, Law, Numbers, Scales
 
 TINY = 1e-300  # a coefficient or a root that is no divisor
 INSTANT = 1e-25  # s, as good as none

@@ -8,7 +8,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 BAR = 1e5
 

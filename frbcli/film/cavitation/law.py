@@ -7,9 +7,8 @@ from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from frbcli.arrays import Array
 
 
 @dataclass(frozen=True)

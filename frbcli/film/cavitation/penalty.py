@@ -8,7 +8,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales, source_at_edge
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales, source_at_edge
 
 PREFACTOR = 0.01  # a of (3.31)
 # By which sources are divided in the unknown, 1/s: about what a cell passes on per unit of pressure, of those 48 around

@@ -9,7 +9,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales, source_at_edge
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, Law, Numbers, Scales, source_at_edge
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, Law, Numbers, Scales
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, Law, Numbers, Scales
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,8 @@ from typing import Any, Self
 
 import numpy as np
 
-from frbcli.film.cavitation.law import Array, Cell, CellState, FilmOil, Key, Law, Numbers, Scales
+from frbcli.arrays import Array
+from frbcli.film.cavitation.law import Cell, CellState, FilmOil, Key, Law, Numbers, Scales
 
 # theta'_0, the slope outside of the step. As published it makes the full film as compressible as a bulk modulus of
 # 1000 p_cav does; the unknown w needs none, so it may be chosen as small as one likes.

@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.states import CARRIED_GAS, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_rate
-from frbcli.film.grid import Array
 
 NUDGE = 1e-6  # of the gap, and of the pace, for derivatives of smooth functions
 

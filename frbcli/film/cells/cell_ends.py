@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from frbcli.arrays import Array
 from frbcli.compiled import Indices
 from frbcli.film.cells.data import Records
-from frbcli.film.grid import Array
 
 
 class CellEnds(NamedTuple):

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.ends import end_slopes
@@ -19,7 +20,6 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.grid import Array
 
 Records = NDArray[np.record]
 FEW = 64  # films whose geometry is kept

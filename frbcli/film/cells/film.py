@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.mesh.grid import VolumeGrid, fitted_grid, force_weights, volume_grid
 from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
     from frbcli.film.cells.gas.balance import Carried, FreeGas

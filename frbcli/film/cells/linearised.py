@@ -21,6 +21,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, GridMotion, balances, without_ends
 from frbcli.film.cells.balance.feed import ALL
@@ -41,7 +42,6 @@ from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at, oil_slopes
-from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix

@@ -12,8 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.gap import Displacement, Section, gap_height
-from frbcli.film.grid import Array
 
 PARALLEL = (0.0, 0.0)
 

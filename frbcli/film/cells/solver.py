@@ -14,6 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
@@ -53,7 +54,6 @@ from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.cells.tilted.data import land_places
 from frbcli.film.gap import gap_rate
-from frbcli.film.grid import Array
 
 ROUND_OFF = 1e-15  # residual of a cell over the terms that it is the sum of
 SETTLED = 1e-12  # the same, for a residual that does not fall any more

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
@@ -27,7 +28,6 @@ from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 SPEED_STEP = 1e-6  # share of the speed by which it is changed for a derivative

@@ -10,6 +10,7 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import CREATED, ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
 from frbcli.film.cells.balance.feed import ALL, supply_line
@@ -25,7 +26,6 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.mean_fields.outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.mean_fields.table import MeanFilm

@@ -16,11 +16,11 @@ from typing import Any, ClassVar, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import LinearFilm
 from frbcli.film.compared import SAMPLES
-from frbcli.film.grid import Array
 from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.mean_fields.outflow import MeanEndFlow
 from frbcli.film.rectangles.end_flow import EndFlow

@@ -9,13 +9,13 @@ from typing import Protocol
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array
 
 Part = tuple[VolumeFilm, Motion]
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 from frbcli.film.kinds.contract import Films, LinearOf
 from frbcli.film.kinds.tilted import TiltedField, TiltedFilms
 from frbcli.film.rectangles.film import FilmForce

@@ -8,8 +8,8 @@ from typing import Any, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.bearing_model.film import NO_FLOW, BearingModelFilm, model_flow
-from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films, couette_power
 from frbcli.film.rectangles.film import FilmForce, evaluate
 from frbcli.film.rectangles.film_force import FilmData

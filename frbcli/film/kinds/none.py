@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData

@@ -8,7 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm

@@ -10,9 +10,10 @@ from typing import Any, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.kinds.contract import Compared, Films, couette_power
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm, with_half_the_nodes

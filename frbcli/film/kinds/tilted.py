@@ -13,6 +13,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.data import COS, GAP, SHEARED, SIN
@@ -35,7 +36,6 @@ from frbcli.film.cells.tilted.force import (
 from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array
 from frbcli.film.kinds.cells import (
     begin_wet,
     contents_of,

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.side_flow import opens_far, side_flow
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import Records, VolumeFilms

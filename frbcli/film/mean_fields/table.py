@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.hermite import hermite
 from frbcli.film.rectangles.table import DEPTH_STEP
 

@@ -22,15 +22,13 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.sparse import csc_matrix, diags_array
 from scipy.sparse.linalg import SuperLU, splu
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.pads.geometry import HALF_SOMMERFELD, REYNOLDS
 from frbcli.film.pads.mesh import Numbers, PadMesh
-
-Floats = NDArray[np.float64]
 
 MOST_CHANGES = 100  # of the set of nodes in the cavity
 
@@ -59,16 +57,16 @@ class PadFilm:
     stiffness, damping: 3 x 3, -dF/dq and -dF/dq' of forces over axial displacement and tilts about x and y
     """
 
-    forces: Floats
+    forces: Array
     torque: float
     inner_flow: float
     outer_flow: float
     leading_flow: float
     trailing_flow: float
     swept: float
-    pressure: Floats
-    stiffness: Floats
-    damping: Floats
+    pressure: Array
+    stiffness: Array
+    damping: Array
 
     @property
     def largest_pressure(self) -> float:
@@ -85,7 +83,7 @@ class PadOil:
     cavitation_pressure: float = 0.0
 
 
-def pad_film(mesh: PadMesh, land_gap: Floats, oil: PadOil, omega: float, motion: RunnerMotion = AT_REST) -> PadFilm:
+def pad_film(mesh: PadMesh, land_gap: Array, oil: PadOil, omega: float, motion: RunnerMotion = AT_REST) -> PadFilm:
     """The film of one pad.
 
     land_gap: the gap in m at the points of the mesh without the runner's motion; omega: speed of the runner in rad/s.
@@ -137,7 +135,7 @@ def pad_film(mesh: PadMesh, land_gap: Floats, oil: PadOil, omega: float, motion:
     )
 
 
-def _pressure(mesh: PadMesh, matrix: csc_matrix, source: Floats, oil: PadOil) -> tuple[Floats, SuperLU, Numbers]:
+def _pressure(mesh: PadMesh, matrix: csc_matrix, source: Array, oil: PadOil) -> tuple[Array, SuperLU, Numbers]:
     """The pressure at the nodes, the factorisation of the equations, and the nodes that are solved for: all that are
     free, or by Reynolds' condition those outside of the cavity, p >= p_c, with the complementarity condition."""
     cavity = np.zeros(len(source), dtype=bool)
@@ -179,7 +177,7 @@ def ring_of_pads(film: PadFilm, pads: int) -> PadFilm:
     )
 
 
-def _turns(pads: int) -> list[Floats]:
+def _turns(pads: int) -> list[Array]:
     """Rotations of (W, M_x, M_y) from the first pad to each of them."""
     turns = []
     for angle in 2.0 * math.pi * np.arange(pads) / pads:
@@ -188,7 +186,7 @@ def _turns(pads: int) -> list[Floats]:
     return turns
 
 
-def _around(one: Floats, turns: list[Floats]) -> Floats:
+def _around(one: Array, turns: list[Array]) -> Array:
     """The sum of coefficients over all pads. Three pads and more have no coupling of axial motion and tilt, and in
     tilt only the part of the matrix that rotations leave alone: exactly, not up to round-off."""
     if len(turns) <= 2:

@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_matrix
 from skfem import Basis, ElementQuad2, MeshQuad
 
+from frbcli.arrays import Array
 from frbcli.film.pads.geometry import Pad
 
-Floats = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
 ORDER = 6  # of the polynomials that are integrated exactly
@@ -28,13 +28,13 @@ class PadMesh:
     leading, trailing, inner, outer: numbers of the nodes on the edges; corners belong to the leading or trailing edge
     """
 
-    theta: Floats
-    r: Floats
-    weights: Floats
+    theta: Array
+    r: Array
+    weights: Array
     value: csr_matrix
     slope_theta: csr_matrix
     slope_r: csr_matrix
-    nodes: Floats
+    nodes: Array
     triangles: Numbers
     free: Numbers
     leading: Numbers
@@ -71,7 +71,7 @@ def pad_mesh(pad: Pad, radial: int, angular: int) -> PadMesh:
     )
 
 
-def _angles(pad: Pad, angular: int) -> Floats:
+def _angles(pad: Pad, angular: int) -> Array:
     share = pad.taper_angle / pad.angle
     tapered = max(1, round(angular * share))
     angles = np.linspace(0.0, pad.taper_angle, tapered + 1)
@@ -81,7 +81,7 @@ def _angles(pad: Pad, angular: int) -> Floats:
     return np.concatenate([angles, land[1:]])
 
 
-def _at_points(basis: Basis, fields: list[Floats]) -> csr_matrix:
+def _at_points(basis: Basis, fields: list[Array]) -> csr_matrix:
     """The matrix from nodal values to those at the points; fields: of each node of an element, elements x points."""
     elements, points = basis.dx.shape
     rows = np.arange(elements * points).reshape(elements, points)
@@ -91,7 +91,7 @@ def _at_points(basis: Basis, fields: list[Floats]) -> csr_matrix:
     return csr_matrix((np.concatenate(entries), places), shape=(rows.size, basis.N))
 
 
-def _triangles(nodes: Floats) -> Numbers:
+def _triangles(nodes: Array) -> Numbers:
     """Two triangles in each rectangle of neighbouring nodes."""
     angles = np.round(nodes[0], 12)  # equal ones differ by round-off
     order = np.lexsort((nodes[1], angles))

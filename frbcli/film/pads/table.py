@@ -16,13 +16,11 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import MESH, SOMMERFELD, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
-
-Floats = NDArray[np.float64]
 
 NODES = 48  # of the interpolation, which errs by less than 1e-7
 MOST_HELD = 8
@@ -40,8 +38,8 @@ class ScaledPads:
     side_flow: float
     stiffness: float
     damping: float
-    tilt_stiffness: Floats
-    tilt_damping: Floats
+    tilt_stiffness: Array
+    tilt_damping: Array
     inverse_gap: float
 
 
@@ -52,7 +50,7 @@ class GapTable:
     thin: float
     wide: float
     radius: float
-    coefficients: Floats
+    coefficients: Array
 
     def at(self, gap: float) -> ScaledPads:
         """The films at a gap in m between thin and wide."""
@@ -71,11 +69,11 @@ class GapTable:
         )
 
 
-    def torques(self, gaps: Floats) -> Floats:
+    def torques(self, gaps: Array) -> Array:
         """(k,) T / (eta omega) in m^3 at gaps in m."""
         return np.asarray(np.exp(chebyshev.chebval(self._scaled(gaps), self.coefficients[:, 1])))
 
-    def _scaled(self, gaps: Floats | float) -> Floats:
+    def _scaled(self, gaps: Array | float) -> Array:
         """Gaps in m as the polynomials take them, from -1 to 1."""
         middle, half = 0.5 * np.log(self.thin * self.wide), 0.5 * np.log(self.wide / self.thin)
         return np.asarray((np.log(gaps) - middle) / half)

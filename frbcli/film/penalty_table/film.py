@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cavitation.penalty import Penalty
@@ -14,7 +15,7 @@ from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.mesh.grid import VolumeGrid, axial_weights, fitted_grid
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.gap import Section, gap_rate
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.kept import kept_beside
 from frbcli.film.penalty_table.rows import LIMIT, row_forces
 from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers

@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import compiled_cell
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty

@@ -17,9 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.grid import Array
 
 DEPTH_STEP = 0.2  # step of x = -ln(1 - eps)
 DIRECTIONS = 13  # over half a turn; the other half is its mirror image

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.grid import Array
 from frbcli.film.parabola import parabola_roots
 from frbcli.film.rectangles.modal import GAUSS_POINTS, GAUSS_WEIGHTS, SHAPE, element_lengths, gauss_angles
 

@@ -17,9 +17,10 @@ from typing import NamedTuple
 import numpy as np
 from numba.extending import overload
 
+from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY, Section, groove_pressure
-from frbcli.film.grid import Array, AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import AxialModes, Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles.chain import (
     DECAY,
     GROOVE,

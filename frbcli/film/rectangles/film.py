@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section, groove_pressure
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.kept import kept_beside
 from frbcli.film.rectangles.chain import ChainFilm, chain_grid, chain_table
 from frbcli.film.rectangles.fields import LINES, FieldsFilm, field_grid, field_table

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 
 @dataclass(frozen=True)

@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array, Mesh, axial_modes, axial_vertices, ring_vertices
+from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.kept import kept_beside
 from frbcli.film.parabola import summit
 from frbcli.film.rectangles.clip import clipped_line, force_weights

@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.roughness.summits import LAST, elastic_summits, touching_summits
 
 POINTS = 40  # of the trapezoidal rule over half of the arc

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.contact_gap import closes_freely_until, contact_gap
-from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce
 
 

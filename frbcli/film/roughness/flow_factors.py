@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 # Isotropic surfaces. Flow of the pressure: 1 - DEPTH exp(-RATE x)
 DEPTH, RATE = 0.90, 0.56

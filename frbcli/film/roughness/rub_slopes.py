@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array
+from frbcli.arrays import Array
 from frbcli.film.roughness.asperities import SLOW, Asperities, touch_along
 
 # What is found: force on the journal in N, torques in N m on the journal and on the shell, each about its own middle

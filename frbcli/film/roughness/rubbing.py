@@ -7,9 +7,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
-from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FilmForce, none_of
 from frbcli.film.roughness.asperities import Asperities, rub, standing_eccentricity, touch
 from frbcli.film.roughness.rub_slopes import COLUMNS, FOUND, rub_slopes

@@ -6,10 +6,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.arrays import Truths
+from frbcli.arrays import Array, Truths
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.cell_choice import gap_ratio
-from frbcli.solve.state import Array
 
 CLOSER = 3.0  # most that a smaller gap than was expected counts
 

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.gap import LARGEST_ECCENTRICITY
@@ -26,7 +27,7 @@ from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.solve.stage.contact import felt_motion
-from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, Array, State
+from frbcli.solve.state import ERROR_LARGEST, ERRORS_LARGEST, ERRORS_SUM, State
 from frbcli.solve.time_loop import NEWTON_SHARE
 
 # A disk oscillates longer than its journals, which the films damp: its true error is 0.2 to 2.5 times the sum of all

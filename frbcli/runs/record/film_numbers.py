@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.scene.machine.system import System
-from frbcli.solve.state import Array
 
 
 @dataclass(frozen=True)

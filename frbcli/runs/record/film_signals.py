@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along
 from frbcli.rotor.body import PLANE
@@ -32,7 +33,7 @@ from frbcli.runs.record.header import (
 )
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.contact import felt_motion, touches
-from frbcli.solve.state import SLIP, SUM, Array, Control
+from frbcli.solve.state import SLIP, SUM, Control
 from frbcli.solve.watched import DRAG, FILLED, LEAVES
 
 OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW, SHARE)  # they ask for what is known at the ends of the steps alone

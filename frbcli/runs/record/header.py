@@ -10,10 +10,10 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
 from frbcli.analysis.orders.forced import ForcedLine, forced_references, lines_of_table
+from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
-from frbcli.film.grid import Array
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.rotor.body import PLANE

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.course.control import FilmFrames
 from frbcli.film.cells.motion import Motion, turned
 from frbcli.film.state import GAS, OIL
@@ -13,7 +14,7 @@ from frbcli.results import kept_films
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.record.restored import array
 from frbcli.scene.machine.system import System
-from frbcli.solve.state import TIME, Array, State
+from frbcli.solve.state import TIME, State
 
 
 class KeptFilms:

@@ -7,13 +7,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED as SPEED_SIGNAL
 from frbcli.results.records import TIME as TIME_SIGNAL
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
 from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, Array, State
+from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, State
 
 SAME = 1e-9  # share of the longest time or highest speed that is round-off
 LARGEST = 1e30  # of any number, in SI

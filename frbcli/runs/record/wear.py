@@ -12,6 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import Indices
 from frbcli.film.roughness.asperities import wear_along
 from frbcli.rotor.speed_profile import SpeedProfile
@@ -19,7 +20,6 @@ from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.film_signals import Samples, film_motions
 from frbcli.runs.record.restored import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
-from frbcli.solve.state import Array
 
 ANGLES = 72  # places around a shell, evenly from the top on, counter-clockwise
 NAME, DEEPEST = "wear", 1.0  # in a checkpoint; m, deeper than any shell

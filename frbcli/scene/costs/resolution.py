@@ -11,10 +11,11 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
 from frbcli.rotor.loads import Harmonic, Tabulated
-from frbcli.rotor.speed_profile import Array, speed_profile
+from frbcli.rotor.speed_profile import speed_profile
 from frbcli.scene.costs.course import expected_course
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.elements import element_parts

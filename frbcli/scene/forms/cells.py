@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
-from frbcli.film.grid import Array
 from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import ALONG, USUAL, cells_time, coarser_cells, compared_states, worst_film
 from frbcli.scene.section import is_published

@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.scene.gate.rule import Rule
 from frbcli.scene.section import is_published
 

@@ -6,11 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.errors import Fault
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.units import display
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
@@ -16,7 +17,7 @@ from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.scene.shafts.table import shaft_of
 

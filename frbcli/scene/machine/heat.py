@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
@@ -15,7 +16,6 @@ from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.over_time import OverTime, largest
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.elements.damper import DamperElement
-from frbcli.film.grid import Array
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import SOLIDS
 from frbcli.scene.channels import coupled, opens_to_groove

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
@@ -15,7 +16,7 @@ from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.tilted.force import tilted_film
 from frbcli.film.gap import Section, whole_width
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.inclined import InclinedFilms

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
+from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
 from frbcli.elements.collar.thrust import COLLAR
@@ -14,7 +15,7 @@ from frbcli.elements.element import Parts
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
 from frbcli.rotor.held import preset
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of
 from frbcli.scene.shafts.table import shaft_of

@@ -8,10 +8,10 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import held_by_pins, pin_rows
-from frbcli.film.grid import Array
 from frbcli.film.kinds.contract import Films
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import Asperities, make_asperities

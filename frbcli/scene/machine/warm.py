@@ -10,9 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.film.grid import Array
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.planned import Plan

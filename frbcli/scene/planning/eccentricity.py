@@ -10,8 +10,8 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
@@ -20,8 +20,6 @@ from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.scene.planning.short_bearing import CLOSEST, mobility, resting_load, slenderness_of
 from frbcli.scene.shafts.table import shaft_of
-
-Array = NDArray[np.float64]
 
 FALL = 10.0 * 2.0 * math.pi  # rad until which a journal has fallen
 STEP, MOST_STEPS, FEWEST_STEPS = 0.01, 5000, 200  # of the fall: its length over the clearance; their number

@@ -6,11 +6,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
-
-Array = NDArray[np.float64]
 
 # The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
 SHORT, SHORT_POWER = 0.45, 1.3

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.rotor.body import Body
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 
 if TYPE_CHECKING:
     from frbcli.rotor.reduction import FreeModes, Reduction

@@ -10,12 +10,13 @@ from typing import ClassVar
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.rotor import ShaftSection, TurbochargerRotor
 from frbcli.elements.collar.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.body import Body
-from frbcli.rotor.linear import Array, LinearRotor
+from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import (
     EXACT,
     MOST,

@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
 from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
 from frbcli.solve.films.steps import write_oil
@@ -47,7 +48,6 @@ from frbcli.solve.state import (
     RUNNING,
     STEP,
     STUCK,
-    Array,
     Control,
     LoopOutput,
     RotorData,

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any, NamedTuple
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.solve.films.forces import move_film
 from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations
 from frbcli.solve.heat import warm_stage

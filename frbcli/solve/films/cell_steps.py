@@ -11,7 +11,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURNOVER
 from frbcli.film.cells.data import SHEARED, SIDES, Records, VolumeFilms

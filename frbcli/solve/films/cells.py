@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import EMPTY
 from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, SUPPLY_NET, GridMotion, balances
 from frbcli.film.cells.balance.newton_step import damp, film_loads, imbalance, store_rates

@@ -12,7 +12,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.dense import solve_dense
 from frbcli.film.cells.balance.states import follow_law
 from frbcli.film.cells.channels.flow import (

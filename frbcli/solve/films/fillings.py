@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.feed import RESPONSE
 from frbcli.film.cells.balance.states import fill_openings

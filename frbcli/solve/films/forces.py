@@ -11,6 +11,7 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
+from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.solve.films.cell_steps import Work
@@ -27,7 +28,6 @@ from frbcli.solve.films.kinds import CELLS, NONE, TILTED, by_kind, kind_of
 from frbcli.solve.films.steps import Scaled, Supplied
 from frbcli.solve.films.tilted import ENDS, end_response, join_ends, meet_ends, move_end, tilted_sheared
 from frbcli.solve.stage.equations import FilmMotion
-from frbcli.solve.state import Array
 
 
 def film_response(films: Any, work: Work, f: int, motion: FilmMotion, g: float, s: int, iteration: int) -> Any:

@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
 from frbcli.solve.films.fillings import filling_error
 from frbcli.solve.films.grid import GRID
 from frbcli.solve.films.kinds import CELLS, MODELS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
-from frbcli.solve.state import Array
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
 CELL_LIMIT = 24  # the same for films with cells, whose kinks take longer

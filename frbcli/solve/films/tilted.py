@@ -12,7 +12,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import EMPTY
 from frbcli.film.cells.balance.balances import ENDS_NET, SUPPLY_NET
 from frbcli.film.cells.balance.newton_step import damp, imbalance

@@ -9,7 +9,8 @@ from typing import Any
 from numba import types
 from numba.extending import overload
 
-from frbcli.compiled import AS_KERNELS, Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.bearing_model.film import CLEARANCE as MODEL_CLEARANCE
 from frbcli.film.bearing_model.film import VISCOSITY as MODEL_VISCOSITY
 from frbcli.film.bearing_model.film import model_flow

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.compiled import Array, compiled_for
+from frbcli.arrays import Array
+from frbcli.compiled import compiled_for
 from frbcli.solve.stage.equations import FREE, LATE, U_0, V
 from frbcli.solve.stage.loads import solve_columns
 from frbcli.solve.state import RotorData

@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_gap
-from frbcli.solve.state import Array, Control
+from frbcli.solve.state import Control
 
 
 @compiled(inline=True)

@@ -14,7 +14,8 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from frbcli.compiled import Array, Indices, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import Indices, compiled
 from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.solve.stage.inverse import E_COS, E_DAMPING, E_GYROSCOPIC, E_SIN, E_STATIC, E_STIFFNESS
 from frbcli.solve.state import INVERSE_SPEED

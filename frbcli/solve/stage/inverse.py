@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.dense import solve_dense
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 

@@ -8,7 +8,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.dense import solve_dense
 from frbcli.solve.films.forces import film_response, follow_channels, join_films, meet_films, move_film
 from frbcli.solve.stage.contact import feel, push_back, shell_ahead

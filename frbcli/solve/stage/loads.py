@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.compiled import Array, compiled, compiled_for
+from frbcli.arrays import Array
+from frbcli.compiled import compiled, compiled_for
 from frbcli.dense import solve_dense
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
 from frbcli.solve.stage.equations import FREE, U_0

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from frbcli.compiled import Array, compiled_for
+from frbcli.arrays import Array
+from frbcli.compiled import compiled_for
 from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, X_0, U
 from frbcli.solve.state import SLIP, SUM

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import frbcli
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.cycles.method.mesh_error import other_films
 from frbcli.errors import InputError
@@ -20,7 +21,7 @@ from frbcli.film.cells.mesh.grid import fitted_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import (
     DIRECTIONS,

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from films import rectangular
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest, rotation, squeeze, whirl
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
@@ -29,7 +30,7 @@ from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import oil_slopes, steady_force
 from frbcli.film.gap import Diffusion, Hole, Section, gap_height
-from frbcli.film.grid import Array, Mesh
+from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.scene.films import run_grid
 from frbcli.scene.section import ELEMENT

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from paths import DATA
 
 import frbcli
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
@@ -30,7 +30,6 @@ from frbcli.solve.state import FINISHED, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
 
-Array = NDArray[np.float64]
 SHORT = ["speed.from=30Hz", "speed.to=30Hz", "speed.duration=0.02s", "output.step=0.5ms", "accuracy.mesh=[6,40]"]
 PUBLISHED = ["film.cavitation=two-phase", "film.two-phase.form=published"]
 SOFT = "film.two-phase.steepness=0.9"

@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pytest
 from films import rectangular
-from numpy.typing import NDArray
 from paths import DATA
 
+from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
@@ -19,8 +19,6 @@ from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
-
-Array = NDArray[np.float64]
 
 CLEARANCE = 40e-6
 MESH = Mesh(6, 48)

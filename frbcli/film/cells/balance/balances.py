@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
 from frbcli.film.cells.balance.carried import carried_at
 from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS

@@ -14,7 +14,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 
 UPWIND = np.nan  # held in place of an oil fraction: L is 0 at that face
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.plain_clipped import CURVED
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.gap import Edge
-from frbcli.film.grid import NO_SEALS, Array
+from frbcli.film.grid import NO_SEALS
 
 BEND = 0.5  # share of the pressure of an end cell by which a parabola may change it; more than that is a front
 PREFACTOR, STEEPNESS = 0.01, 100.0  # a in 1/s and b of (4.37)

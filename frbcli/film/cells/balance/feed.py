@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
     from frbcli.film.cells.film import VolumeFilm, VolumeSolution

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.carried import UPWIND, limited
 from frbcli.film.cells.balance.ends import BEND, EndSlope, end_outflow, end_slopes
@@ -18,7 +19,6 @@ from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.cells.motion import Motion, Storage, gap_on
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.grid import Array
 from frbcli.film.roughness.flow_factors import pressure_flow, shear_flow
 
 

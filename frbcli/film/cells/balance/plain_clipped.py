@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 CURVED = 1.0 / 32.0  # of S, see above
 

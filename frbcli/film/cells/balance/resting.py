@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.states import (
     FRACTION_SLOPE,
     PRESSURE,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import end_flow, falls_to_air, section_end
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import PRESSURE, STATES

@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import ECCENTRICITY, LAW_NUMBERS, MOTION, SPEED, WHIRL, call_cells, call_follow
 from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 

@@ -12,12 +12,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cells.channels.channel import Channel, FeedHole
 from frbcli.film.cells.data import CHANNEL, EXCHANGE, FEED_HOLE, FEED_HOLES, UNKNOWN, Records, VolumeFilms
 from frbcli.film.cells.elimination.ring_solver import UNKNOWN_SIDES, ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
-from frbcli.film.grid import Array
 
 IN_GROOVE = -1  # in place of a feed hole
 OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film

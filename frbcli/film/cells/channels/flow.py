@@ -12,7 +12,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, Indices, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.balance.balances import CHANNELS_NET
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of

@@ -8,12 +8,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.cells.motion import Motion, gap_on
 from frbcli.film.gap import Section
-from frbcli.film.grid import Array
 
 GAMMA, PECLET = 0.5, 3.0  # of (4.42) and (4.43)
 NO_DISTANCE = 1e-30  # between two cells of a groove: nothing flows there

@@ -21,7 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.data import (
     ALONG,

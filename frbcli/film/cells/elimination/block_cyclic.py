@@ -13,7 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.elimination.vectors import (
     eliminate_column,
     next_column,

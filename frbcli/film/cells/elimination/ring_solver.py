@@ -15,7 +15,8 @@ from numba import types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 
-from frbcli.compiled import Array, address_of, c_function, call_of, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import address_of, c_function, call_of, compiled
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES, USUAL, answer_all, solve_blocks, solve_known
 
 UNKNOWN_SIDES = 0

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, FREE_GAS, PRESSURE, TURNOVER
@@ -35,7 +36,6 @@ from frbcli.film.cells.gas.carry import (
     UPWARD,
 )
 from frbcli.film.cells.mesh.grid import VolumeGrid
-from frbcli.film.grid import Array
 
 STILL = 1e-6
 AT_ONCE = 1e60  # 1/s: oil that is replaced so fast keeps the gas that it comes with

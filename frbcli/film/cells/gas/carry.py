@@ -11,7 +11,8 @@ import math
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import (
     GAS_IN,
     GAS_OUT,

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import GridMotion
@@ -30,7 +31,6 @@ from frbcli.film.cells.gas.balance import FreeGas, OilPaths, brought, oil_paths,
 from frbcli.film.cells.gas.carry import PATHS, follow_oil
 from frbcli.film.cells.loads import pushing
 from frbcli.film.cells.motion import Motion
-from frbcli.film.grid import Array
 
 if TYPE_CHECKING:
     from scipy.sparse import csc_matrix

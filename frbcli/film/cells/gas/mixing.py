@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 MEMORY = 5  # iterations
 DEPENDENT = 1e-10  # of the largest: changes that are so small by themselves say nothing

@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cells.mesh.bores import BoreFit, Mask, Patch, fit
 from frbcli.film.cells.mesh.openings import wrapped
 from frbcli.film.gap import Hole, Section
-from frbcli.film.grid import Array
 
 REACH = 2.5  # cells around a bore whose flows follow the local solutions; no more than half-way to the next opening
 MOST = 1000  # cells of a patch: a bore that is so much larger than a cell needs none

@@ -30,7 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.film.grid import Array
+from frbcli.arrays import Array
 
 Mask = NDArray[np.bool_]
 

@@ -9,11 +9,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.cells.mesh.around_bores import Cells, around_bores
 from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
 from frbcli.film.cells.mesh.tilted import tilted_weights
 from frbcli.film.gap import LEAST, AxialGroove, Section, graded_ring, groove_pressure
-from frbcli.film.grid import Array
 
 FEW = 64  # films whose weights are kept: a film is solved often
 NEAREST = 1e-3  # of a cell: so near its middle the edge of a groove or hole may come

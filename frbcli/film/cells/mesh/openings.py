@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from frbcli.arrays import Array
 from frbcli.film.gap import NO_BATH, AxialGroove, Hole, Section
-from frbcli.film.grid import Array
 
 NO_HOLE = 1e-3  # of the cells at its middle: a hole smaller than this supplies nothing
 

@@ -9,8 +9,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.balance.ends import end_slopes
-from frbcli.film.grid import Array
 
 CHEBYSHEV = 0.55  # share of Chebyshev's spacing: of 0.2 to 1 the most exact on 8 to 12 cells in the mean of 20 states
 # Integrals of p, where -p'' = 1, and of (2 z - 1) p, where -p'' = 2 z - 1; p = 0 at the ends.

@@ -9,11 +9,11 @@ from typing import Any
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, BY_ITSELF, EndsMotion, land_balances
-from frbcli.film.grid import Array
 
 
 def tilted_balances(

@@ -5,10 +5,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.plain_clipped import CURVED
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.grid import Array
 
 
 def mean_change(film: VolumeFilm, state: CellState, change: Array) -> Array:

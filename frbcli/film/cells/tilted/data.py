@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from frbcli.compiled import Array, Indices
+from frbcli.arrays import Array
+from frbcli.compiled import Indices
 from frbcli.film.cells.data import TIGHTLY, Records, volume_films
 from frbcli.film.cells.elimination.ring_solver import TILTED, ring_solver
 from frbcli.film.cells.mesh.grid import VolumeGrid

@@ -10,7 +10,8 @@ from typing import Any, NamedTuple, cast
 
 from numba import njit
 
-from frbcli.compiled import AS_KERNELS, Array, Kernel
+from frbcli.arrays import Array
+from frbcli.compiled import AS_KERNELS, Kernel
 from frbcli.film.cells.balance.carried import carried_at
 
 _PartCompiler: Any = AS_KERNELS["pipeline_class"]

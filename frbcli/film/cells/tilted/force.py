@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
@@ -27,7 +28,6 @@ from frbcli.film.cells.steady_force import film_at
 from frbcli.film.cells.tilted.clipped import mean_change
 from frbcli.film.cells.tilted.lands import parts
 from frbcli.film.gap import Section, graded_ring
-from frbcli.film.grid import Array
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
 
 COORDINATES = 4  # of the journal: its displacement along x and y, and its tilts about them

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.linearised import LinearFilm, by_neighbours, lying
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.force import COORDINATES, TiltedFilm, TiltedLand, land_slopes, unit_loads
-from frbcli.film.grid import Array
 
 
 def linear_tilted(

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from frbcli.compiled import Array, compiled
+from frbcli.arrays import Array
+from frbcli.compiled import compiled
 from frbcli.film.cells.balance.clipped import shared
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE
 from frbcli.film.cells.data import BETWEEN_MIDDLES, LOAD, NO_CLIP, PUSH_X, PUSH_Y
