@@ -12,8 +12,7 @@ from frbcli.bearing_tests.history import mean_heat
 from frbcli.bearing_tests.steady_film import film_moment
 from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
-from frbcli.scene.machine.heat import heat_of
-from frbcli.scene.machine.warm import warm_case
+from frbcli.scene.machine.heat import heat_of, warm_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
 from frbcli.scene.tilt import tilt_rate_of
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat

@@ -26,9 +26,8 @@ from frbcli.case.quantities import (
     ThermalConductivity,
     Tilt,
 )
-from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.over_time import InputTemperature
-from frbcli.case.surroundings.support import Support
+from frbcli.case.surroundings.support import Damper, Support
 from frbcli.case.thermal import AnyWall, Material
 from frbcli.materials.solids import SOLIDS, Solid
 

@@ -24,9 +24,8 @@ from frbcli.case.quantities import (
     SignedSpeed,
     TopSpeed,
 )
-from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.over_time import Input, OverTime, is_over_time
-from frbcli.case.surroundings.support import Support
+from frbcli.case.surroundings.support import Damper, Support
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]

@@ -116,7 +116,7 @@ def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path
     """Draw the picture that a command is for. Raises InputError if it cannot be written."""
     look = terminal.look
     with drawing(terminal), warnings.catch_warnings(record=True) as caught:
-        from frbcli.plot.look import fit
+        from frbcli.plot.picture import fit
         from frbcli.plot.style import save_figure
 
         warnings.filterwarnings("always", message="Glyph")

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import re
 
-from frbcli.case.rules.machine_keys import machine_fault
+from frbcli.case.rules.cartridge_checks import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MOST_UNKNOWNS, Changing
 from frbcli.cycles.method.mesh_error import other_films
 from frbcli.cycles.parts.machine import Machine, make_machine
 from frbcli.errors import InputError, input_error
-from frbcli.scene.gate.analysis import CYCLES, SPEED_CYCLES, WHIRLS
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.speeds import default_speeds

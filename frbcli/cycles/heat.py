@@ -24,7 +24,7 @@ from frbcli.cycles.parts.film_heat import Ends, FilmHeats, film_heats, heats_at
 from frbcli.cycles.parts.machine import Machine, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.warm_machine import WarmMachines
-from frbcli.rotor.order import largest_first
+from frbcli.rotor.loads import largest_first
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System

@@ -18,7 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import Link
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from typing import ClassVar, Self
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.damper import Damper
+from frbcli.case.surroundings.support import Damper
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.support import directions
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.body import point_mass
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
 
 FILM = "the shell moves without turning, and the film acts by squeezing alone"

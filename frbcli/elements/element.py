@@ -11,8 +11,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND, Link, NodeForce
 from frbcli.rotor.body import Body
-from frbcli.rotor.loads import Load
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart, Load
 
 Line = tuple[str, str, str]  # of a plan: choice, value, reason
 

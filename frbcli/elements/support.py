@@ -17,7 +17,7 @@ from frbcli.case.surroundings.support import Support
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.body import point_mass
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
 
 

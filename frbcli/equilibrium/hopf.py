@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Complex
-from frbcli.rotor.order import fastest_first
+from frbcli.rotor.loads import fastest_first
 
 OSCILLATING = 1e-9  # imaginary part over absolute value from which an eigenvalue oscillates
 HALVINGS = 30  # of an interval with several Hopf points

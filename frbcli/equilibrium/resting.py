@@ -32,7 +32,7 @@ from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
-from frbcli.rotor.held import HeldRotor, held_rotor, whole_rotor
+from frbcli.rotor.assembly import HeldRotor, held_rotor, whole_rotor
 from frbcli.scene.machine.system import System
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)

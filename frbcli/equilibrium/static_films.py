@@ -26,9 +26,9 @@ from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.gate.analysis import STILL
+from frbcli.scene.gate.rule import STILL
+from frbcli.scene.machine.heat import warm_case, warm_system
 from frbcli.scene.machine.system import System, make_system
-from frbcli.scene.machine.warm import warm_case, warm_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH, choose_films, form_of
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan

@@ -27,8 +27,8 @@ from frbcli.equilibrium.resting import SEARCH, held_in_plane, resting_position
 from frbcli.equilibrium.static_films import MeshFilms, StaticFilms, static_films
 from frbcli.equilibrium.warm_machine import WarmMachine, WarmMachines
 from frbcli.errors import NotConverged
-from frbcli.rotor.held import HeldRotor
-from frbcli.scene.gate.analysis import STILL
+from frbcli.rotor.assembly import HeldRotor
+from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 

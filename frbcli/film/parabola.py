@@ -1,4 +1,9 @@
-"""Roots and summit of a parabola, in forms that stay exact where its curvature is mere round-off."""
+"""Parabolas and cubics through three points and slopes.
+
+Roots and summit of a parabola, in forms that stay exact where its curvature is mere round-off.
+
+Hermite's cubic polynomials between two lines of a table, compiled.
+"""
 
 from __future__ import annotations
 
@@ -43,3 +48,18 @@ def share_within(place: Array, step: Array, limit: float) -> float:
     origin, in which it lies."""
     roots = parabola_roots(float(step @ step), 2.0 * float(place @ step), float(place @ place) - limit * limit)
     return min(1.0, max(roots)) if step.any() else 1.0
+
+
+Values = tuple[float, float, float, float]
+Slopes = tuple[float, float, float]
+
+
+@compiled(inline=True)
+def hermite(a: float, step: float) -> tuple[Values, Slopes]:
+    """Weights at a share a of the step from one line to the next: the two values and their two slopes are multiplied by
+    the first and added to give the value, the difference of the values and the two slopes by the second for its
+    slope."""
+    return (
+        ((1 + 2 * a) * (1 - a) ** 2, a * a * (3 - 2 * a), step * a * (1 - a) ** 2, step * a * a * (a - 1)),
+        (6 * a * (1 - a) / step, (1 - a) * (1 - 3 * a), a * (3 * a - 2)),
+    )

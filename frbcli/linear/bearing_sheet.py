@@ -28,10 +28,10 @@ from frbcli.film.contact_gap import closes_freely_until
 from frbcli.html import Tabular
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
-from frbcli.rotor.held import held_rotor
+from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.films import bearing_films
-from frbcli.scene.gate.analysis import BEARING, CHART, LOADED
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import BEARING, CHART, LOADED
 from frbcli.scene.remedies import advised
 
 Observer = Callable[[int, int], None]

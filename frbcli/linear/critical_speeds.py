@@ -29,7 +29,7 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.order import EQUAL
+from frbcli.rotor.loads import EQUAL
 from frbcli.scene.films import full_films, rings
 
 SPEEDS = 20  # between which natural frequencies are nearly straight

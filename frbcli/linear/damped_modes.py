@@ -21,7 +21,7 @@ from frbcli.linear.critical_speeds import larger_semi_axis, whirl_direction
 from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.order import first_largest, ranks
+from frbcli.rotor.loads import first_largest, ranks
 from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
 

@@ -20,7 +20,7 @@ from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.columns import NATURAL_MODES, SPEED
-from frbcli.rotor.order import first_largest, ranks
+from frbcli.rotor.loads import first_largest, ranks
 from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.gate.gate import require

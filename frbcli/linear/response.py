@@ -50,8 +50,8 @@ from frbcli.linear.stability_point import StabilityPoint
 from frbcli.nearest import did_you_mean
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import Harmonic
-from frbcli.scene.gate.analysis import FILMS, RANGE
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import FILMS, RANGE
 from frbcli.scene.machine.elements import element_forces, harmonics_of
 from frbcli.scene.machine.system import System, elastic_shell
 from frbcli.scene.speeds import default_speeds

@@ -26,8 +26,8 @@ from frbcli.linear.columns import film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, deciding, find_threshold
 from frbcli.linear.thrust.columns import AXIAL
-from frbcli.scene.gate.analysis import FILMS, RANGE, STABILITY
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import FILMS, RANGE, STABILITY
 from frbcli.scene.machine.system import System
 from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds

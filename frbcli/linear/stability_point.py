@@ -19,7 +19,7 @@ from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
 from frbcli.film.cells.dynamic_stiffness import DynamicStiffness
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.order import fastest_first, ranks
+from frbcli.rotor.loads import fastest_first, ranks
 
 if TYPE_CHECKING:  # films on pads take long to import
     from frbcli.linear.thrust.axial import AxialState

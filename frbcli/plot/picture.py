@@ -1,8 +1,21 @@
-"""The picture of any result, which its command writes and a notebook shows."""
+"""A picture, its size, limits and unit of speeds.
+
+The picture of any result, which its command writes and a notebook shows.
+
+A finished picture in another size, with other limits, or with its rotor speeds per minute.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from importlib import import_module
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from frbcli.errors import input_error
 from frbcli.plot.style import Picture
@@ -63,3 +76,65 @@ def picture(result: object) -> Picture:
     module, _, name = place.partition(":")
     found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
     return found
+
+
+SECONDS = 60.0  # of a minute
+SPEED, PER_MINUTE = "speed in Hz", "speed in rpm"
+COLOURS = "<colorbar>"  # how matplotlib labels the axes of a scale of colours
+ALONG = ("time in", "speed in", "frequency in", "eccentricity")  # begin or end the names of axes that limits are for
+
+Span = tuple[float, float]
+
+
+class _PerMinute(MaxNLocator):
+    """Round numbers of revolutions per minute on an axis in Hz."""
+
+    def tick_values(self, vmin: float, vmax: float) -> Any:
+        return np.asarray(super().tick_values(SECONDS * vmin, SECONDS * vmax)) / SECONDS
+
+
+def fit(
+    figure: Figure,
+    size_in: Span | None = None,
+    x_limits: Span | None = None,
+    y_limits: Span | None = None,
+    rpm: bool = False,
+) -> Figure:
+    """Change a figure, and return it. size_in: inches; limits in the units of the axes: x_limits of all that share the
+    axis of the first panel that has one along the run, y_limits of all that are named as the first panel; rpm: axes of
+    rotor speeds in Hz are shown in revolutions per minute."""
+    panels = [axes for axes in figure.axes if axes.get_label() != COLOURS]
+    if rpm:
+        for axes in panels:
+            for axis in (axes.xaxis, axes.yaxis):
+                _per_minute(axis)
+    if x_limits is not None:
+        for axes in _along(panels):
+            axes.set_xlim(*_in_hertz(axes.xaxis, x_limits))
+    if y_limits is not None:
+        first = panels[0].get_ylabel()
+        for axes in panels:
+            if axes.get_ylabel() == first:
+                axes.set_ylim(*_in_hertz(axes.yaxis, y_limits))
+    if size_in is not None:
+        figure.set_size_inches(*size_in)
+    return figure
+
+
+def _along(panels: list[Axes]) -> Iterable[Axes]:
+    """Panels over time, speed or frequency; if there are none, the first one and those named as it is."""
+    named = [axes for axes in panels if any(word in axes.get_xlabel() for word in ALONG)]
+    return named or [axes for axes in panels if axes.get_xlabel() == panels[0].get_xlabel()]
+
+
+def _per_minute(axis: Axis) -> None:
+    name = axis.get_label_text()
+    if SPEED in name and axis.get_scale() == "linear":
+        axis.set_label_text(name.replace(SPEED, PER_MINUTE))
+        axis.set_major_locator(_PerMinute(7, steps=[1, 2, 2.5, 5, 10]))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{SECONDS * value:.6g}"))
+
+
+def _in_hertz(axis: Axis, limits: Span) -> Span:
+    per_minute = PER_MINUTE in axis.get_label_text()
+    return (limits[0] / SECONDS, limits[1] / SECONDS) if per_minute else limits

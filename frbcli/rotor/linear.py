@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.rotor.loads import Load
-from frbcli.rotor.over_speed import LinearPart, summed
+from frbcli.rotor.loads import LinearPart, Load, summed
 
 
 @dataclass(frozen=True)

@@ -1,12 +1,23 @@
-"""Loads on a machine that change with the angle of its rotor or with time, beside those of the unbalance.
+"""Loads of a rotor: weight, unbalance, over the order, over speed and time.
+
+Loads on a machine that change with the angle of its rotor or with time, beside those of the unbalance.
 
 A load is two columns of forces on all degrees of freedom, each times a factor that is a function of time and angle.
+
+Order and choice among numbers that are equal but for round-off: by a rule, the same on every processor.
+
+Equal eigenvalues, motions on a circle and shapes that are symmetric leave to round-off which of them comes first or is
+the largest. Here numbers that are as near to each other as EQUAL count as one, and the next rule decides.
+
+Linear parts of a rotor: forces -K d - C d' - M d'' that elements put on it, constant or over its speed.
+
+The prescribed rotor speed: piecewise linear in time, and the angle that belongs to it.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -122,3 +133,177 @@ def loads_at(loads: Sequence[Load], size: int, t: Array, angle: Array) -> Array:
     for load in loads:
         total += load.factors(t, angle) @ load.columns
     return total
+
+
+EQUAL = 1e-9  # of the largest size
+
+
+def ranks(values: Array, size: float | None = None) -> NDArray[np.intp]:
+    """(n,) ranks of numbers (n,) in ascending order, from 0; neighbours nearer than EQUAL times `size`, default the
+    largest size, share one."""
+    if not len(values):
+        return np.zeros(0, dtype=np.intp)
+    order = np.argsort(values, kind="stable")
+    apart = np.diff(values[order]) > EQUAL * (float(np.max(np.abs(values))) if size is None else size)
+    found = np.empty(len(values), dtype=np.intp)
+    found[order] = np.concatenate([[0], np.cumsum(apart)])
+    return found
+
+
+def fastest_first(eigenvalues: NDArray[np.complex128]) -> NDArray[np.intp]:
+    """(n,) order of eigenvalues by falling real part; those that grow alike in ascending order of the frequency, of a
+    pair the one with positive imaginary part first."""
+    size = float(np.max(np.abs(eigenvalues), initial=0.0))
+    by_frequency = ranks(np.abs(eigenvalues.imag), size)
+    return np.lexsort((-eigenvalues.imag, by_frequency, ranks(-eigenvalues.real, size)))
+
+
+def largest_first(multipliers: NDArray[np.complex128]) -> NDArray[np.intp]:
+    """(n,) order of multipliers by falling size; those of one size in ascending order of the angle, of a pair the one
+    with positive imaginary part first."""
+    by_angle = ranks(np.abs(np.angle(multipliers)), np.pi)
+    return np.lexsort((-multipliers.imag, by_angle, ranks(-np.abs(multipliers))))
+
+
+def first_largest(values: NDArray[np.complex128] | Array) -> int:
+    """Index of the largest size: the first one of those that are equal to it."""
+    size = np.abs(values)
+    return int(np.argmax(size >= (1.0 - EQUAL) * size.max()))
+
+
+FASTEST = 1e6  # rad/s, above the speed of any rotor
+
+
+@dataclass(frozen=True)
+class LinearPart:
+    """Coefficients at s >= 1 speeds of the rotor, linear between them and constant beyond the first and the last.
+
+    speeds: (s,) rad/s, ascending, with the sign of the rotation; stiffness in N/m, damping in N s/m, mass in kg: (s, c,
+    c) on the c coordinates that an element sees, or on all degrees of freedom of a rotor. At one speed they are
+    constant.
+    """
+
+    speeds: Array
+    stiffness: Array
+    damping: Array
+    mass: Array
+
+    @classmethod
+    def of(cls, stiffness: Array, damping: Array | None = None, mass: Array | None = None) -> Self:
+        """Constant coefficients (c, c); those that are None are 0."""
+        given = (np.zeros_like(stiffness) if each is None else each for each in (damping, mass))
+        return cls(np.zeros(1), stiffness[None], *(each[None] for each in given))
+
+    @classmethod
+    def turning(cls, damping: Array) -> Self:
+        """A damping C (n, n) of one plane that turns with the rotor: for v = x + i y the force -C (v' - i Omega v), on
+        the x of n degrees of freedom and then their y.
+
+        The term with Omega is a stiffness that couples the planes and feeds forward whirls slower than the rotor. It
+        is a line through zero, which ends at FASTEST."""
+        both, across = np.kron(np.eye(2), damping), np.kron([[0.0, FASTEST], [-FASTEST, 0.0]], damping)
+        stiffness, rates = np.stack([-across, across]), np.stack([both, both])
+        return cls(FASTEST * np.array([-1.0, 1.0]), stiffness, rates, np.zeros_like(rates))
+
+    @property
+    def constant(self) -> bool:
+        """Whether the coefficients do not depend on the speed."""
+        return len(self.speeds) == 1
+
+    def at(self, omega: float) -> tuple[Array, Array, Array]:
+        """(c, c) stiffness, damping and mass at omega rad/s."""
+        place = int(np.searchsorted(self.speeds, omega, side="right")) - 1
+        below, above = max(place, 0), min(place + 1, len(self.speeds) - 1)
+        width = self.speeds[above] - self.speeds[below]
+        share = (omega - self.speeds[below]) / width if place >= 0 and width > 0.0 else 0.0
+        stiffness, damping, mass = (
+            each[below] + share * (each[above] - each[below]) for each in (self.stiffness, self.damping, self.mass)
+        )
+        return stiffness, damping, mass
+
+    def seen_by(self, place: Array, count: float = 1.0) -> LinearPart:
+        """The part on all degrees of freedom of a machine. place: (c, n) the coordinates that it sees out of those of
+        the machine; count: of equal elements that it stands for."""
+        stiffness, damping, mass = (count * (place.T @ each @ place) for each in self._matrices)
+        return LinearPart(self.speeds, stiffness, damping, mass)
+
+    def cut(self, kept: NDArray[np.int64]) -> LinearPart:
+        """The part of a rotor with its degrees of freedom `kept` alone."""
+        return LinearPart(self.speeds, *(each[:, kept[:, None], kept] for each in self._matrices))
+
+    @property
+    def _matrices(self) -> tuple[Array, Array, Array]:
+        return self.stiffness, self.damping, self.mass
+
+
+def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
+    """All parts of a rotor as one, at the speeds of all of them: the sum of lines between speeds is such a line. None
+    without any."""
+    if not parts:
+        return None
+    speeds = np.unique(np.concatenate([part.speeds for part in parts]))
+    found = [[part.at(float(omega)) for omega in speeds] for part in parts]
+    stiffness, damping, mass = (
+        np.sum([[matrices[i] for matrices in rows] for rows in found], axis=0) for i in range(3)
+    )
+    return LinearPart(speeds, stiffness, damping, mass)
+
+
+def no_part(size: int) -> LinearPart:
+    """At no speed, for a rotor with so many degrees of freedom."""
+    nothing = np.zeros((0, size, size))
+    return LinearPart(np.zeros(0), nothing, nothing, nothing)
+
+
+@dataclass(frozen=True)
+class SpeedProfile:
+    """times: (k,) s, ascending; speeds: (k,) rad/s at these times; angles: (k,) rad."""
+
+    times: Array
+    speeds: Array
+    angles: Array
+
+    @property
+    def end(self) -> float:
+        """Time at the end of the profile, s."""
+        return float(self.times[-1])
+
+    def speed(self, t: Array) -> Array:
+        """Rotor speed in rad/s at the times t (n,)."""
+        return np.interp(t, self.times, self.speeds)
+
+    def rotation(self, t: float) -> tuple[float, float, float]:
+        """Angular acceleration in rad/s^2, speed in rad/s and angle in rad at the time t; at a kink, just after it."""
+        piece = min(max(int(np.searchsorted(self.times, t, side="right")) - 1, 0), len(self.times) - 2)
+        acceleration, speed, angle = rotation(self.times, self.speeds, self.angles, piece, t)
+        return float(acceleration), float(speed), float(angle)
+
+    def angle(self, t: float) -> float:
+        """Angle of the rotor in rad at the time t."""
+        return self.rotation(t)[2]
+
+    def with_stops(self, times: Iterable[float]) -> SpeedProfile:
+        """The same speeds with additional points at those of the times in s that lie within the profile."""
+        kinks = [t for t in times if self.times[0] < t < self.times[-1]]
+        t = np.union1d(self.times, np.array(kinks))
+        return speed_profile(t.tolist(), self.speed(t).tolist())
+
+    def until(self, t: float) -> SpeedProfile:
+        """The profile up to one of its own times, s."""
+        kept = slice(int(np.searchsorted(self.times, t, side="right")))
+        return SpeedProfile(self.times[kept], self.speeds[kept], self.angles[kept])
+
+
+def speed_profile(times: list[float], speeds: list[float]) -> SpeedProfile:
+    """Profile through the given speeds (rad/s) at the given times (s), linear in between."""
+    t, omega = np.asarray(times, dtype=float), np.asarray(speeds, dtype=float)
+    angles = np.concatenate([[0.0], np.cumsum(0.5 * (omega[1:] + omega[:-1]) * np.diff(t))])
+    return SpeedProfile(t, omega, angles)
+
+
+def rotation(times: Array, speeds: Array, angles: Array, piece: int, t: float) -> tuple[float, float, float]:
+    """Angular acceleration, speed and angle at the time t inside the given piece of a profile."""
+    start = t - times[piece]
+    acceleration = (speeds[piece + 1] - speeds[piece]) / (times[piece + 1] - times[piece])
+    speed = speeds[piece] + acceleration * start
+    return acceleration, speed, angles[piece] + start * (speeds[piece] + 0.5 * acceleration * start)

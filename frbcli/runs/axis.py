@@ -11,7 +11,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.collar.motion import AxialMotion, axial_motion
 from frbcli.results.columns import AXIAL_SIGNALS
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.machine.rotor import collar_tilt
 from frbcli.scene.shafts.table import shaft_of
 

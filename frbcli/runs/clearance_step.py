@@ -7,7 +7,7 @@ leaves through the ends.
 from __future__ import annotations
 
 from frbcli.film.cells.motion import turned
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.start import FIRST_STEP, accelerations, in_turn, settled_forces
 from frbcli.scene.machine.system import System

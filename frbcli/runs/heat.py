@@ -16,9 +16,8 @@ from frbcli.runs.inputs import signal_of
 from frbcli.runs.record.film_numbers import FilmNumbers
 from frbcli.runs.record.restored import WrongCheckpoint, array, number_of
 from frbcli.scene.films import film_places
-from frbcli.scene.machine.heat import Heat, heat_of
+from frbcli.scene.machine.heat import Heat, heat_of, warm_system
 from frbcli.scene.machine.system import System
-from frbcli.scene.machine.warm import warm_system
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, LumpedHeat, NoHeat, columns_of
 from frbcli.thermal.exchange import (

@@ -13,7 +13,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import budget_of_segments, grows_from, quick_budget, summed

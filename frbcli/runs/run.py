@@ -14,7 +14,7 @@ from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.files.container import refuse
 from frbcli.results.files.lock import locked
 from frbcli.results.store import Header, Run, RunWriter, check_output
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.errors.error_budget import quiet_until
 from frbcli.runs.errors.fewer_cells import in_finer_steps, on_fewer_cells
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, with_second_run
@@ -22,14 +22,14 @@ from frbcli.runs.march import March, Progress
 from frbcli.runs.record.header import header
 from frbcli.runs.record.interrupt import held_back
 from frbcli.runs.record.restored import WrongCheckpoint
-from frbcli.runs.record.standing import standing_run
+from frbcli.runs.record.wear import standing_run
 from frbcli.scene.costs.cost import ExpectedCost
 from frbcli.scene.costs.limits import require_affordable
 from frbcli.scene.machine.segments import Segment, make_segments
 from frbcli.scene.planning.coarser_plan import cost_of_run, is_cheap, second_run_s
+from frbcli.scene.planning.eccentricity import run_down_profile, run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
 from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING
 
 CHECKPOINT_EVERY_s = 2.0

@@ -16,12 +16,10 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.film.roughness.asperities import Asperities
+from frbcli.rotor.assembly import held_rotor
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import unbalance_shares
-from frbcli.rotor.loads import loads_at
-from frbcli.rotor.over_speed import no_part
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.scene.costs.course import longest_step, steps_of_a_turn
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.machine.system import System
@@ -29,10 +27,9 @@ from frbcli.scene.planning.planned import Plan
 from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs
-from frbcli.solve.pin import RADIUS, STIFFNESS
-from frbcli.solve.stage.cones import make_cones
+from frbcli.solve.ring_spin import RADIUS, STIFFNESS
+from frbcli.solve.stage.contact import RoughContact, make_cones
 from frbcli.solve.stage.loads import varying_loads
-from frbcli.solve.stage.rough_contact import RoughContact
 from frbcli.solve.state import (
     ERROR_SPANS,
     HISTORY,

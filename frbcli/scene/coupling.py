@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.gate.analysis import RUN
-from frbcli.scene.gate.rule import Rule, refusal
+from frbcli.scene.gate.rule import RUN, Rule, refusal
 from frbcli.scene.planning.film_choice import form_of
 
 KEY = "film.coupling"

@@ -13,8 +13,7 @@ from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.gap import Section, smallest_gap
-from frbcli.scene.gate.analysis import KINEMATIC, ROTATION, SQUEEZE
-from frbcli.scene.gate.rule import Faults, Rule
+from frbcli.scene.gate.rule import KINEMATIC, ROTATION, SQUEEZE, Faults, Rule
 from frbcli.scene.keys import bearing_key
 
 Pair = tuple[float, float]

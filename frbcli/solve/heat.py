@@ -19,9 +19,8 @@ from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import CELLS, MODELS, kind_of
 from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
-from frbcli.solve.stage.contact import feel
+from frbcli.solve.stage.contact import feel, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
-from frbcli.solve.stage.rough_contact import rubbing
 from frbcli.solve.state import OVERHEATED, RUNNING, SLIP, RotorData
 from frbcli.thermal.exchange import (
     BOOKS,

@@ -17,7 +17,7 @@ from numba.extending import overload
 
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, Indices, compiled, compiled_for
-from frbcli.film.cells.cell_ends import CellEnds
+from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.heat import LumpedHeat, NoHeat, have_heat

@@ -1,6 +1,10 @@
-"""Arrays that the stages of a step work in, whichever loop takes them: made before the compiled loop is called.
+"""Scratch arrays of the loop, and its sense of rotation.
+
+Arrays that the stages of a step work in, whichever loop takes them: made before the compiled loop is called.
 
 To make them inside of it would cost seconds of compilation.
+
+The prescribed rotation of the rotor as the time loop evaluates it, compiled.
 """
 
 from __future__ import annotations
@@ -10,7 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.solve.stage.cones import prepare_cones
+from frbcli.compiled import compiled
+from frbcli.rotor import loads as speed_profile
+from frbcli.solve.stage.contact import prepare_cones
 from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING
 from frbcli.solve.stage.inverse import prepare
 from frbcli.solve.stage.loads import prepare_loads
@@ -56,3 +62,6 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
         prepare_loads(rotor.loads, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])
         prepare_cones(rotor.cones, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])
     return scratch
+
+
+rotation = compiled()(speed_profile.rotation)

@@ -10,7 +10,7 @@ import math
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.solve.rotation import rotation
+from frbcli.solve.scratch import rotation
 from frbcli.solve.state import (
     CONTACT,
     ERROR_BEFORE,

@@ -19,14 +19,12 @@ from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, have_heat, warm_stage, write_heat
 from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
-from frbcli.solve.rotation import rotation
-from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage.cones import prepare_cones, turn_cones
+from frbcli.solve.scratch import Scratch, make_scratch, rotation
+from frbcli.solve.stage.contact import prepare_cones, set_sliding, turn_cones
 from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
-from frbcli.solve.stage.rough_contact import set_sliding
 from frbcli.solve.state import (
     HISTORY,
     OUTPUTS,

@@ -21,8 +21,8 @@ from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup
 from frbcli.scene.coupling import COUPLINGS
-from frbcli.scene.gate.analysis import LADDER
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import LADDER
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 from frbcli.scene.planning.plan import THEORIES, make_plan

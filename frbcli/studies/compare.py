@@ -24,11 +24,11 @@ from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER
-from frbcli.runs.record.standing import earlier_run, is_interrupted, standing_run
+from frbcli.runs.record.wear import earlier_run, is_interrupted, standing_run
 from frbcli.runs.run import PROFILES
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
-from frbcli.scene.gate.analysis import COMPARISON
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import COMPARISON
 from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan

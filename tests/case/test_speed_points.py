@@ -16,7 +16,7 @@ from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case_text
 from frbcli.errors import InputError
 from frbcli.runs.run import rundown, runup
-from frbcli.scene.planning.profiles import run_up_profile
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.speeds import default_speeds
 from frbcli.studies.accuracy import accuracy
 from frbcli.studies.kernels.short_analyses import moment_of_run

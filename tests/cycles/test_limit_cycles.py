@@ -30,10 +30,10 @@ from frbcli.film.cells.steady_force import steady_force
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.linear.stability import stability
-from frbcli.rotor.speed_profile import speed_profile
+from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import control_of, rotor_data, state_at
-from frbcli.scene.gate.analysis import SPEED_CYCLES
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import SPEED_CYCLES
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING, make_output

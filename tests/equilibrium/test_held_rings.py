@@ -27,9 +27,9 @@ from frbcli.errors import InputError
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.plot.machine.bearing import bearing_figure
-from frbcli.rotor.speed_profile import speed_profile
-from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
+from frbcli.rotor.loads import speed_profile
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.stage.contact import feel, push_back

@@ -24,7 +24,7 @@ from frbcli.film.cells.dynamic_stiffness import DynamicStiffness, without_memory
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest
-from frbcli.rotor.speed_profile import speed_profile
+from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import Control

@@ -18,13 +18,12 @@ from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
 from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.film.roughness.asperities import make_asperities, rub
-from frbcli.film.roughness.rub_slopes import BY_V_X, BY_X, COLUMNS, VALUE
-from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.film.roughness.rubbing import BY_V_X, BY_X, COLUMNS, VALUE, Rubbing
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.speed_profile import speed_profile
+from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.stage.rough_contact import RoughContact
+from frbcli.solve.stage.contact import RoughContact
 from frbcli.solve.state import Control
 
 LIFTING = pytest.param(4.0, False, marks=pytest.mark.nightly)  # a ring that slides is sought for seconds

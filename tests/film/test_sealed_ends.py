@@ -25,8 +25,8 @@ from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.scene.films import make_law
-from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import RUN
 
 MESH, FINE = Mesh(6, 96), Mesh(12, 192)
 WIDE = replace(PLAIN, width=30e-3, bearing_width=30e-3)

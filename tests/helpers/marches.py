@@ -22,7 +22,7 @@ from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System
 from frbcli.solve.state import OUTPUTS, RUNNING, Control, State, make_output

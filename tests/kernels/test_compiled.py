@@ -299,7 +299,7 @@ def test_the_announced_time_of_compiling_holds(case: str, law: str, tmp_path: Pa
 KEPT = """
 import sys, frbcli
 assert frbcli.__file__.startswith(sys.argv[1]), frbcli.__file__
-from frbcli.film.hermite import hermite
+from frbcli.film.parabola import hermite
 print(hermite._cache._cache_path, hermite._cache._cache_file is not None)
 import frbcli.plot.style
 """

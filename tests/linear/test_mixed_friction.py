@@ -20,8 +20,8 @@ from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.film_state import FilmState, MixedFriction
 from frbcli.linear.stability import stability
-from frbcli.scene.gate.analysis import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.gate.gate import faults, require
+from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

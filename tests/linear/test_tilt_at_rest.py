@@ -25,11 +25,11 @@ from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.body import COORDINATES
 from frbcli.scene.forms.tilted import TiltedForm
-from frbcli.scene.gate.analysis import RUN, STILL
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import RUN, STILL
+from frbcli.scene.machine.heat import warm_case
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.machine.warm import warm_case
 from frbcli.scene.planning.plan import make_plan
 
 FEW = ((24, 8), (16, 6))

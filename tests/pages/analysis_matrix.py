@@ -15,7 +15,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
 from frbcli.film.bearing_model.model import BearingModel
 from frbcli.scene.films import bearing_films
-from frbcli.scene.gate.analysis import (
+from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import (
     BEARING,
     KINEMATIC,
     LADDER,
@@ -27,7 +28,6 @@ from frbcli.scene.gate.analysis import (
     WHIRL,
     WHIRLS,
 )
-from frbcli.scene.gate.gate import require
 
 PAGE = DOCS / "matrix.md"
 MODEL, FLOWLESS = "own", "own-without-flow"

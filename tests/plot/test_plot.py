@@ -19,8 +19,7 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.run.displacement import displacement_figure
-from frbcli.plot.run.eccentricity import eccentricity_figure
+from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
 from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
 from frbcli.plot.run.orbit import orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure

@@ -78,7 +78,7 @@ IN_PYTHON = """
 import {first}, frbcli
 from numba import njit
 from numba.core import config
-from frbcli.film.hermite import hermite
+from frbcli.film.parabola import hermite
 assert njit(lambda x: x + 1.0)(1.0) == 2.0  # numba looks for settings again when it compiles
 print(config.CACHE_DIR, hermite._cache.cache_path)
 """

@@ -8,11 +8,10 @@ import numpy as np
 import pytest
 
 from frbcli.arrays import Array
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import Link, assembled, held_rotor
 from frbcli.rotor.body import jeffcott_rotor, point_mass
-from frbcli.rotor.held import held_rotor
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 
 GRAVITY = 9.81
 

@@ -23,7 +23,7 @@ from frbcli.report.sketch import rotor_sketch
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import spin, tilting_mass
 from frbcli.rotor.linear import LinearRotor, without_spins
-from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.run import runup
 from frbcli.runs.start import state_at
 from frbcli.scene.machine.rotor import make_rotor

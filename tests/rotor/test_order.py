@@ -12,7 +12,7 @@ import pytest
 
 from frbcli.linear.stability_point import StabilityPoint, eigenvalues
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.order import fastest_first, first_largest, largest_first, ranks
+from frbcli.rotor.loads import fastest_first, first_largest, largest_first, ranks
 
 
 def shaken(values: np.ndarray, seed: int) -> np.ndarray:

@@ -26,8 +26,8 @@ from frbcli.runs.run import runup
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.cell_choice import worst_film
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
 from frbcli.studies.differences import difference, verify

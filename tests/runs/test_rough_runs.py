@@ -18,8 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.warm_machine import warm_machine
-from frbcli.film.roughness.asperities import touch
-from frbcli.film.roughness.summits import LAST
+from frbcli.film.roughness.asperities import LAST, touch
 from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run

@@ -25,8 +25,8 @@ from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.costs.preparation import memory_B, signal_count
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
 from frbcli.solve.tableau import METHODS
 

@@ -22,13 +22,11 @@ from frbcli.scene.forms.tables import CHAINS, CLOSED_FORM, FIELDS, TABLE
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.cell_choice import ALONG, AROUND, GROOVE, WorstFilm, cells_time, fewest_cells, worst_film
-from frbcli.scene.planning.eccentricity import expected_eccentricity
+from frbcli.scene.planning.eccentricity import expected_eccentricity, run_down_profile, run_up_profile, short_error
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.film_choice import choose_films
 from frbcli.scene.planning.plan import CELL_SHARE, TIGHT_SHARE, make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.planning.profiles import run_down_profile, run_up_profile
-from frbcli.scene.planning.short_bearing import short_error
 from frbcli.solve.tableau import METHODS
 
 WITHIN = 2.0  # of the real cost

@@ -20,10 +20,10 @@ from frbcli.runs import march
 from frbcli.runs.errors import trial as tried
 from frbcli.scene.costs.trial import Trial, planned_trial
 from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
 
 RINGS = "floating-ring"

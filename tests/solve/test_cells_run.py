@@ -24,9 +24,9 @@ from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.costs.course import STAGES
 from frbcli.scene.machine.machine_films import settled_share
 from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, REJECTED, RUNNING, SOLVES, STEP, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

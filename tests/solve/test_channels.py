@@ -25,7 +25,7 @@ from frbcli.film.cells.data import UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.state import OIL, PASSED, W
+from frbcli.film.kept import OIL, PASSED, W
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect
@@ -33,8 +33,8 @@ from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.cosimulation.micro_step import _solve_films
 from frbcli.solve.films.steps import begin_stage, make_work
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U

@@ -15,14 +15,14 @@ from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
-from frbcli.film.state import OIL
-from frbcli.rotor.speed_profile import speed_profile
+from frbcli.film.kept import OIL
+from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.machine.segments import Segment, make_segments
 from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, RUNNING, State
 
 STEADY = ["speed.from=60Hz", "speed.to=60Hz", "speed.duration=0.4s", "rotor.unbalance=0 kg*m", "output.step=0.5ms"]

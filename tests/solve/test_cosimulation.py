@@ -18,8 +18,8 @@ from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, in_turn, micro_cost, rotor_data
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.machine.system import make_system
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.cosimulation.macro_step import advance_in_turn
 from frbcli.solve.cosimulation.micro_step import MICRO_STEPS, parabola
 from frbcli.solve.state import FINISHED, STEPS, State, make_output

@@ -10,7 +10,7 @@ from marches import BEARING, control, forces, jeffcott, march, modal_rotor, rigi
 from scipy.integrate import simpson
 
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.speed_profile import speed_profile
+from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import rotor_data
 from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME, make_output
 from frbcli.solve.tableau import METHODS

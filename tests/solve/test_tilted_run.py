@@ -17,7 +17,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.speed_profile import SpeedProfile, speed_profile
+from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.record.film_signals import tilt_signals
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.forms.tilted import TiltedForm

@@ -20,8 +20,8 @@ from frbcli.equilibrium.warm_machine import WarmMachines, warm_machine
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
 from frbcli.materials.oils import OILS
+from frbcli.scene.machine.heat import warm_case, warm_system
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.machine.warm import warm_case, warm_system
 from frbcli.scene.planning.plan import make_plan
 
 ZERO = 273.15

@@ -21,11 +21,10 @@ from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
-from frbcli.scene.machine.heat import heat_of
+from frbcli.scene.machine.heat import heat_of, warm_case
 from frbcli.scene.machine.segments import make_segments
-from frbcli.scene.machine.warm import warm_case
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import RUNNING
 from frbcli.studies.compare import compare
 

@@ -16,8 +16,8 @@ from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.clearance_steps import case_at
 from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, RUNNING
 
 FOLLOWS = ["thermal.clearance=follows", "thermal.shaft=130 degC", HOT_HOUSING]

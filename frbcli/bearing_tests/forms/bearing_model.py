@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cells.loads import FilmLoads, OilBalance, Torque
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.rectangles.film import FilmForce, evaluate
-from frbcli.scene.machine.bearing_model_films import bearing_film
+from frbcli.scene.machine.machine_films import bearing_film
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 

@@ -8,7 +8,7 @@ from frbcli.case.film_geometry import RingFilm
 from frbcli.case.film_tables import adopt
 from frbcli.case.films.film_model import FilmModel
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.damper import Damper
+from frbcli.case.surroundings.support import Damper
 from frbcli.case.theories import check_model
 from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.bearing_model.model import BearingModel

@@ -1,4 +1,9 @@
-"""The support of a bearing: its shell as a body."""
+"""Supports of bearings and dampers around them.
+
+The support of a bearing: its shell as a body.
+
+The squeeze film damper around the shell of a bearing, or around its outer ring.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +11,7 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
+from frbcli.case.film_geometry import RingFilm
 from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import Damping, ShellMass, Stiffness
 
@@ -29,4 +35,21 @@ class Support(Model):
     stiffness: Stiffnesses = Field(description="of its springs to ground or housing: of both directions, or [x, y]")
     damping: Dampings = Field(
         default=(0.0, 0.0), description="of its dampers to ground or housing: of both directions, or [x, y]"
+    )
+
+
+NO_SPRING = (0.0, 0.0)
+
+
+class Damper(RingFilm):
+    """A squeeze film around the shell of a bearing, or around its outer ring; the shell moves and does not turn."""
+
+    mass: ShellMass = Field(description="of the shell and what moves with it, per bearing; above 0")
+    spring: Stiffnesses = Field(
+        default=NO_SPRING,
+        description="stiffness of the centring spring, or [x, y]; 0: no spring",
+    )
+    centred: bool = Field(
+        default=False,
+        description="the spring centres the shell under the static load; else it sinks by load over stiffness",
     )

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from frbcli.case.reading.listing import Value as ListedValue
     from frbcli.case.schema import Case
-    from frbcli.rotor.speed_profile import SpeedProfile
+    from frbcli.rotor.loads import SpeedProfile
     from frbcli.runs.errors.trial import TriedError
     from frbcli.scene.costs.cost import ExpectedCost
     from frbcli.scene.machine.findings import Findings
@@ -42,10 +42,10 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import findings, remarks
     from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
     from frbcli.scene.planning.coarser_plan import cost_of_run
+    from frbcli.scene.planning.eccentricity import run_up_profile
     from frbcli.scene.planning.expected_error import expected_error
     from frbcli.scene.planning.kinematic_plan import kinematic_plan
     from frbcli.scene.planning.plan import make_plan
-    from frbcli.scene.planning.profiles import run_up_profile
 
     listed = values(case)
     terminal.result(f"{case.name}: {case.title}".rstrip(": "))
@@ -272,8 +272,8 @@ def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
 def _about_tilt(case: Case) -> str:
     """What results make of the tilt of journals, with the setting for it where the case allows it."""
     from frbcli.case.model import altered
-    from frbcli.scene.gate.analysis import RUN, STABILITY
     from frbcli.scene.gate.gate import faults
+    from frbcli.scene.gate.rule import RUN, STABILITY
 
     if case.film.tilt == "follows":
         return "The films follow it."

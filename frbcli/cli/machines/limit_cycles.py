@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.maps.stability_map import StabilityMap
     from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
-    from frbcli.plot.spectra.run_track import RunTrack
+    from frbcli.plot.spectra.orders import RunTrack
     from frbcli.plot.style import Picture
     from frbcli.scene.costs.preparation import Kernels
 
@@ -208,7 +208,7 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
 
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
     """The way up of a run, and the way down if it has one."""
-    from frbcli.plot.spectra.run_track import run_tracks
+    from frbcli.plot.spectra.orders import run_tracks
     from frbcli.results.store import read_run
 
     return run_tracks(read_run(path), path.stem)

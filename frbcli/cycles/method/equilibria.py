@@ -28,7 +28,7 @@ from frbcli.cycles.parts.machine import Machine, film_loads, transfer
 from frbcli.cycles.parts.states import state_space
 from frbcli.equilibrium import hopf
 from frbcli.equilibrium.resting import RestingPosition, resting_position
-from frbcli.rotor.order import first_largest
+from frbcli.rotor.loads import first_largest
 from frbcli.scene.machine.system import System
 
 STRIDES = Strides(first=0.01, shortest=1e-7, longest=0.04, points=2000)

@@ -16,7 +16,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.parts.machine import Machine, film_loads
 from frbcli.cycles.parts.states import StateSpace
-from frbcli.rotor.order import largest_first
+from frbcli.rotor.loads import largest_first
 
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768

@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array, Complex
-from frbcli.rotor.order import largest_first
+from frbcli.rotor.loads import largest_first
 
 Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,)
 

@@ -34,7 +34,7 @@ from frbcli.cycles.shooting.fixed_point import (
 )
 from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, PeriodMap, Wet
 from frbcli.equilibrium import hopf
-from frbcli.rotor.order import largest_first
+from frbcli.rotor.loads import largest_first
 
 # The differences and the cells leave so much of a multiplier.
 BLURRED = 5e-3

@@ -23,7 +23,7 @@ from frbcli.cycles.method.equilibria import Equilibrium
 from frbcli.cycles.method.floquet import FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, Multipliers, monodromy
 from frbcli.cycles.method.follower import Follower
 from frbcli.cycles.parts.machine import Machine, driven_motions
-from frbcli.rotor.order import largest_first
+from frbcli.rotor.loads import largest_first
 
 DIFFERENCE = 1e-6  # of the pace
 WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one

@@ -26,7 +26,7 @@ from frbcli.case.thermal import Thermal
 from frbcli.errors import Fault, NotConverged
 from frbcli.film.pads.geometry import Pad
 from frbcli.film.pads.table import GapTable, ScaledPads, gap_table
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
 
 BOTH, LEFT, RIGHT = "both", "left", "right"

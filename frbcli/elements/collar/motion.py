@@ -22,7 +22,7 @@ from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.pads.film import PadOil, RunnerMotion, pad_film
 from frbcli.film.pads.geometry import COARSE, SOMMERFELD
 from frbcli.film.pads.mesh import pad_mesh
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 
 TO_RIGHT, TO_LEFT = -1.0, 1.0  # change of the gap by a displacement, of pads on that side
 RELATIVE, ABSOLUTE = 1e-6, (1e-11, 1e-7)  # tolerances: m and m/s

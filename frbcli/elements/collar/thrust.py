@@ -18,7 +18,7 @@ from frbcli.elements.housing import NODE
 from frbcli.errors import Fault, NotConverged
 from frbcli.rotor.assembly import GROUND, Link
 from frbcli.rotor.body import COORDINATES, PLANE
-from frbcli.rotor.over_speed import LinearPart
+from frbcli.rotor.loads import LinearPart
 
 if TYPE_CHECKING:  # films on pads take a second to import
     from frbcli.elements.collar.collar import Collar

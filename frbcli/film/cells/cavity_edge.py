@@ -1,4 +1,6 @@
-"""The edge of the cavity within a cell, for films at rest of laws whose cavity ends where the film has no slope.
+"""The edge of the cavity within a cell, and the ends of cells.
+
+The edge of the cavity within a cell, for films at rest of laws whose cavity ends where the film has no slope.
 
 Oil appears in a cavity as fast as its gap opens, at the rate A = omega/2 H' + dH/dt. Before the edge of the cavity the
 pressure above it therefore is a r^2 / 2 with a = A / H^3 at the distance r, and has no slope at the edge. Balances of
@@ -7,6 +9,8 @@ order that jumps from cell to cell, and their derivatives one of first order. Le
 L behind the middle of the last cell with pressure, p = a (s L)^2 / 2. The flow that enters this cell for pressure is
 (s + 1/2) A L, that into the next one, whose pressure is that of the cavity, s^2 A L / 2, and the surfaces carry A L
 more out of it than into it. It is balanced with a source of A (1 - s)^2 / 2, and so the edge may lie anywhere.
+
+What the heat of the time loop asks films on cells for the oil that leaves them.
 """
 
 from __future__ import annotations
@@ -16,8 +20,10 @@ from typing import NamedTuple
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.compiled import Indices
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.states import CARRIED_GAS, PRESSURE, PRESSURE_SLOPE, SOURCE, SOURCE_SLOPE
+from frbcli.film.cells.data import Records
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import gap_rate
@@ -84,3 +90,19 @@ def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Arra
     wider = 3.0 * rise.through / film.gap(motion.d, centre)[:, None] * sides(centre)
     by_place = by_rate * carried[:, None] + by_through * wider[:, None]
     return by_place, by_rate * sides(centre)[:, None]
+
+
+class CellEnds(NamedTuple):
+    """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
+    the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
+    (channels,) over the viscosity; groove_pressure (channels,) Pa; exponents (F, p): by which the parameters of the
+    laws follow the scale of the pressures."""
+
+    far_open: Indices
+    units: Array
+    films: Records
+    given: Array
+    feed_holes: Records
+    resistance: Array
+    exponents: Array
+    groove_pressure: Array

@@ -15,7 +15,7 @@ from frbcli.film.cavitation.table import LARGEST_PARAMETERS
 from frbcli.film.cells.balance.ends import end_slopes
 from frbcli.film.cells.balance.feed import supply_line, supply_pressure
 from frbcli.film.cells.diffusion.plain import NO_DISTANCE, diffusing, end_reaches
-from frbcli.film.cells.elimination.ring_solver import ring_solver
+from frbcli.film.cells.elimination.block_cyclic import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.cells.mesh.openings import bathed

@@ -28,7 +28,6 @@ from frbcli.film.cells.balance.balances import (
     GridMotion,
     balances,
 )
-from frbcli.film.cells.balance.carried import UPWIND, before_upstream
 from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
@@ -41,15 +40,16 @@ from frbcli.film.cells.balance.states import (
     SOURCE,
     STATES,
     TURNOVER,
+    UPWIND,
+    before_upstream,
     cell_states,
 )
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
 from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
 from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
-from frbcli.film.cells.gas.balance import FreeGas, KeptGas, free_gas, oil_paths, path_layers
+from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas, oil_paths, path_layers
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
-from frbcli.film.cells.gas.mixing import GasMixing
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.cells.tilted.data import land_places

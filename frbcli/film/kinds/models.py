@@ -1,4 +1,9 @@
-"""Bearing models that were added from Python."""
+"""Kinds of films: bearing models, and none.
+
+Bearing models that were added from Python.
+
+The films of a machine that has none.
+"""
 
 from __future__ import annotations
 
@@ -45,3 +50,25 @@ class ModelFilms(Films):
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         return self.data
+
+
+@dataclass(frozen=True)
+class NoFilms(Films):
+    """No film at all."""
+
+    clearances: tuple[float, ...] = ()
+
+    @property
+    def loop(self) -> Any:
+        """No films for the time loop."""
+        return ()
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """Raises IndexError: there is no film."""
+        raise IndexError(i)
+
+    def heat_ends(self) -> Any:
+        return ()
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        return ()

@@ -15,8 +15,8 @@ from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.hermite import hermite
 from frbcli.film.mean_fields.table import MeanFilm, fields_at
+from frbcli.film.parabola import hermite
 from frbcli.film.rectangles.film_force import NEAR_CENTRE
 from frbcli.film.rectangles.table import DEPTH_STEP
 

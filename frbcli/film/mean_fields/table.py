@@ -14,7 +14,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.hermite import hermite
+from frbcli.film.parabola import hermite
 from frbcli.film.rectangles.table import DEPTH_STEP
 
 FIELDS = 3  # of w_r, of w_t, of the given pressures

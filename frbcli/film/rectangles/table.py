@@ -17,7 +17,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import NO_SEALS, Mesh, axial_modes, axial_vertices, ring_vertices
-from frbcli.film.hermite import Slopes, Values, hermite
+from frbcli.film.parabola import Slopes, Values, hermite
 from frbcli.film.rectangles.clip import clipped_line, force_weights
 from frbcli.film.rectangles.modal import element_lengths, unit_fields
 

@@ -6,8 +6,7 @@ import math
 
 from scipy.integrate import quad
 
-from frbcli.film.roughness.asperities import Asperities, reach
-from frbcli.film.roughness.summits import LAST, summit_integral
+from frbcli.film.roughness.asperities import LAST, Asperities, reach, summit_integral
 
 
 def plain_pressure(asperities: Asperities, gap: float) -> float:

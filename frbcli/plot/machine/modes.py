@@ -14,7 +14,7 @@ from frbcli.linear.critical_speeds import BACKWARD, FORWARD
 from frbcli.linear.damped_modes import DampedMode, DampedModes
 from frbcli.linear.modes import SHOWN, Mode, Modes
 from frbcli.plot.style import BAND, BLACK, BLUE, GREEN, GREY, ORANGE, VERMILION, new_figure, styled
-from frbcli.rotor.order import first_largest
+from frbcli.rotor.loads import first_largest
 from frbcli.units import display
 
 LINES = {"forward": (BLUE, "-"), "backward": (ORANGE, (0, (5, 2)))}

@@ -17,8 +17,7 @@ from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
-from frbcli.rotor.loads import loads_at
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile, loads_at
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.header import (
     FLOW,

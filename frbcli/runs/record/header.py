@@ -20,11 +20,11 @@ from frbcli.rotor.body import PLANE
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
-from frbcli.scene.machine.bearing_model_films import model_record
 from frbcli.scene.machine.elements import element_parts
+from frbcli.scene.machine.machine_films import model_record
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
-from frbcli.solve.pin import STIFFNESS
+from frbcli.solve.ring_spin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"

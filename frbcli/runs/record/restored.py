@@ -13,7 +13,7 @@ from frbcli.results.records import SPEED as SPEED_SIGNAL
 from frbcli.results.records import TIME as TIME_SIGNAL
 from frbcli.results.signals import pieces
 from frbcli.results.store import Run
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, State
 
 SAME = 1e-9  # share of the longest time or highest speed that is round-off

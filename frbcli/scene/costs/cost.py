@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.costs.course import STAGES, RunCourse, expected_course, runs_nearly_dry, whirl_speed
 from frbcli.scene.costs.preparation import after_s, before_s, memory_B, rotor_size
 from frbcli.scene.films import film_places

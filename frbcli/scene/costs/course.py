@@ -22,7 +22,7 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import no_inflow
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.machine.elements import harmonics_of

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.films import rings
 from frbcli.scene.planning.coarser_plan import cost_of_run

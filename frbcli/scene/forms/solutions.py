@@ -13,8 +13,7 @@ from frbcli.film.compared import SAMPLES
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.form import BLOCKS, FilmForm, SolveCounts
-from frbcli.scene.gate.analysis import RUN
-from frbcli.scene.gate.rule import Rule, oil_flow_signal, refusal
+from frbcli.scene.gate.rule import RUN, Rule, oil_flow_signal, refusal
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan

@@ -16,7 +16,7 @@ from frbcli.scene.channels import coupling_faults
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import CellForm, cells_of
 from frbcli.scene.forms.form import SolveCounts
-from frbcli.scene.gate.analysis import (
+from frbcli.scene.gate.rule import (
     ALL,
     BEARING,
     COMPARISON,
@@ -28,8 +28,9 @@ from frbcli.scene.gate.analysis import (
     SPEED_CYCLES,
     STABILITY,
     WHIRLS,
+    Faults,
+    Rule,
 )
-from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.planning.cell_choice import ALONG_TILTED, FAST_TILTED, cells_time
 from frbcli.scene.shafts.table import shaft_of

@@ -17,7 +17,7 @@ from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places
 from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.inclined import INCLINED
+from frbcli.scene.forms.models import INCLINED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.keys import film_keys
@@ -205,7 +205,7 @@ def rough_faults(case: Case) -> Iterator[Fault]:
     contact = case.contact
     if contact.roughness is None:
         return
-    from frbcli.film.roughness.summits import LAST  # with its compiler, which other cases do not need
+    from frbcli.film.roughness.asperities import LAST  # with its compiler, which other cases do not need
 
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film = place.geometry

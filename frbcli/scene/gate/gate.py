@@ -15,10 +15,10 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.forms.inclined import AT_REST
+from frbcli.scene.forms.models import AT_REST
 from frbcli.scene.forms.tilted import RUNS
 from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
-from frbcli.scene.gate.analysis import (
+from frbcli.scene.gate.rule import (
     ALL,
     BEARING,
     CHART,
@@ -37,8 +37,9 @@ from frbcli.scene.gate.analysis import (
     STABILITY,
     STILL,
     WHIRLS,
+    Faults,
+    Rule,
 )
-from frbcli.scene.gate.rule import Faults, Rule
 from frbcli.scene.gate.tested import choice_faults, key_in, tested_case
 from frbcli.scene.machine.elements import (
     element_faults,

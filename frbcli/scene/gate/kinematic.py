@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.scene.films import bearing_films
-from frbcli.scene.gate.analysis import ROTATION
+from frbcli.scene.gate.rule import ROTATION
 from frbcli.scene.section import film_section
 from frbcli.scene.tilt import as_text, least_gaps, misaligned, places_of, slope_of, tilt_key, tilt_of, tilts
 

@@ -1,4 +1,9 @@
-"""A rule of the gate, with the analyses that it holds for."""
+"""Rules, and the analyses that they hold for.
+
+A rule of the gate, with the analyses that it holds for.
+
+The analyses that a case can be asked for, as the gate knows them.
+"""
 
 from __future__ import annotations
 
@@ -55,3 +60,19 @@ def motion_omega(case: Case) -> float:
     """Speed in rad/s that a kinematic test refers to: of the journal, else of its motion."""
     motion = case.motion
     return 2.0 * math.pi * abs((motion and (motion.speed or motion.frequency or motion.whirl_speed)) or 1.0)
+
+
+FILMS = "films"  # whatever needs the films of a case and has no rules of its own
+RUN = "run"  # run-up, run-down, sweep, fit and compare
+STILL = "plan of films at rest"  # has the rules of a run but those of moving films
+ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
+COMPARISON, LADDER = "comparison", "accuracy"
+HEAT = "heat"
+SHEETS = BEARING, LOADED, CHART = "bearing sheet", "bearing sheet under a given load", "sheet over the eccentricity"
+STABILITY, RANGE = "stability", "stability over the speed range"  # and response and damped modes
+CYCLES, SPEED_CYCLES, WHIRLS = "limit cycles", "limit cycles over the speed", "whirls with unbalance"
+
+ALL = (
+    FILMS, RUN, *KINEMATIC, COMPARISON, LADDER, HEAT, *SHEETS, STABILITY, RANGE, CYCLES, SPEED_CYCLES, WHIRLS
+)  # fmt: skip
+EVERY_CYCLE = (CYCLES, SPEED_CYCLES, WHIRLS)

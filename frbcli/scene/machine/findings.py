@@ -12,7 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown
 from frbcli.errors import NotConverged
 from frbcli.film.operating import sommerfeld_number
-from frbcli.rotor.held import held_rotor
+from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.operating import operating_points
 from frbcli.scene.machine.rotor import make_rotor

@@ -1,25 +1,36 @@
-"""The heat of a machine: its nodes, conductances and clearances as arrays, made of a case (docs/heat.md)."""
+"""Heat of the machine, and whether it is warm.
+
+The heat of a machine: its nodes, conductances and clearances as arrays, made of a case (docs/heat.md).
+
+The machine at other viscosities and clearances than those of its case, without new tables.
+
+The pressure of a film is homogeneous in the velocity w and in the pressures that are given: with s times the scale
+12 eta / psi^2 it is that of the velocity s w. So a table serves for every uniform viscosity and every clearance.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film_geometry import ColdClearance, FilmGeometry
+from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.damper import Damper
 from frbcli.case.surroundings.over_time import OverTime, largest
+from frbcli.case.surroundings.support import Damper
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
 from frbcli.elements.damper import DamperElement
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials.solids import SOLIDS
 from frbcli.scene.channels import coupled, opens_to_groove
 from frbcli.scene.films import film_places, turning_rings
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.model import FROM_SUPPLY, OIL_AT, HeatModel
 
 
@@ -256,3 +267,23 @@ def _concentric(case: Case, film: FilmGeometry) -> float:
     if share is None:
         share = supply.side_flow_factor
     return 2.0 * film.sealed * share * supply.land_share * math.pi * film.diameter * gauge / (6.0 * film.width)
+
+
+def warm_system(case: Case, plan: Plan, system: System, viscosities: Array, clearances: Array) -> System:
+    """The system of a case with viscosities in Pa s and clearances in m, (films,) each."""
+    places = [place.geometry for place in film_places(case)]
+    thicker = viscosities / [case.viscosity(film) for film in places]
+    wider = clearances / system.clearances
+    films = system.films.scaled(thicker / wider**2, clearances)
+    if films is None:
+        return make_system(warm_case(case, viscosities, clearances), plan, system.rotor)
+    return replace(system, films=films, drags=tuple((np.array(system.drags) * thicker / wider).tolist()))
+
+
+def warm_case(case: Case, viscosities: Array, clearances: Array) -> Case:
+    """The case without heat, its films with these viscosities in Pa s and clearances in m, (films,) each."""
+    values = (
+        {"viscosity": float(eta), "given_clearance": float(c)} for eta, c in zip(viscosities, clearances, strict=True)
+    )
+    films = [altered(film, value) for film, value in zip(case.films, values, strict=True)]
+    return altered(case.with_films(films), {"thermal": None})

@@ -12,9 +12,8 @@ from frbcli.case.schema import Case
 from frbcli.elements.collar.thrust import COLLAR
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Parts
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import Link, assembled, preset
 from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
-from frbcli.rotor.held import preset
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of

@@ -15,7 +15,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.mesh.grid import least_around
 from frbcli.film.section_faults import no_inflow
 from frbcli.scene.films import FilmPlace, film_places, is_plain
-from frbcli.scene.planning.short_bearing import CLOSEST
+from frbcli.scene.planning.eccentricity import CLOSEST
 from frbcli.scene.section import film_section
 
 USUAL = (48, 6)  # cells around and along for which the errors are tabulated

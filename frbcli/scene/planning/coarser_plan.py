@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from frbcli.case.schema import Case
 from frbcli.film.grid import Mesh
-from frbcli.rotor.speed_profile import SpeedProfile
+from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.costs.cost import ExpectedCost, expected_cost
 from frbcli.scene.costs.course import ERROR_ORDERS
 from frbcli.scene.costs.preparation import memory_B

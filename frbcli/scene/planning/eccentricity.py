@@ -1,8 +1,15 @@
-"""The largest eccentricity that a run-up is expected to reach before a whirl, from static load and unbalance.
+"""The eccentricity that a plan expects, with its profiles and the short bearing.
+
+What the theory of the short bearing knows of a film before anything is solved: the error of its force, how a journal
+falls, and where it rests.
+
+The largest eccentricity that a run-up is expected to reach before a whirl, from static load and unbalance.
 
 A journal without mass in a short film (short_bearing.py) falls from where it starts, in the first revolutions, while
 the oil turns it; later it rests under its weight and unbalance. Openings, supply pressure and mass are left out.
 scipy is not asked for the two numbers, since its import takes longer than a whole plan.
+
+The speed of the rotor over time: run-up and run-down.
 """
 
 from __future__ import annotations
@@ -14,12 +21,50 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import OverTime
+from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
-from frbcli.rotor.speed_profile import SpeedProfile
-from frbcli.scene.machine.elements import element_parts
-from frbcli.scene.planning.profiles import run_up_profile
-from frbcli.scene.planning.short_bearing import CLOSEST, mobility, resting_load, slenderness_of
+from frbcli.rotor.loads import SpeedProfile, speed_profile
+from frbcli.scene.inputs import input_faults, input_times
+from frbcli.scene.machine.elements import element_parts, table_faults, table_times
 from frbcli.scene.shafts.table import shaft_of
+
+# The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
+SHORT, SHORT_POWER = 0.45, 1.3
+CLOSEST = 0.02  # smallest gap over the clearance that is told
+
+
+def slenderness_of(film: FilmGeometry) -> float:
+    """Width of a section over the diameter."""
+    return film.width / film.diameter / (2 if film.supply.splits else 1)
+
+
+def short_error(slender: float, eccentricity: float) -> float:
+    """Relative error of the force of the short-bearing theory, for sections of b/D = slender."""
+    return float(SHORT * slender**2 * (1.0 - eccentricity) ** -SHORT_POWER)
+
+
+def mobility(e: Array, slender: float) -> Array:
+    """(2,) velocity over the clearance of a journal at e (2,) in a film that cavitates, under a load W along -y, over
+    psi^2 W / (b D eta), beside that with which the oil turns.
+
+    The mobility of the short bearing (Booker, "Dynamically loaded journal bearings: mobility method of solution",
+    J. Basic Eng. 87, 1965), and more by the force that a longer bearing lacks.
+    """
+    room = max(1.0 - float(np.hypot(*e)), CLOSEST)
+    along, left = -e[1], e[0]  # of the load, and to the left of it
+    ahead = max(1.0 - along, CLOSEST)
+    size = (1.0 + short_error(slender, 1.0 - room)) / slender**2
+    return size * np.array([-4.0 * left * ahead**1.5 / math.pi**2, -(ahead**2.5) / math.pi])
+
+
+def resting_load(eccentricity: float, slender: float) -> float:
+    """Load of a journal at rest over b D eta omega / psi^2, omega being the mean speed of both surfaces: Ocvirk's, less
+    by the error of the short bearing."""
+    e = eccentricity
+    short = slender**2 * e * math.hypot(4.0 * e, math.pi * math.sqrt(1.0 - e * e)) / (1.0 - e * e) ** 2
+    return short / (1.0 + short_error(slender, e))
+
 
 FALL = 10.0 * 2.0 * math.pi  # rad until which a journal has fallen
 STEP, MOST_STEPS, FEWEST_STEPS = 0.01, 5000, 200  # of the fall: its length over the clearance; their number
@@ -102,3 +147,40 @@ def _unbalance(case: Case, omega: float) -> float:
 
 def _films(case: Case) -> int:
     return shaft_of(case).equal_bearings * len(case.bearings)
+
+
+def run_up_profile(case: Case) -> SpeedProfile:
+    """From the first to the last speed of the case, or through its points. Raises InputError for a table over time that
+    ends before."""
+    times, speeds = case.speed.course
+    return _with_tables(case, list(times), list(speeds))
+
+
+def run_down_profile(case: Case) -> SpeedProfile:
+    """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which tell the way down
+    themselves, for an axial load over time, and for a table over time that ends before."""
+    speed = case.speed
+    if speed.times:
+        problem = "say how the speed goes down, too."
+        fault = Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`.")
+        raise InputError(case.name or "case", (fault,))
+    if case.axial is not None and isinstance(case.axial.load, OverTime):
+        problem = "changes over time, and a run-down has each speed twice: a speed has more than one load."
+        fault = Fault("axial.load", "over time", None, problem, "Give one load, or one with the square of the speed.")
+        raise InputError(case.name or "case", (fault,))
+    times, speeds = [0.0, speed.duration], [speed.start, speed.end]
+    if speed.hold > 0.0:
+        times.append(times[-1] + speed.hold)
+        speeds.append(speed.end)
+    times.append(times[-1] + speed.down_duration)
+    speeds.append(speed.start)
+    return _with_tables(case, times, speeds)
+
+
+def _with_tables(case: Case, times: list[float], speeds: list[float]) -> SpeedProfile:
+    """The profile through speeds in Hz at times in s, with kinks of no angle at the rows of tables over time."""
+    faults = (*table_faults(case, times[0], times[-1]), *input_faults(case, times[0], times[-1]))
+    if faults:
+        raise InputError(case.name or "case", faults)
+    stops = (*table_times(case).tolist(), *input_times(case))
+    return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(stops)

@@ -20,9 +20,8 @@ from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.tables import MODAL, SHORT
-from frbcli.scene.gate.analysis import KINEMATIC, ROTATION
 from frbcli.scene.gate.gate import require
-from frbcli.scene.gate.rule import motion_omega
+from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
 from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.cell_choice import given_cells
 from frbcli.scene.planning.film_choice import form_of

@@ -17,22 +17,20 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.costs.cost import clock
-from frbcli.scene.costs.reference_length import reference_length
-from frbcli.scene.costs.resolution import resolution_decisions
+from frbcli.scene.costs.resolution import reference_length, resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
-from frbcli.scene.gate.analysis import RUN
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import RUN
 from frbcli.scene.inputs import input_decisions
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.coarser_plan import cost_of_run
-from frbcli.scene.planning.eccentricity import heavily_loaded
+from frbcli.scene.planning.eccentricity import heavily_loaded, run_up_profile
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films, form_of
 from frbcli.scene.planning.planned import Decision, Plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.supply import unfed_films
 from frbcli.units import display

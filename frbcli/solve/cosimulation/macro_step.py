@@ -19,11 +19,9 @@ from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
 from frbcli.solve.films.steps import write_oil
 from frbcli.solve.heat import NO_HEAT, Taken, begin_heat, carry_heat, write_heat
 from frbcli.solve.inputs import set_inputs
-from frbcli.solve.pin import pinned
-from frbcli.solve.ring_spin import Rings, make_rings, spin_up
-from frbcli.solve.rotation import rotation
-from frbcli.solve.scratch import Scratch, make_scratch
-from frbcli.solve.stage.cones import prepare_cones, turn_cones
+from frbcli.solve.ring_spin import Rings, make_rings, pinned, spin_up
+from frbcli.solve.scratch import Scratch, make_scratch, rotation
+from frbcli.solve.stage.contact import prepare_cones, turn_cones
 from frbcli.solve.stage.equations import (
     FORCE,
     STAGE_ROWS,

@@ -15,7 +15,7 @@ from frbcli.solve.films.steps import accept_films, begin_stage, most_iterations
 from frbcli.solve.heat import warm_stage
 from frbcli.solve.inputs import supply_warm
 from frbcli.solve.ring_spin import set_speeds
-from frbcli.solve.rotation import rotation
+from frbcli.solve.scratch import rotation
 from frbcli.solve.stage.equations import FORCE, X_0, U, lagrange
 from frbcli.solve.stage.journal_newton import forces
 from frbcli.solve.state import NUMBERS, SOLVES, STEP_DONE, Control, RotorData, State

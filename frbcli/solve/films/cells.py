@@ -33,7 +33,7 @@ from frbcli.film.cells.data import (
     Records,
     VolumeFilms,
 )
-from frbcli.film.cells.elimination.ring_solver import solve_ring_at
+from frbcli.film.cells.elimination.block_cyclic import solve_ring_at
 from frbcli.film.cells.film import ABOVE_KINK
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.rough_gap import stress_factor

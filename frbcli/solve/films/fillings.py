@@ -1,8 +1,12 @@
-"""The filling of openings whose supply gives a flow at the most, see feed.py, in one stage of the time loop. Compiled.
+"""Fillings of openings, and the grid of films in the loop.
+
+The filling of openings whose supply gives a flow at the most, see feed.py, in one stage of the time loop. Compiled.
 
 It is a state as the oil of the cells is: filling' = (given - taken) / line, so that a stage asks for filling = past +
 g filling'. What a film takes is known once its cells balance. A step changes the filling far less than the line could
 be emptied in that time: what the equation leaves then becomes a small correction, by the secant of two of them.
+
+The grid of a film in the time loop: its place, and the progress of its cells in a stage.
 """
 
 from __future__ import annotations
@@ -11,10 +15,12 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
+from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.feed import RESPONSE
 from frbcli.film.cells.balance.states import fill_openings
-from frbcli.film.state import PASSED
+from frbcli.film.cells.data import record
+from frbcli.film.kept import PASSED
 from frbcli.solve.stage.equations import lagrange
 
 PLAIN = 1.0  # by how much less a filling is off after it has risen by 1, at the least: the film takes the more
@@ -76,3 +82,25 @@ def follow_filling(film: np.record, grid: np.record, flows: Array, g: float, all
     grid.filling = within(film, grid.filling + off / grid.per_filling)
     fill_openings(film, grid.filling)
     return True
+
+
+# A film in the loop: the angle at which its grid stands, and its speed; where the journal is in it (x, y); whether its
+# cells balance (see OPEN); how far the journals were moved last, and that over the time before; the stage; of its
+# openings, see fillings.py: their filling, and what the stages before make of it; the one before, and what it was off
+# by; by how much less it is off per filling. Its law as follow_law has it.
+GRID = record(
+    ("turn", "f8"),
+    ("speed", "f8"),
+    ("x", "f8"),
+    ("y", "f8"),
+    ("moved", "f8"),
+    ("ratio", "f8"),
+    ("balance", "i8"),
+    ("stage", "i8"),
+    ("filling", "f8"),
+    ("filling_past", "f8"),
+    ("filling_before", "f8"),
+    ("filling_off", "f8"),
+    ("per_filling", "f8"),
+    ("law", "f8", (LAW_NUMBERS,)),
+)

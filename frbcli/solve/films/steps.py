@@ -12,8 +12,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
-from frbcli.solve.films.fillings import filling_error
-from frbcli.solve.films.grid import GRID
+from frbcli.solve.films.fillings import GRID, filling_error
 from frbcli.solve.films.kinds import CELLS, MODELS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 

@@ -26,7 +26,7 @@ from frbcli.film.cells.balance.states import (
     hold,
 )
 from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
-from frbcli.film.cells.elimination.ring_solver import solve_ring_at
+from frbcli.film.cells.elimination.block_cyclic import solve_ring_at
 from frbcli.film.cells.gas.carry import store_gas_rates
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
 from frbcli.film.cells.tilted.gas import take_land_gas_along
@@ -49,7 +49,7 @@ from frbcli.solve.films.cells import (
     SOLVED,
     held_at_kinks,
 )
-from frbcli.solve.films.grid import GRID
+from frbcli.solve.films.fillings import GRID
 
 ENDS = 2  # of a bearing, each of which the loop takes for a journal
 

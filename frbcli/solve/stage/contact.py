@@ -1,15 +1,37 @@
-"""Elastic contact of journals and shells in the time loop, compiled: what films feel of it, and what it pushes with."""
+"""Contact of journal and shell in a stage: elastic, rough, at the ends of a tilted journal.
+
+Elastic contact of journals and shells in the time loop, compiled: what films feel of it, and what it pushes with.
+
+Rough surfaces in the time loop, compiled: the summits of journals and shells beside their films.
+
+Whether a machine has any is decided by the type of `Control.rough` when the loop is compiled: between smooth surfaces
+it is empty, and nothing is computed.
+
+Gyroscopic moments of rings that turn and tilt, cartridges, in a stage of the time loop. Compiled. Two kinds:
+
+- an empty tuple: a machine without them, for which nothing is computed;
+- Cones: a ring of polar inertia I that turns with w and has the slopes s pulls with -w I (s_y', -s_x') on them, which
+  joins the acceleration FREE of each stage, see equations.py, by the velocities of the iteration before.
+
+Which of them a function means is decided by the type of the cones when the loop is compiled, as in loads.py.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.compiled import compiled
+from frbcli.compiled import compiled, compiled_for
 from frbcli.film.contact_gap import ELASTIC_LIMIT, closes_freely_until, contact_gap
-from frbcli.solve.state import Control
+from frbcli.film.roughness.asperities import APART, Asperities, Rub, rub
+from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, FREE, LATE, U_0, X_0, U, V
+from frbcli.solve.stage.loads import solve_columns
+from frbcli.solve.state import SLIP, SUM, Control, RotorData
 
 
 @compiled(inline=True)
@@ -61,3 +83,115 @@ def felt_motion(control: Control, d: Array, v: Array) -> Array:
     """(2, 2) displacement and velocity that a film feels of those of its journal, d and v (2,), over the clearance."""
     felt = feel(d[0], d[1], v[0], v[1], control.contact_eccentricity, control.contact_stiffness)
     return np.array(felt[:4]).reshape(2, 2)
+
+
+SLIDES, SHELL = range(2)  # omega_J - omega_S, and omega_S
+
+
+class RoughContact(NamedTuple):
+    """surfaces: of all films; speeds: (films, 2) rad/s, which the loop writes, see SLIDES."""
+
+    surfaces: Asperities
+    speeds: Array
+
+
+@compiled_for(RoughContact)
+def set_sliding(rough: RoughContact, turning: Array, bodies: Array) -> None:
+    """Speeds of the surfaces of all films by those of the rotor and the rings (1 + rings,)."""
+    for f in range(turning.shape[0]):
+        total, slip = 0.0, 0.0
+        for b in range(bodies.shape[0]):
+            total += turning[f, SUM, b] * bodies[b]
+            slip += turning[f, SLIP, b] * bodies[b]
+        rough.speeds[f, SLIDES], rough.speeds[f, SHELL] = slip, 0.5 * (total - slip)
+
+
+@compiled_for(RoughContact, APART)
+def rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> Rub:
+    """What the summits of film f do at the velocities U."""
+    x, y = 2 * f, 2 * f + 1
+    return rub(
+        rough.surfaces, f, clearance, journal[X_0, x] + g * journal[U, x], journal[X_0, y] + g * journal[U, y],
+        journal[U, x], journal[U, y], rough.speeds[f, SLIDES], rough.speeds[f, SHELL],
+    )  # fmt: skip
+
+
+@compiled_for(RoughContact)
+def press(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> None:
+    """Add the summits of film f to FORCE, BY_X, BY_Y of its journal."""
+    x, y, found = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
+    journal[FORCE, x] += found.f_x
+    journal[FORCE, y] += found.f_y
+    journal[BY_X, x] += found.d_xx + g * found.k_xx
+    journal[BY_Y, x] += found.d_xy + g * found.k_xy
+    journal[BY_X, y] += found.d_yx + g * found.k_yx
+    journal[BY_Y, y] += found.d_yy + g * found.k_yy
+
+
+@compiled_for(RoughContact, 0.0)
+def sharpness(rough: RoughContact, clearance: float) -> float:
+    """How sharply the force of summits bends, over the clearance: 1 / roughness; 0 between smooth surfaces."""
+    return clearance / rough.surfaces.roughness
+
+
+class Cones(NamedTuple):
+    """rings: (c,) numbers of the rings; columns: (2 c, n) their slopes in x and y times the root of the inertia;
+    response: as columns, of the inverse E of inverse.py with them; pulls: (2 c,) of the iteration before; elimination:
+    (2, n, 2 n + columns) to work in."""
+
+    rings: NDArray[np.int64]
+    columns: Array
+    response: Array
+    pulls: Array
+    elimination: Array
+
+
+def make_cones(cones: Sequence[tuple[int, Array]], first: int) -> Cones | tuple[()]:
+    """The cones of a LinearRotor as the time loop takes them. first: degree of freedom of the first ring's angle."""
+    if not cones:
+        return ()
+    columns = np.concatenate([cone for _, cone in cones])
+    count, n = columns.shape
+    rings = np.array([spin - first for spin, _ in cones], dtype=np.int64)
+    return Cones(rings, columns, np.zeros((count, n)), np.zeros(count), np.zeros((2, n, 2 * n + count)))
+
+
+@compiled_for(Cones)
+def prepare_cones(cones: Cones, rotor: RotorData, g: float, speed: float) -> None:
+    """The inverse of `prepare` for this g and speed with the cones."""
+    solve_columns(cones.columns, cones.response, cones.elimination, rotor, g, speed)
+
+
+@compiled_for(Cones, 0.0)
+def turn_cones(
+    cones: Cones, bodies: Array, s: int, known: int, g: float, selection: Array, at: Array, stage_a: Array,
+    journal: Array,
+) -> float:  # fmt: skip
+    """Renew the pulls in stage s: in FREE and LATE of `at` and U_0 of `journal`. Returns the largest change of U_0 in
+    m/s.
+
+    bodies: speeds of the rotor and the rings; known: the stage whose accelerations the velocities follow from, at first
+    the one before.
+    """
+    change = 0.0
+    for c in range(cones.rings.shape[0]):
+        x, y, speed = 2 * c, 2 * c + 1, bodies[1 + cones.rings[c]]
+        slope_x, slope_y = 0.0, 0.0
+        for i in range(at.shape[1]):
+            rate = at[V, i] + g * stage_a[i, known]
+            slope_x += cones.columns[x, i] * rate
+            slope_y += cones.columns[y, i] * rate
+        before_x, before_y = (cones.pulls[x], cones.pulls[y]) if known == s else (0.0, 0.0)
+        cones.pulls[x], cones.pulls[y] = -speed * slope_y, speed * slope_x
+        more_x, more_y = cones.pulls[x] - before_x, cones.pulls[y] - before_y
+        for i in range(at.shape[1]):
+            more = more_x * cones.response[x, i] + more_y * cones.response[y, i]
+            at[FREE, i] += more
+            at[LATE, i] += more
+        for k in range(selection.shape[0]):
+            rate = 0.0
+            for i in range(at.shape[1]):
+                rate += selection[k, i] * (more_x * cones.response[x, i] + more_y * cones.response[y, i])
+            journal[U_0, k] += g * rate
+            change = max(change, abs(g * rate))
+    return change

@@ -13,8 +13,8 @@ from frbcli.linear.bearing_sheet import bearing_sheet
 from frbcli.linear.stability import stability_points
 from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.run import runup
-from frbcli.scene.gate.analysis import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
 from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan

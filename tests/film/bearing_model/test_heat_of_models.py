@@ -22,8 +22,8 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import TableEndFlow, make_end_flow
 from frbcli.film.rectangles.film import make_film
 from frbcli.scene.films import film_places
-from frbcli.scene.gate.analysis import RUN, SPEED_CYCLES
 from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import RUN, SPEED_CYCLES
 from frbcli.scene.section import film_section
 
 OIL = ("oil.viscosity={grade='SAE 10W-40'}", "oil.density=850 kg/m^3")

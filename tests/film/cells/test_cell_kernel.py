@@ -23,13 +23,30 @@ from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.table import SHIPPED
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
-from frbcli.film.cells.balance.carried import before_upstream, limited, limited_at
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, FRACTION, STATES, cell_states, follow_law, hold
+from frbcli.film.cells.balance.states import (
+    BEFORE_UPSTREAM,
+    FRACTION,
+    STATES,
+    before_upstream,
+    cell_states,
+    follow_law,
+    hold,
+    limited,
+    limited_at,
+)
 from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
-from frbcli.film.cells.elimination.ring_solver import ring_solver, solve_ring_at
+from frbcli.film.cells.elimination.block_cyclic import (
+    ABOVE,
+    BEFORE,
+    BEHIND,
+    BELOW,
+    CENTRE,
+    ENTRIES,
+    ring_solver,
+    solve_ring_at,
+)
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion, Storage

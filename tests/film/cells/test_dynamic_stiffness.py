@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from frbcli.case.reading.load import load_case
-from frbcli.film.cells.balance.carried import UPWIND
+from frbcli.film.cells.balance.states import UPWIND
 from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at, weighted, without_memory
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import linear_film, lying

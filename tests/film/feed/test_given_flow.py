@@ -18,8 +18,8 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
 from frbcli.scene.films import film_places, volume_film
-from frbcli.scene.gate.analysis import ROTATION, STILL
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import ROTATION, STILL
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -8,8 +8,8 @@ import pytest
 
 from frbcli import load_case
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.carried import UPWIND
 from frbcli.film.cells.balance.feed import ALL, feed_at, supply_line
+from frbcli.film.cells.balance.states import UPWIND
 from frbcli.film.cells.dynamic_stiffness import stiffness_at
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import linear_film

@@ -23,8 +23,8 @@ from frbcli.film.cells.loads import force, oil_balance
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
-from frbcli.scene.gate.analysis import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
 from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import BEARING, LADDER, RUN, SPEED_CYCLES, STABILITY, WHIRLS
 
 NEVER = 1e12  # s
 SUPPLIES = ("circumferential-groove", "axial-groove")

@@ -19,13 +19,13 @@ from frbcli.film.cells.balance.balances import CREATED
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.state import NOW, OIL, PASSED
+from frbcli.film.kept import NOW, OIL, PASSED
 from frbcli.runs.march import control_of
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.planning.profiles import run_up_profile
 from frbcli.solve.state import FINISHED, RUNNING, Control, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

@@ -7,10 +7,19 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.roughness.asperities import Asperities, rub, summit_pressure, touch
+from frbcli.film.roughness.asperities import (
+    FLAT,
+    LAST,
+    Asperities,
+    elastic_summits,
+    rub,
+    summit_integral,
+    summit_pressure,
+    touch,
+    touching_summits,
+)
 from frbcli.film.roughness.plain import plain_pressure, plain_touch
 from frbcli.film.roughness.rubbing import Rubbing
-from frbcli.film.roughness.summits import FLAT, LAST, elastic_summits, summit_integral, touching_summits
 
 # Greenwood, Tripp 1970: F_5/2 to the digits in print
 PRINTED = {0.0: 0.6166, 1.0: 0.0806, 2.0: 0.0054}

@@ -13,10 +13,9 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
-from frbcli.film.cells.balance.carried import before_upstream
 from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
+from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, gap_height

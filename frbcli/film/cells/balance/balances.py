@@ -14,7 +14,6 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
-from frbcli.film.cells.balance.carried import carried_at
 from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS
 from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import (
@@ -25,6 +24,7 @@ from frbcli.film.cells.balance.states import (
     PRESSURE_SLOPE,
     SOURCE,
     SOURCE_SLOPE,
+    carried_at,
 )
 from frbcli.film.cells.data import (
     ALONG,

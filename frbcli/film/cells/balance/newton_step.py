@@ -27,8 +27,7 @@ from frbcli.film.cells.data import (
     UNKNOWN,
     VolumeFilms,
 )
-from frbcli.film.cells.elimination.block_cyclic import CENTRE
-from frbcli.film.cells.elimination.ring_solver import solve_ring_at
+from frbcli.film.cells.elimination.block_cyclic import CENTRE, solve_ring_at
 
 
 @compiled()

@@ -22,7 +22,6 @@ from frbcli.film.cells.balance.balances import (
     falls_to_air,
     section_end,
 )
-from frbcli.film.cells.balance.carried import limited_at
 from frbcli.film.cells.balance.ends import STEEPNESS
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -32,6 +31,7 @@ from frbcli.film.cells.balance.states import (
     PASSED_ON,
     PRESSURE,
     TURNOVER,
+    limited_at,
 )
 from frbcli.film.cells.data import (
     ALONG,

@@ -22,9 +22,8 @@ from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.law import CellState
 from frbcli.film.cells.balance.balances import GridMotion
-from frbcli.film.cells.balance.carried import UPWIND
 from frbcli.film.cells.balance.plain import CellBalances
-from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, PRESSURE, STATES, TURNOVER, cell_states
+from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, PRESSURE, STATES, TURNOVER, UPWIND, cell_states
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, OilPaths, brought, oil_paths, paths_of, with_own_gas

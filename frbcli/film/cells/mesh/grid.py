@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.film.cells.mesh.around_bores import Cells, around_bores
+from frbcli.film.cells.mesh.bores import Cells, around_bores
 from frbcli.film.cells.mesh.openings import Opening, groove_opening, hole_opening
 from frbcli.film.cells.mesh.tilted import tilted_weights
 from frbcli.film.gap import LEAST, AxialGroove, Section, graded_ring, groove_pressure

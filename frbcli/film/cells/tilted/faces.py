@@ -12,7 +12,7 @@ from numba import njit
 
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, Kernel
-from frbcli.film.cells.balance.carried import carried_at
+from frbcli.film.cells.balance.states import carried_at
 
 _PartCompiler: Any = AS_KERNELS["pipeline_class"]
 
