@@ -64,4 +64,7 @@ def test_squeezing_heats_a_damper_by_the_closed_form(tmp_path: Path) -> None:
     assert np.max(r[late]) > 0.05 * CLEARANCE
     assert np.mean(run["power_damper_W"][late]) == pytest.approx(np.mean(power[late]), rel=5e-3)
     assert run["temperature_damper_K"][-1] > run["temperature_damper_K"][0]
-    assert run.error["heat_balance_relative"] < 1e-11
+    # the balance compares sums of heat, of which the temperatures are known to round-off of their absolute size
+    temperature, steps = run["temperature_damper_K"], run.cost["steps"]
+    round_off = np.finfo(float).eps * temperature[-1] / (temperature[-1] - temperature[0])
+    assert run.error["heat_balance_relative"] < math.sqrt(steps) * round_off
