@@ -33,7 +33,7 @@ def account(run: Run) -> list[tuple[str, str, str]]:
 
     against = "against a finer mesh" if error.get("model_relative") is None else "of the short-bearing theory"
     return [
-        ("CPU time", f"{cost['cpu_s']:.3g} s", f"{_predicted(cost)}{cost['simulated_ms_per_hour']:.2g} ms/h"),
+        ("CPU time", f"{cost['cpu_s']:.3g} s", _predicted(cost)),
         *_compiled(cost),
         (
             "steps",
@@ -123,7 +123,7 @@ def _wear_rows(run: Run) -> list[tuple[str, str, str]]:
 
 def _predicted(cost: dict[str, Any]) -> str:
     """The prediction of the plan, which runs of earlier versions lack."""
-    return f"predicted {cost['predicted_cpu_s']:.2g} s, " if "predicted_cpu_s" in cost else ""
+    return f"predicted {cost['predicted_cpu_s']:.2g} s" if "predicted_cpu_s" in cost else ""
 
 
 def grows_late(error: Mapping[str, Any]) -> str:
