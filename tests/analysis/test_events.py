@@ -27,6 +27,7 @@ from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.costs.preparation import CRITICAL_s, before_s
 from frbcli.scene.planning.plan import make_plan
+from frbcli.units import HERTZ
 
 
 def found(rotor: Rotor, status: str = "finished") -> dict[str, Event]:
@@ -194,7 +195,7 @@ def test_an_event_names_the_point_that_shows_it(kinds: tuple[str, ...], point: s
 def test_an_event_says_who_touches_what(kind: Kind, film: str | None, point: str | None, told: str) -> None:
     event = asdict(Event(kind, film, 1.0, 50.0, None, None, point))
     assert event_name(event) == told
-    assert kind == "onset" or _words(event) == f"{told}\n50.0 Hz"
+    assert kind == "onset" or _words(event, HERTZ) == f"{told}\n50.0 Hz"
 
 
 def test_resonance_after_the_onset_of_whirl_is_not_told_as_critical_speed() -> None:

@@ -105,8 +105,9 @@ def test_a_film_without_a_solution_at_empty_openings_is_found_between() -> None:
 def test_more_than_a_film_takes_is_a_film_at_the_pressure_of_the_supply(supply: str) -> None:
     plain, ample = (film_of(case_of(supply, flow)) for flow in (None, 1.001 * at_pressure(supply)))
     (a, at_its_pressure), (b, limited) = steady(plain), steady(ample)
-    assert np.array_equal(a.w, b.w)
-    assert at_its_pressure == limited
+    # cells around bores that an earlier test has made hold the round-off that its linear algebra was perturbed with
+    assert np.abs(a.w - b.w).max() < 1e-12 * np.abs(a.w).max()
+    assert at_its_pressure == pytest.approx(limited, rel=1e-12)
 
 
 @each_supply
