@@ -107,7 +107,8 @@ def test_more_than_a_film_takes_is_a_film_at_the_pressure_of_the_supply(supply: 
     (a, at_its_pressure), (b, limited) = steady(plain), steady(ample)
     # cells around bores that an earlier test has made hold the round-off that its linear algebra was perturbed with
     assert np.abs(a.w - b.w).max() < 1e-12 * np.abs(a.w).max()
-    assert at_its_pressure == pytest.approx(limited, rel=1e-12)
+    for name in ("force", "p_max", "p_min", "oil_fraction"):
+        assert getattr(limited, name) == pytest.approx(getattr(at_its_pressure, name), rel=1e-10)
 
 
 @each_supply
