@@ -17,7 +17,8 @@ from pydantic import Field, PrivateAttr
 
 from frbcli.case.bearing import Bearings, FilmBearing
 from frbcli.case.course.control import Accuracy, Output, Start
-from frbcli.case.course.speed import KinematicMotion, SpeedRamp, given_speed_unit
+from frbcli.case.course.motion import KinematicMotion
+from frbcli.case.course.speed import SpeedRamp, given_speed_unit
 from frbcli.case.elements import Axial, Element, ThrustBearings
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.film_tables import Cavitation
@@ -31,8 +32,8 @@ from frbcli.case.rotor import Disk, Rotor, ShaftSection
 from frbcli.case.surroundings.base import Bases
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
+from frbcli.case.surroundings.magnetic_pull import MagneticPull
 from frbcli.case.surroundings.over_time import largest
-from frbcli.case.surroundings.places import MagneticPull
 from frbcli.case.thermal import AnyThermal, Thermal
 from frbcli.errors import Fault, InputError
 from frbcli.html import html_table

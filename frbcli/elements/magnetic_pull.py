@@ -9,7 +9,8 @@ from typing import ClassVar, Self
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.places import MagneticPull, node_at
+from frbcli.case.surroundings.magnetic_pull import MagneticPull
+from frbcli.case.surroundings.places import node_at
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.force import equal_places
 from frbcli.rotor.assembly import GROUND, Link

@@ -1,10 +1,6 @@
-"""Films that are kept on disk or on a law's state.
-
-Arrays that take long to make, kept on disk beside the compiled kernels, so that later processes need not make them.
+"""Arrays that take long to make, kept on disk beside the compiled kernels, so that later processes need not make them.
 
 An array is found by all that it follows from: the sources of the function that makes it, its arguments, the libraries.
-
-Layers of the arrays in which the time loop keeps the state of films.
 """
 
 from __future__ import annotations
@@ -99,10 +95,3 @@ def _write(path: Path, array: Array) -> None:
     others = sorted(path.parent.glob(f"*{SUFFIX}"), key=lambda other: other.stat().st_mtime)
     for other in others[:-MOST_KEPT]:
         other.unlink(missing_ok=True)
-
-
-# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate; where the oil of
-# any film carries free gas, also that, H theta c, and its rate.
-W, W_BEFORE, OIL, RATE, WET = range(5)
-GAS, GAS_RATE, WET_WITH_GAS = range(WET, WET + 3)
-PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now

@@ -14,7 +14,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
-from frbcli.film.kept import PASSED
+from frbcli.film.state import PASSED
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Control, LoopOutput, RotorData, State

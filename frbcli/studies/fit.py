@@ -23,7 +23,7 @@ from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.spectra.spectrum import window_length
 from frbcli.arrays import Array, Truths
 from frbcli.case.reading.listing import values as listed
-from frbcli.case.rules.cartridge_checks import machine_fault
+from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import Fault, FrbError, InputError, input_error

@@ -21,8 +21,8 @@ from frbcli.film.cells.balance.states import FRACTION
 from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.kept import WET
 from frbcli.film.rectangles.film_force import film_force
+from frbcli.film.state import WET
 from frbcli.runs.march import March
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System, make_system

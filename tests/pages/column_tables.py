@@ -25,7 +25,7 @@ from frbcli.cycles.columns import (
     special_columns,
     whirl_columns,
 )
-from frbcli.equilibrium.warm_machine import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 from frbcli.linear.columns import (
     DAMPED_MODES,
     FILM,

@@ -29,7 +29,7 @@ from frbcli.errors import InputError
 from frbcli.plot.moving.orbits import animate_orbits
 from frbcli.results.files.kinds import PAGE, TABLES, has_checksum, mark_table
 from frbcli.results.files.lock import locked
-from frbcli.results.files.write import harmless_text, write, write_table, written
+from frbcli.results.files.write import write, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
@@ -439,21 +439,6 @@ def test_the_name_of_a_case_makes_no_hidden_file_and_no_option(name: str) -> Non
 def test_a_case_with_the_name_of_another_directory_writes_here() -> None:
     assert frb(["plot", "jeffcott", "--what", "law", "--set", "name=../../x", "--quiet"]) == 0
     assert Path("x-law.png").is_file()
-
-
-HARMFUL = ["=cmd|' /C calc'!A0", "@SUM(1)", "+1+cmd|x", "-2+3", " =1", "=1"]
-HARMLESS = ["1 g*mm", "-5 N", "+1.5e3 N*s/m", "-3.5 um", "--", "a=b", "", "-1", "[1, 2]"]
-
-
-def test_a_table_is_not_computed_by_a_spreadsheet_nor_obeyed_by_a_terminal(tmp_path: Path) -> None:
-    assert [harmless_text(text) for text in HARMFUL] == [f"'{text}" for text in HARMFUL]
-    assert [harmless_text(text) for text in HARMLESS if text != "--"] == [text for text in HARMLESS if text != "--"]
-    assert harmless_text("\x1b[2Jx\x07") == "?[2Jx?"
-    table = pd.DataFrame({"=film": [1.5, -2.0], "film": ["=1", "\x1b]0;x\x07"], "none": [None, np.nan]})
-    table = table[["film", "=film", "none"]]
-    write_table(table, tmp_path / "a.csv")
-    text = re.sub(r"0{25}\d{10}(?=,\n$)", "", (tmp_path / "a.csv").read_text())  # without the checksum
-    assert text == "film,'=film,none\n'=1,1.5,\n?]0;x?,-2.0,\n"
 
 
 def test_the_table_of_a_sweep_has_no_formula_of_its_list() -> None:

@@ -25,7 +25,7 @@ from frbcli.film.cells.data import UNKNOWN, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.kept import OIL, PASSED, W
+from frbcli.film.state import OIL, PASSED, W
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect

@@ -11,8 +11,8 @@ from frbcli.case.schema import Case
 from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
 from frbcli.film.cells.dynamic_stiffness import stiffness_at
 from frbcli.film.cells.linearised import linear_film
-from frbcli.film.kept import GAS, OIL, PASSED
 from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.film.state import GAS, OIL, PASSED
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data

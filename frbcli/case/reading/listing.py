@@ -11,7 +11,7 @@ from pydantic.fields import FieldInfo
 from frbcli.case.model import Model
 from frbcli.case.quantities import unit_of
 from frbcli.case.reading.toml import parse
-from frbcli.case.rules.cartridge_checks import OF_SPRING, WITH_DEFAULT
+from frbcli.case.rules.contact_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case
 from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table

@@ -24,7 +24,7 @@ from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_kinds
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.places import machine_breaches
+from frbcli.case.surroundings.machine_table import machine_breaches
 from frbcli.errors import Fault, InputError
 from frbcli.results.files.kinds import RUN_BEGINS
 from frbcli.results.files.named import NoFile, NoText, Unreadable, begins_with, text_of

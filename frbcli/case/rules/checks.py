@@ -16,13 +16,8 @@ from frbcli.case.oil import ATMOSPHERE
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
-from frbcli.case.rules.cartridge_checks import (
-    cartridge_breaches,
-    contact_breaches,
-    pin_breaches,
-    positions,
-    tilt_breaches,
-)
+from frbcli.case.rules.cartridge_checks import cartridge_breaches, pin_breaches, positions, tilt_breaches
+from frbcli.case.rules.contact_checks import contact_breaches
 from frbcli.case.rules.element_checks import element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible

@@ -12,8 +12,9 @@ from frbcli.case.quantities import Angle, Label, Quantity, Speed
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.force import Order
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.case.surroundings.places import MachineTable, table_breaches
+from frbcli.case.surroundings.places import table_breaches
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case

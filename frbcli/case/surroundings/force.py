@@ -10,8 +10,9 @@ from pydantic import Field
 from frbcli.case.quantities import Angle, Identifier, Label, Quantity, SignedSpeed
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.case.surroundings.places import MachineTable, no_place, node_at, table_breaches
+from frbcli.case.surroundings.places import no_place, node_at, table_breaches
 from frbcli.units import NUMBER
 
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import Fraction, Identifier, Label, Position, Quantity, RingInertia, ShellMass
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
-from frbcli.case.surroundings.places import MachineTable
+from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.support import DIRECTIONS, Dampings, Stiffnesses
 from frbcli.nearest import did_you_mean
 from frbcli.units import NUMBER, SPEED

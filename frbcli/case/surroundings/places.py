@@ -1,22 +1,11 @@
-"""Places of a machine, its tables, and magnetic pulls there.
-
-The places of a machine that forces can act on.
-
-Tables of a case for what surrounds its rotor, each with the rules that tie it to the rest of the machine.
-
-The magnetic pull of an electrical machine on its rotor.
-"""
+"""The places of a machine that forces can act on."""
 
 from __future__ import annotations
 
-from abc import abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, ClassVar
-
-from pydantic import Field
+from typing import TYPE_CHECKING
 
 from frbcli.case.model import Model
-from frbcli.case.quantities import Identifier, Quantity
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.over_time import OverTime, over_time_problem
@@ -71,47 +60,3 @@ def table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str,
     problem = over_time_problem(table.time, *table.both)
     if problem:
         yield Breach((*path, "over_time"), problem, "Order its rows by rising times.")
-
-
-class MachineTable(Model):
-    """A table of a case, or one of several with the same key, that has no effect without a rotor."""
-
-    alone: ClassVar[bool] = False  # a single one has no number in its key
-
-    @abstractmethod
-    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        """Every rule that it breaks in a case with a rotor. path: its key in the case file, with its number."""
-
-
-def machine_breaches(case: Case) -> Iterator[Breach]:
-    """Every rule that tables of this kind break in a case."""
-    for name, field in type(case).model_fields.items():
-        given, key = getattr(case, name), field.alias or name
-        for number, table in enumerate(given if isinstance(given, tuple) else (given,)):
-            if isinstance(table, MachineTable):
-                single = table is given or (table.alone and len(given) == 1)
-                path: Path = (key,) if single else (key, number)
-                if case.given_rotor is None:
-                    yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
-                else:
-                    yield from table.breaches(case, path)
-
-
-Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
-
-
-class MagneticPull(MachineTable):
-    """The unbalanced magnetic pull of an electrical machine: a spring of negative stiffness."""
-
-    at: Identifier = Field(description="place of the rotor, as of a [[force]]")
-    pull: Pull = Field(description="force over displacement; of a symmetric rotor at each of both journals")
-    stator: Identifier = Field(
-        default="", description="place that the stator is fixed to, such as `housing`; the ground if not given"
-    )
-
-    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
-        for key, place in (("at", self.at), ("stator", self.stator)):
-            if (place or key == "at") and not node_at(case, place):
-                yield Breach((*path, key), *no_place(case, place))
-        if self.stator and node_at(case, self.stator) == node_at(case, self.at):
-            yield Breach((*path, "stator"), "is the place of the rotor.", "Name what carries the stator, or remove it.")

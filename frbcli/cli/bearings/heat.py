@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def heat_document(warm: WarmMachine) -> dict[str, object]:
     """Temperatures, viscosities, losses and flows, of one bearing each, and the balance of heat."""
     from frbcli.columns import document, documents
-    from frbcli.equilibrium.warm_machine import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+    from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
 
     films, rings = documents(WARM_FILMS, warm.films), documents(WARM_RINGS, warm.rings)
     return {"films": films, "rings": rings, **document(HEAT_BALANCE, warm.steady)}
@@ -24,7 +24,7 @@ def heat_document(warm: WarmMachine) -> dict[str, object]:
 def tell_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
     """The films and rings of a warm machine, and where its heat goes."""
     from frbcli.columns import table_of
-    from frbcli.equilibrium.warm_machine import WARM_RINGS
+    from frbcli.equilibrium.columns import WARM_RINGS
 
     _tell_films(terminal, warm.films, title)
     if warm.rings:
@@ -35,7 +35,8 @@ def tell_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
 def film_document(steady: SteadyHeat) -> dict[str, object]:
     """The heat of a single film, of a bearing test."""
     from frbcli.columns import document, documents
-    from frbcli.equilibrium.warm_machine import HEAT_BALANCE, WARM_FILMS, film_temperatures
+    from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS
+    from frbcli.equilibrium.warm_machine import film_temperatures
 
     return {"films": documents(WARM_FILMS, film_temperatures(steady, [""])), **document(HEAT_BALANCE, steady)}
 
@@ -50,7 +51,7 @@ def tell_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
 
 def _tell_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str) -> None:
     from frbcli.columns import table_of
-    from frbcli.equilibrium.warm_machine import WARM_FILMS
+    from frbcli.equilibrium.columns import WARM_FILMS
 
     terminal.show(title, table_of(WARM_FILMS, films))
 

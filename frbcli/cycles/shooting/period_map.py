@@ -26,7 +26,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.feed import ALL
 from frbcli.film.cells.data import UNKNOWN
-from frbcli.film.kept import GAS, GAS_RATE, OIL, PASSED, RATE, W_BEFORE, WET, WET_WITH_GAS, W
+from frbcli.film.state import GAS, GAS_RATE, OIL, PASSED, RATE, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data, state_at

@@ -26,7 +26,6 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
-from frbcli.film.kept import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.mean_fields.outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.mean_fields.table import MeanFilm
@@ -35,6 +34,7 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.film.section_faults import is_unfed
+from frbcli.film.state import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 NARROWEST = 1e-3  # over the clearance: of the gap in which oil is sheared

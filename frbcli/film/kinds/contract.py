@@ -21,12 +21,12 @@ from frbcli.film.cells.balance.balances import FLOWS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.linearised import LinearFilm
 from frbcli.film.compared import SAMPLES
-from frbcli.film.kept import WET
 from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.mean_fields.outflow import MeanEndFlow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
+from frbcli.film.state import WET
 
 # (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
 Compared = Callable[[int, Array, Array, float], tuple[Array, Array]]

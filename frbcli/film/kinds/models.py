@@ -1,9 +1,4 @@
-"""Kinds of films: bearing models, and none.
-
-Bearing models that were added from Python.
-
-The films of a machine that has none.
-"""
+"""Bearing models that were added from Python."""
 
 from __future__ import annotations
 
@@ -50,25 +45,3 @@ class ModelFilms(Films):
 
     def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
         return self.data
-
-
-@dataclass(frozen=True)
-class NoFilms(Films):
-    """No film at all."""
-
-    clearances: tuple[float, ...] = ()
-
-    @property
-    def loop(self) -> Any:
-        """No films for the time loop."""
-        return ()
-
-    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
-        """Raises IndexError: there is no film."""
-        raise IndexError(i)
-
-    def heat_ends(self) -> Any:
-        return ()
-
-    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
-        return ()

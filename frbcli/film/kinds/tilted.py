@@ -36,7 +36,6 @@ from frbcli.film.cells.tilted.force import (
 from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
-from frbcli.film.kept import OIL, PASSED, W
 from frbcli.film.kinds.cells import (
     begin_wet,
     contents_of,
@@ -51,6 +50,7 @@ from frbcli.film.kinds.contract import Compared, Films, LinearOf
 from frbcli.film.kinds.fields import FieldFilm, Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
+from frbcli.film.state import OIL, PASSED, W
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a film, and their shares of it

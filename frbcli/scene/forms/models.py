@@ -1,11 +1,4 @@
-"""Forms of films: bearing models, inclined films, none.
-
-Bearing models in a case: the chosen model, and what it is not made for.
-
-Films in shells that are not in line, around journals that keep their direction: the tilt of the gap is given.
-
-A machine whose bearings are all given by coefficients: it has no film.
-"""
+"""Bearing models in a case: the chosen model, and what it is not made for."""
 
 from __future__ import annotations
 
@@ -13,7 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import ClassVar
 
-from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
@@ -22,28 +14,12 @@ from frbcli.film.bearing_model.table import model_named
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.form import FilmForm, SolveCounts
-from frbcli.scene.forms.tilted import (
-    LOOPS,
-    MOVED,
-    RUNS,
-    TiltedForm,
-    film_faults,
-    heat_faults,
-    law_faults,
-    misalignment_faults,
-    run_faults,
-)
 from frbcli.scene.gate.rule import (
     ALL,
-    FILMS,
-    HEAT,
     KINEMATIC,
-    RANGE,
     RUN,
     SHEETS,
     SPEED_CYCLES,
-    STABILITY,
-    WHIRLS,
     Rule,
     motion_omega,
     oil_flow_signal,
@@ -51,9 +27,8 @@ from frbcli.scene.gate.rule import (
     run_omega,
     sheet_omega,
 )
-from frbcli.scene.keys import bearing_key, film_keys
-from frbcli.scene.shafts.table import shaft_of
-from frbcli.scene.tilt import as_text, misaligned, tilt_refusal
+from frbcli.scene.keys import film_keys
+from frbcli.scene.tilt import tilt_refusal
 
 WHY = "set in the case; added from Python"
 TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
@@ -190,53 +165,3 @@ class ModelForm(FilmForm):
 
 
 GIVEN: FilmForm = ModelForm("force of a bearing model", SolveCounts(1.0, 1.0, 1.6, (1.0, 2.0)), 1.0)
-
-
-AT_REST = (FILMS, HEAT, STABILITY, RANGE, *SHEETS, SPEED_CYCLES, WHIRLS)
-WITHOUT = "Leave bearing.misalignment out."
-
-
-def _shaft_faults(case: Case) -> Iterator[Fault]:
-    """Rotors whose journals tilt as well."""
-    if case.given_rotor is not None and shaft_of(case).tilts:
-        for key, value in misaligned(case):
-            problem = "tilts the shell, and the journal of this rotor tilts as well."
-            remedy = f'Write film.tilt = "follows". {WITHOUT}'
-            yield Fault(key, value, None, problem, remedy)
-
-
-def _ring_faults(case: Case) -> Iterator[Fault]:
-    """Shells around rings, which would tilt, too."""
-    for index, bearing in enumerate(case.bearings):
-        if isinstance(bearing, FloatingRingBearing) and bearing.misalignment is not None:
-            problem = "tilts the shell around a ring, whose own tilt is modelled in films that follow it alone."
-            key = f"{bearing_key(case, index)}.misalignment"
-            yield Fault(key, as_text(bearing.misalignment), None, problem, WITHOUT)
-
-
-@dataclass(frozen=True)
-class InclinedForm(TiltedForm):
-    """The cells of films that follow a tilt, with one that is given."""
-
-    rules: ClassVar[tuple[Rule, ...]] = (
-        Rule(_shaft_faults, (*AT_REST, *RUNS)),
-        Rule(_ring_faults, (*AT_REST, *RUNS)),
-        Rule(lambda case: film_faults(case, WITHOUT), (*AT_REST, *RUNS)),
-        Rule(lambda case: heat_faults(case, WITHOUT), MOVED, moving=True),
-        Rule(lambda case: law_faults(case, WITHOUT), AT_REST),
-        Rule(lambda case: run_faults(case, WITHOUT), LOOPS),
-        Rule(misalignment_faults, (*AT_REST, *RUNS)),
-    )
-
-
-INCLINED = InclinedForm("cells with the tilt of their shells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 30.0)
-
-
-@dataclass(frozen=True)
-class NoForm(FilmForm):
-    """No film: nothing is tabulated, and nothing has an error."""
-
-    solved: ClassVar[bool] = False
-
-
-NO_FILM: FilmForm = NoForm("no film", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 0.35)

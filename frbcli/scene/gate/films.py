@@ -17,7 +17,7 @@ from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, FilmPlace, film_places
 from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.models import INCLINED
+from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.tables import CLIPPED
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.keys import film_keys

@@ -15,7 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.forms.models import AT_REST
+from frbcli.scene.forms.inclined import AT_REST
 from frbcli.scene.forms.tilted import RUNS
 from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
 from frbcli.scene.gate.rule import (

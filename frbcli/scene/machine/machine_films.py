@@ -31,7 +31,8 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.inclined import InclinedFilms
-from frbcli.film.kinds.models import ModelFilms, NoFilms
+from frbcli.film.kinds.models import ModelFilms
+from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
@@ -39,7 +40,9 @@ from frbcli.film.rectangles.film import make_film
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
 from frbcli.scene.forms.cells import CELLS, cells_of
-from frbcli.scene.forms.models import GIVEN, INCLINED, NO_FILM, chosen_model
+from frbcli.scene.forms.inclined import INCLINED
+from frbcli.scene.forms.models import GIVEN, chosen_model
+from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTIONS
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.planning.cell_choice import compared_states

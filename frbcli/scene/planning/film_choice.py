@@ -15,7 +15,9 @@ from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS, CellForm
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import GIVEN, INCLINED, NO_FILM, WHY
+from frbcli.scene.forms.inclined import INCLINED
+from frbcli.scene.forms.models import GIVEN, WHY
+from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
 from frbcli.scene.forms.tilted import TILTED

@@ -18,7 +18,7 @@ from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURN
 from frbcli.film.cells.data import SHEARED, SIDES, Records, VolumeFilms
 from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.gas.carry import NONE, PATHS
-from frbcli.film.kept import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W
+from frbcli.film.state import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W
 from frbcli.solve.films.fillings import GRID, begin_filling, within
 from frbcli.solve.stage.equations import lagrange
 

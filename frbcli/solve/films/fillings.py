@@ -20,7 +20,7 @@ from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.feed import RESPONSE
 from frbcli.film.cells.balance.states import fill_openings
 from frbcli.film.cells.data import record
-from frbcli.film.kept import PASSED
+from frbcli.film.state import PASSED
 from frbcli.solve.stage.equations import lagrange
 
 PLAIN = 1.0  # by how much less a filling is off after it has risen by 1, at the least: the film takes the more

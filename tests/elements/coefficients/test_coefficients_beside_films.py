@@ -12,7 +12,7 @@ from given_rotors import JEFFCOTT, TURN, bearing, growing_seal, matrix, rigid, s
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict, load_case_text
-from frbcli.case.rules.cartridge_checks import machine_fault
+from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
