@@ -14,11 +14,12 @@ from frbcli.elements.force import ForceElement
 from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.pin import PinElement
+from frbcli.elements.spring import SpringElement
 from frbcli.elements.support import SupportElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
     GivenCoefficients, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
-    MagneticPullElement, BaseElement,
+    MagneticPullElement, SpringElement, BaseElement,
 )  # fmt: skip
 
 
