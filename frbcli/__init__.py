@@ -14,6 +14,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.orders.order_tracking import order_track as order_track
     from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.balancing.balance import TrialRun as TrialRun
+    from frbcli.balancing.balance import balance as balance
     from frbcli.case.films.additions import add_bearing as add_bearing
     from frbcli.case.films.additions import add_law as add_law
     from frbcli.case.films.additions import remove_bearing as remove_bearing
@@ -81,10 +83,12 @@ _PUBLIC = {  # module, or module:attribute of another name
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "Measurement": "frbcli.analysis.measured",
+    "TrialRun": "frbcli.balancing.balance",
     "accuracy": "frbcli.studies.accuracy",
     "add_bearing": "frbcli.case.films.additions",
     "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
+    "balance": "frbcli.balancing.balance",
     "balance_quality": "frbcli.linear.standards.balance_quality",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.reading.load",

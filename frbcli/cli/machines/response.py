@@ -47,7 +47,7 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
               help='The one load that excites the rotor, e.g. "force 2". '
                    "[the unbalance and all loads of order 1]")  # fmt: skip
 @click.option("--operating", type=OPERATING_OPTION, metavar="RANGE",
-              help='Speeds of operation, e.g. "8000..12000 rpm": margins of critical speeds, limits of vibration.')
+              help='Speeds of operation, whose vibration is judged, e.g. "8000..12000 rpm".')  # fmt: skip
 @click.option("--grade", type=GradeOption(), metavar="GRADE",
               help="Balance quality grade of ISO 21940-11 to compare the unbalance with, e.g. G6.3.")  # fmt: skip
 @outputs_options("CASE-response.png, here")

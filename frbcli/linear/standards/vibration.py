@@ -121,6 +121,12 @@ _POINT = (
 )  # fmt: skip
 _MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", TOLD.__getitem__),))
 
+
+def _boundary(place: int, name: str) -> Column:
+    return Column(f"zone_{name[0]}_{name[-1]}".lower(), "m", f"boundary {name} of ISO 20816-3",
+                  lambda point: point.limits[place], shown=(Shown(f"{name} um", ".3g", "um"),))  # fmt: skip
+
+
 # Of a PointVibration
 API_POINTS = (
     *_POINT,
@@ -131,9 +137,7 @@ API_POINTS = (
 )  # fmt: skip
 ISO_POINTS = (
     *_POINT,
-    *(Column(f"zone_{name[0]}_{name[-1]}".lower(), "m", f"boundary {name} of ISO 20816-3",
-             lambda point, place=place: point.limits[place], shown=(Shown(f"{name} um", ".3g", "um"),))
-      for place, name in enumerate(BOUNDARIES)),
+    *(_boundary(place, name) for place, name in enumerate(BOUNDARIES)),
     Column("zone", "", "`A`, `B`, `C` or `D`", shown=(Shown("zone"),)),
     _MARK,
 )  # fmt: skip
