@@ -120,7 +120,7 @@ POINTS = (
 
 
 @dataclass(frozen=True, repr=False)
-class Balance(Tabular):
+class Balancing(Tabular):
     """Corrections of k planes from p points at s speeds.
 
     vectors: that were balanced; expected: (s, p, 2) of the unbalances found, in m; residual: weighted norm of the
@@ -169,7 +169,7 @@ def balance(
     points: Sequence[str] | None = None,
     trials: Sequence[TrialRun] = (),
     triggered: bool = False,
-) -> Balance:
+) -> Balancing:
     """Find the correction masses that balance the rotor of a run.
 
     Parameters
@@ -190,7 +190,7 @@ def balance(
 
     Returns
     -------
-    Balance
+    Balancing
         For each plane the unbalance that has to be added, opposite to that which is there.
 
     Raises
@@ -299,7 +299,7 @@ def _solved(
     influence: Complex,
     doubts: list[str],
     trials: bool,
-) -> Balance:
+) -> Balancing:
     size = np.abs(vectors.values)
     seen = np.broadcast_to((size > NOTHING * size.max()).any(axis=0), size.shape)  # y may not be measured
     count = int(np.count_nonzero(seen))
@@ -323,7 +323,7 @@ def _solved(
     residual = off / float(np.linalg.norm(given))
     doubts = [*doubts, *_uncertain(planes, residual, condition)]
     expected = influence @ unbalance
-    return Balance(run, planes, vectors, expected, residual, condition, tuple(doubts), trials)
+    return Balancing(run, planes, vectors, expected, residual, condition, tuple(doubts), trials)
 
 
 def _condition(rows: Complex) -> float:

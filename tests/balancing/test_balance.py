@@ -14,9 +14,10 @@ import pandas as pd
 import pytest
 
 import frbcli
-from frbcli.balancing.balance import Balance
+from frbcli.balancing.balance import Balancing
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
+from frbcli.results.store import Run
 
 COEFFICIENTS: list[dict[str, Any]] = [
     {"kind": "coefficients", "name": "left", "position": "20 mm", "damping": "500 N*s/m",
@@ -56,12 +57,12 @@ def polar(size: float, degrees: float) -> complex:
     return cmath.rect(size, math.radians(degrees))
 
 
-def found_in(found: Balance) -> dict[str, complex]:
+def found_in(found: Balancing) -> dict[str, complex]:
     """g mm."""
     return {plane.plane: 1e6 * plane.unbalance for plane in found.planes}
 
 
-def assert_near(found: Balance, given: Mapping[str, complex], share: float) -> None:
+def assert_near(found: Balancing, given: Mapping[str, complex], share: float) -> None:
     """Vectors, within a share of the largest."""
     largest = max(map(abs, given.values()))
     off = {name: abs(value - given[name]) / largest for name, value in found_in(found).items()}
@@ -73,13 +74,13 @@ LINEAR = {"a": polar(3.0, 40.0), "b": polar(5.0, 200.0)}
 
 
 @pytest.fixture(scope="module")
-def linear(tmp_path_factory: pytest.TempPathFactory) -> frbcli.results.store.Run:  # type: ignore[name-defined]
+def linear(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """A run at 120 Hz in anisotropic bearings."""
     case = two_disks(COEFFICIENTS, LINEAR["a"], LINEAR["b"], "120..120 Hz, 1 s")
     return frbcli.runup(case, tmp_path_factory.mktemp("linear") / "run.h5")
 
 
-def test_a_linear_rotor_has_the_unbalances_that_were_put_in(linear: Any) -> None:
+def test_a_linear_rotor_has_the_unbalances_that_were_put_in(linear: Run) -> None:
     found = frbcli.balance(linear, ["a", "b"])
     assert_near(found, LINEAR, 1e-3)
     assert found.status == "good"
@@ -89,7 +90,7 @@ def test_a_linear_rotor_has_the_unbalances_that_were_put_in(linear: Any) -> None
     assert max(point.remaining / point.amplitude for point in found.points) < 1e-3
 
 
-def test_one_probe_will_do_and_is_less_certain(linear: Any) -> None:
+def test_one_probe_will_do_and_is_less_certain(linear: Run) -> None:
     every, one = (frbcli.balance(linear, ["b", "a"], points=points) for points in (None, ["disk_a"]))
     assert_near(one, LINEAR, 1e-2)
     assert [plane.plane for plane in one.planes] == ["b", "a"]
@@ -106,7 +107,7 @@ def test_a_ramp_has_them_too(tmp_path: Path) -> None:
     assert found.status == "good"
 
 
-def test_the_run_with_the_correction_moves_as_little_as_expected(linear: Any, tmp_path: Path) -> None:
+def test_the_run_with_the_correction_moves_as_little_as_expected(linear: Run, tmp_path: Path) -> None:
     """b alone is corrected; what is left of the run is what was said to remain."""
     found = frbcli.balance(linear, ["b"])
     left = LINEAR["b"] + 1e6 * found.planes[0].correction
@@ -138,7 +139,7 @@ def test_large_motions_in_films_and_whirls_are_doubtful(tmp_path: Path) -> None:
         assert any(word in doubt for doubt in found.doubts)
 
 
-def test_runs_serve_as_trial_runs(linear: Any, tmp_path: Path) -> None:
+def test_runs_serve_as_trial_runs(linear: Run, tmp_path: Path) -> None:
     trials = []
     for plane, trial in (("a", polar(6.0, 30.0)), ("b", polar(8.0, -70.0))):
         both = LINEAR | {plane: LINEAR[plane] + trial}
@@ -268,7 +269,7 @@ def test_a_feeble_trial_is_doubtful(tmp_path: Path, capsys: pytest.CaptureFixtur
     (["--trial", "a=trial.csv:5 g*mm@30 mm"], "does not fit"),
 ])  # fmt: skip
 def test_what_cannot_be_balanced_is_refused(
-    words: list[str], problem: str, linear: Any, capsys: pytest.CaptureFixture[str]
+    words: list[str], problem: str, linear: Run, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert frb(["balance", str(linear.path), *words]) == 2
     assert problem in capsys.readouterr().err

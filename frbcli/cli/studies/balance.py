@@ -17,7 +17,7 @@ from frbcli.cli.studies.measured import measured_options, run_of
 
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
-    from frbcli.balancing.balance import Balance, TrialRun
+    from frbcli.balancing.balance import Balancing, TrialRun
     from frbcli.results.store import Run
 
 EXAMPLE = 'a=trial.csv:"5 g*mm@30deg"'
@@ -105,7 +105,7 @@ def command(
     terminal.emit(document(found, run_file) | {"csv": csv})
 
 
-def document(found: Balance, run_file: Path) -> dict[str, object]:
+def document(found: Balancing, run_file: Path) -> dict[str, object]:
     """As JSON."""
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import documents
@@ -153,7 +153,7 @@ def _progress(terminal: Terminal, run: Run, trials: Sequence[TrialRun]) -> Any:
     return computing(terminal, load_case_text(run.case_text, name=run.case_name), kernels="rest")
 
 
-def _tell(terminal: Terminal, found: Balance) -> None:
+def _tell(terminal: Terminal, found: Balancing) -> None:
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import table_of
 
