@@ -12,17 +12,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.analysis.orders.order_tracking import OrderTrack, order_track
+from frbcli.analysis.orders.order_tracking import FEWEST as LEAST_REVOLUTIONS
+from frbcli.analysis.orders.order_tracking import REVOLUTIONS, OrderTrack, order_track
 from frbcli.analysis.orders.revolutions import STEPS
 from frbcli.analysis.orders.tacho import MARK
-from frbcli.analysis.signals import RunLike, joined, points
+from frbcli.analysis.signals import RunLike, SignalOf, course, joined, points
 from frbcli.arrays import Array, Complex
 from frbcli.errors import input_error
+from frbcli.results.records import TIME
 
 OF_SHAFT = ("journal", "disk")  # kinds of points
 SAME, NEAR = 2e-3, 1e-2  # relative: speeds that are one, and that may stand for each other
 HELD = 2.0  # windows: a speed that is held longer has settled in the second half of that time
 DWELLS = 0.25  # share of a run that holds one speed
+WINDOWS = 0.5  # share of a short run that a window has
 FEWEST = 4  # windows of which a scatter is known
 SPEEDS, FROM, TO = 8, 0.4, 0.95  # of a ramp: number, and share of its highest speed
 
@@ -50,7 +53,8 @@ def synchronous_vectors(
 
     Raises InputError for a point that the run does not have, a speed that it does not reach, and a rotor that turns the
     other way round."""
-    tracks = [order_track(run, 1.0, name) for name in names]
+    revolutions = _window(run)
+    tracks = [order_track(run, 1.0, name, revolutions) for name in names]
     if not float(tracks[0].speed_Hz.max()) > 0.0:
         raise input_error("balance", "speed", "", "is not above 0: the rotor turns the other way round.", "")
     speeds = _usual_speeds(tracks[0]) if speeds_Hz is None else sorted(set(speeds_Hz))
@@ -59,6 +63,13 @@ def synchronous_vectors(
     values = np.array([[value for value, _ in row] for row in found])
     scatter = np.array([[scatter for _, scatter in row] for row in found])
     return SynchronousVectors(np.array(speeds), tuple(names), turned * values, scatter)
+
+
+def _window(run: RunLike) -> int:
+    """Revolutions of the windows: fewer than usual in a run that makes few."""
+    time, speed = course(SignalOf(run, TIME), SignalOf(run, "speed_Hz"))
+    turned = float(np.sum(0.5 * np.abs(speed[1:] + speed[:-1]) * np.diff(time)))
+    return max(LEAST_REVOLUTIONS, min(REVOLUTIONS, int(WINDOWS * turned)))
 
 
 def _usual_speeds(track: OrderTrack) -> list[float]:

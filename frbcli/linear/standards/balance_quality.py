@@ -28,6 +28,7 @@ from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, table_of
 from frbcli.errors import input_error
 from frbcli.html import Tabular
+from frbcli.scene.gate.gate import require
 from frbcli.scene.shafts.shaft import Shaft
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.units import SPEED, ValueFault, quantity
@@ -154,7 +155,7 @@ def balance_quality(case: Case, grade: str | float, speed_Hz: float | None = Non
     Raises
     ------
     InputError
-        If there is no such grade, or the rotor does not turn.
+        If the case cannot be modelled, there is no such grade, or the rotor does not turn.
 
     Examples
     --------
@@ -163,6 +164,7 @@ def balance_quality(case: Case, grade: str | float, speed_Hz: float | None = Non
     >>> found.within, round(1e6 * found.permissible, 2)  # in g mm
     (True, 8.09)
     """
+    require(case)
     try:
         grade_mm_s = read_grade(grade)
         speed = max(map(abs, (case.speed.start, case.speed.end))) if speed_Hz is None else quantity(speed_Hz, SPEED)
