@@ -14,6 +14,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.orders.order_tracking import order_track as order_track
     from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.balancing.balance import TrialRun as TrialRun
+    from frbcli.balancing.balance import balance as balance
     from frbcli.case.films.additions import add_bearing as add_bearing
     from frbcli.case.films.additions import add_law as add_law
     from frbcli.case.films.additions import remove_bearing as remove_bearing
@@ -39,6 +41,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
     from frbcli.linear.stability import stability as stability
+    from frbcli.linear.standards.balance_quality import balance_quality as balance_quality
+    from frbcli.linear.standards.vibration import vibration_limits as vibration_limits
     from frbcli.linear.thrust.sheet import thrust_sheet as thrust_sheet
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
     from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
@@ -79,10 +83,13 @@ _PUBLIC = {  # module, or module:attribute of another name
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "Measurement": "frbcli.analysis.measured",
+    "TrialRun": "frbcli.balancing.balance",
     "accuracy": "frbcli.studies.accuracy",
     "add_bearing": "frbcli.case.films.additions",
     "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
+    "balance": "frbcli.balancing.balance",
+    "balance_quality": "frbcli.linear.standards.balance_quality",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",
@@ -122,6 +129,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
     "thrust_sheet": "frbcli.linear.thrust.sheet",
+    "vibration_limits": "frbcli.linear.standards.vibration",
     "warm_up": "frbcli.studies.kernels.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ import numpy as np
 
 from frbcli.analysis.events import Event, find_events
 from frbcli.analysis.orders.forced import ForcedLine, constant_lines, forced_lines, forced_references
-from frbcli.analysis.orders.tacho import tacho_speed
+from frbcli.analysis.orders.tacho import MARK, tacho_speed
 from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
 from frbcli.arrays import Array
@@ -122,7 +123,7 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         raise wrong_file(
             path, f"cannot refer to a clearance of {given.clearance:g} m.", 'Give e.g. --clearance "35 um".'
         )
-    signals, remarks = _signals(columns, given)
+    signals, remarks, references = _signals(columns, given)
     run = Run(
         path=path,
         title=f"{path.stem}, {MEASURED}",
@@ -136,7 +137,7 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         events=[],
         cost={},
         error={},
-        references={} if given.clearance is None else {"clearance_m": given.clearance},
+        references=references | ({} if given.clearance is None else {"clearance_m": given.clearance}),
         checkpoint=None,
         remarks=remarks,
     )
@@ -146,6 +147,20 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         events = [*(_forced(run, line) for line in lines), *find_events(run)]
         run.events.extend(asdict(event) for event in events)
     return run
+
+
+def measured_probes(path: str | Path, given: Measurement, probes: Sequence[tuple[str, str | None]]) -> Run:
+    """Read several probes of one file as a run, the first of them named "journal", or each by its column of x,
+    "journal_NAME", where there are several. probes: columns of x and y, y None where it was not measured; given: what
+    else holds for all of them. Raises InputError as measured_run does; no events are sought."""
+    runs = [measured_run(path, replace(given, x=x, y=y, clearance=None)) for x, y in probes]
+    if len(runs) == 1:
+        return runs[0]
+    signals = {name: signal for name, signal in runs[0].signals.items() if not name.startswith("journal")}
+    for (x, _), run in zip(probes, runs, strict=True):
+        signals |= {f"journal_{x}_{axis}_m": run.signal(f"journal_{axis}_m") for axis in "xy"}
+    remarks = dict.fromkeys(remark for run in runs for remark in run.remarks)
+    return replace(runs[0], signals=signals, remarks=tuple(remarks))
 
 
 def _forced(run: Run, line: ForcedLine) -> Event:
@@ -170,22 +185,22 @@ def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
     return [asdict(replace(event, point=seen)) for event in find_events(alone)]
 
 
-def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], tuple[str, ...]]:
-    """(the signals of a run at even steps, what is to be said of them)."""
+def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], tuple[str, ...], dict[str, float]]:
+    """(the signals of a run at even steps, what is to be said of them, its references)."""
     units = _Units(columns)
     x = units.column(given.x, given.unit_m, "m", "--unit")
     y = np.zeros_like(x) if given.y is None else units.column(given.y, given.unit_m, "m", "--unit")
     time = _times(units, given, len(x))
     if len({len(x), len(y), len(time)}) > 1:
         raise wrong_file(columns.path, "has columns of unequal length.", "Give columns that were measured together.")
-    speed, tacho = _speeds(units, given, time)
+    speed, tacho, references = _speeds(units, given, time)
     _check_sampling(columns, given, time, speed)
     values = even_steps(time, {"speed_Hz": speed, "journal_x_m": x - x.mean(), "journal_y_m": y - y.mean()})
     signals = {name: Signal(values[name], {"time_s": "s", "speed_Hz": "Hz"}.get(name, "m")) for name in values}
     wrong = wrong_values(signals)
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
-    return signals, (units.sentence(), *([tacho] if tacho else []))
+    return signals, (units.sentence(), *([tacho] if tacho else [])), references
 
 
 class _Units:
@@ -277,17 +292,17 @@ def _number(columns: Columns, name: str) -> float:
     raise wrong_file(columns.path, f'has no single number "{name}".', remedy)
 
 
-def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str]:
-    """(the rotor speed (n,) in Hz at the times (n,) in s, what is to be said of its pulses)."""
+def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str, dict[str, float]]:
+    """(the rotor speed (n,) in Hz at the times (n,) in s, what is to be said of its pulses, references to them)."""
     columns = units.columns
     if given.speed is not None:
         speed = units.column(given.speed, given.speed_unit_Hz, SPEED, "--speed-unit", gaps=True)
         own = columns.own_times.get(columns.named(given.speed))
         if given.speed_time is not None:
             own = units.column(given.speed_time, given.time_unit_s, "s", "--time-unit", gaps=True)
-        return sampled_at(time, columns, given.speed, time if own is None else own, speed), ""
+        return sampled_at(time, columns, given.speed, time if own is None else own, speed), "", {}
     if given.speed_Hz is not None:
-        return np.full(len(time), given.speed_Hz), ""
+        return np.full(len(time), given.speed_Hz), "", {}
     if given.tacho is None:
         remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
         raise wrong_file(columns.path, "does not tell the rotor speed.", remedy)
@@ -298,7 +313,7 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str]
         found = tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
-    return found.speed_Hz, found.remark(given.tacho)
+    return found.speed_Hz, found.remark(given.tacho), {} if found.mark is None else {MARK: found.mark}
 
 
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:

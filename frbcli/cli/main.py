@@ -93,6 +93,11 @@ COMMANDS = {
         "Linear unbalance response over speed; map of critical speeds.",
         "frb response jeffcott --csv response.csv",
     ),
+    "balance": (
+        "frbcli.cli.studies.balance",
+        "Correction masses from a run, by influence coefficients.",
+        "frb balance run.h5 --planes disk",
+    ),
     "limit-cycles": (
         "frbcli.cli.machines.limit_cycles",
         "Hopf points, limit cycles and folds over speed, stable or not.",
@@ -137,7 +142,7 @@ GROUPS = {
     "Run": ("runup", "rundown", "warm-up"),
     "Look at a run": ("waterfall", "plot", "report"),
     "Study a machine": (
-        "bearing", "thrust", "stability", "response", "limit-cycles", "sweep", "compare", "accuracy",
+        "bearing", "thrust", "stability", "response", "balance", "limit-cycles", "sweep", "compare", "accuracy",
     ),
     "Test a bearing": ("rotation", "squeeze", "whirl"),
     "Exchange data": ("fit", "export"),

@@ -79,6 +79,21 @@ class SupportOption(QuantityOption):
         return value if value in ("free", "bearings") else super().convert(value, param, ctx)
 
 
+class GradeOption(click.ParamType[float]):
+    """A balance quality grade, in mm/s."""
+
+    name = "grade"
+
+    def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
+        """Its number. Fails the option for anything else."""
+        from frbcli.linear.standards.balance_quality import read_grade
+
+        try:
+            return read_grade(str(value))
+        except ValueError as fault:
+            self.fail(f"{value!r} {fault}", param, ctx)
+
+
 OPERATING_OPTION = RangeOption("range", "Hz", "8000..12000 rpm")
 SPEED_OPTION = QuantityOption("speed", "Hz", "25 Hz")
 REST_OPTION = QuantityOption("speed", "Hz", "25 Hz", positive=False)

@@ -209,7 +209,8 @@ def response(
         Load that excites alone, such as "force 2" for the second force of the case; by default the unbalance with all
         loads of order 1.
     operating_Hz : tuple of float, optional
-        Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin.
+        Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin. Both are
+        among the default speeds where these reach so far.
 
     Returns
     -------
@@ -232,7 +233,7 @@ def response(
     """
     faults = [*_excitation_faults(case, excitation), *_operating_faults(operating_Hz)]
     require(case, RANGE if speeds_Hz is None else FILMS, faults)
-    asked = default_speeds(case, SPEEDS) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
+    asked = _default_speeds(case, operating_Hz) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     check_machine(case, asked)
     machines, frequency = StaticMachines(case, memory=True), partial(_frequency, case, excitation)
     system, points = stability_points(case, asked, observe, frequency, machines)
@@ -248,6 +249,14 @@ def response(
     if speeds_Hz is None:
         resting = known
     return _response(case, system, resting, critical, excitation)
+
+
+def _default_speeds(case: Case, operating_Hz: tuple[float, float] | None) -> tuple[float, ...]:
+    """Those of the range of the case, with the ends of the range of operation that lie in it."""
+    swept = default_speeds(case, SPEEDS)
+    if not swept or operating_Hz is None:
+        return swept
+    return tuple(sorted({*swept, *(end for end in operating_Hz if swept[0] < end < swept[-1])}))
 
 
 def _response(

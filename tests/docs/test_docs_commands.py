@@ -20,6 +20,7 @@ import frbcli
 from frbcli.case.schema import Case
 from frbcli.cli.main import COMMANDS, frb
 from frbcli.errors import InputError
+from frbcli.results.store import Run
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 OWN_TEST = ("command-line.md",)  # its lines are run by test_command_line.py
@@ -82,6 +83,15 @@ def words_of(line: str) -> list[str]:
     return [known.get(word, word) for word in words[: min(ends, default=len(words))]]
 
 
+def write_measurement(run: Run, file: Path) -> None:
+    table = run.to_pandas()[["time_s", "speed_Hz", "journal_x_m", "journal_y_m"]]
+    table[["journal_x_m", "journal_y_m"]] *= 1e6
+    table = table.set_axis(["t", "n", "x", "y"], axis=1)
+    turns = (table.n.cumsum() * (table.t[1] - table.t[0])) % 1.0
+    more = {"t_s": table.t, "x_um": table.x, "y_um": table.y, "key": 5.0 * (turns < 0.2)}
+    table.assign(**more).to_csv(file, index=False)
+
+
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A directory with a case and with the runs that the lines name."""
@@ -94,13 +104,9 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     text = "\n".join(re.findall(r"```toml\n(.*?)```", page, re.DOTALL))
     (folder / "turbo.toml").write_text(text, encoding="utf-8")
     frbcli.runup(case, folder / "run.h5")
-    run = frbcli.runup(frbcli.load_case("jeffcott", [settings[0], "speed.duration=3 s"]), folder / "jeffcott.h5")
-    table = run.to_pandas()[["time_s", "speed_Hz", "journal_x_m", "journal_y_m"]]
-    table[["journal_x_m", "journal_y_m"]] *= 1e6
-    table = table.set_axis(["t", "n", "x", "y"], axis=1)
-    turns = (table.n.cumsum() * (table.t[1] - table.t[0])) % 1.0
-    more = {"t_s": table.t, "x_um": table.x, "y_um": table.y, "key": 5.0 * (turns < 0.2)}
-    table.assign(**more).to_csv(folder / "measured.csv", index=False)
+    for name, file, unbalance in (("jeffcott", "measured", "3 g*mm"), ("trial", "trial", "5 g*mm")):
+        longer = frbcli.load_case("jeffcott", [settings[0], "speed.duration=3 s", f"rotor.unbalance={unbalance}"])
+        write_measurement(frbcli.runup(longer, folder / f"{name}.h5"), folder / f"{file}.csv")
     rings = frbcli.load_case_text(text, ["speed.duration=20 ms", "speed.to=100 Hz"], name="turbo")
     ringed = frbcli.runup(rings, folder / "turbo.h5").path
     shutil.copy(ringed, folder / "ring.h5")

@@ -59,6 +59,7 @@ CALLS: dict[str, list[str]] = {
     "bearing": ["bearing", CASE, "--speed", "50 Hz", "--set", "accuracy.mesh=[4, 16]"],
     "thrust": ["thrust", "thrust", "--gap", "12 um", "--speed", "900 Hz"],
     "fit": ["fit", CASE, *SHORT, "--measured", RUN, "--vary", "rotor.unbalance"],
+    "balance": ["balance", RUN, "--planes", "disk"],
     "stability": ["stability", CASE, *SHORT, "--speed", "30 Hz"],
     "response": ["response", CASE, *SHORT, "--speed", "30 Hz", "--run", RUN],
     "limit-cycles": ["limit-cycles", CASE, *SHORT, "--set", "speed.to=100 Hz", "--runs", RUN],

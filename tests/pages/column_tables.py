@@ -11,6 +11,7 @@ from pathlib import Path
 
 from paths import DOCS
 
+from frbcli.balancing.balance import PLANES, POINTS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
 from frbcli.cli.casefiles.hard import HARD_CASE
 from frbcli.columns import Column, Columns
@@ -43,6 +44,8 @@ from frbcli.linear.columns import (
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
+from frbcli.linear.standards.balance_quality import COLUMNS as BALANCE_QUALITY
+from frbcli.linear.standards.vibration import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.linear.thrust.columns import AXIAL, THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS
@@ -93,6 +96,12 @@ TABLES: dict[str, Columns] = {
     "reduction": of_json(REDUCTION),
     "forces": of_json(RESPONSE_FORCES),
     "peaks of the response": of_json(PEAKS),
+    "vibration": of_json(API_POINTS),
+    "zones": of_json(ISO_POINTS),
+    "separation margins": of_json(MARGINS),
+    "balance quality": BALANCE_QUALITY,
+    "corrections": PLANES,
+    "corrected points": of_json(POINTS),
     "films of the response": of_json(RESPONSE_FILMS),
     "coefficients of the response": of_json(RESPONSE_COEFFICIENTS),
     "critical speeds": of_pandas(CRITICAL_SPEEDS),

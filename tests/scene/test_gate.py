@@ -38,6 +38,7 @@ Faulty = tuple[str, tuple[str, ...], str]
 
 FUNCTIONS: dict[str, tuple[Any, ...]] = {
     "accuracy": (),
+    "balance_quality": ("G2.5",),
     "bearing_sheet": ([20.0], 30.0),
     "compare": (),
     "critical_map": (),
@@ -66,7 +67,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "plot": ("--what", "law"),
     "sweep": ("--set", "speed.to=200 Hz,210 Hz"),
 }  # fmt: skip
-NO_CASE = {"waterfall", "report", "export", "schema"}  # of runs and measurements
+NO_CASE = {"balance", "waterfall", "report", "export", "schema"}  # of runs and measurements
 THRUST = {"thrust", "thrust_sheet"}  # of thrust bearings, which have no film of these cases
 TEXTS = {"cases"}  # copies texts, computes nothing
 

@@ -23,15 +23,20 @@ DOUBLE = 0.75  # times them, at most: an interval at both sides of a pulse that 
 SUM = (0.75, 1.3)  # times them: the two intervals around a pulse that is none, together
 FEW = 0.1  # share of pulses that may be missing or double; more of them are the pattern of a wheel
 MOST_MISSING = 20  # pulses between two
+MARK = "mark_rev"  # reference of a run: the angle in revolutions, integrated from its first sample, at the pulses
+MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
 
 
 @dataclass(frozen=True)
 class Tacho:
-    """speed_Hz: (n,) at the times of the samples; missing, double: how many pulses were added and left out."""
+    """speed_Hz: (n,) at the times of the samples; missing, double: how many pulses were added and left out; mark: the
+    angle in revolutions, from the first sample on, at which the rotor is at a pulse; None where it is not the same at
+    all of them, or there are several in a revolution."""
 
     speed_Hz: Array
     missing: int
     double: int
+    mark: float | None = None
 
     def remark(self, name: str) -> str:
         """What a reader has to know of the pulses in a column; nothing if all were regular."""
@@ -57,8 +62,16 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
     share = (level - signal[rises]) / (signal[rises + 1] - signal[rises])
     moments = time[rises] + share * (time[rises + 1] - time[rises])
     moments, missing, double = _regular(moments)
-    speed = np.interp(time, *_mean_speeds(moments, pulses))
-    return Tacho(np.asarray(speed, dtype=np.float64), missing, double)
+    speed = np.asarray(np.interp(time, *_mean_speeds(moments, pulses)), dtype=np.float64)
+    return Tacho(speed, missing, double, _mark(time, speed, moments) if pulses == 1 else None)
+
+
+def _mark(time: Array, speed: Array, moments: Array) -> float | None:
+    """See Tacho."""
+    angle = np.append(0.0, np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time)))
+    mean = complex(np.exp(2j * np.pi * np.interp(moments, time, angle)).mean())
+    spread = np.sqrt(-2.0 * np.log(min(abs(mean), 1.0))) / (2.0 * np.pi) if mean else np.inf
+    return float(np.angle(mean) / (2.0 * np.pi)) if spread < MOST_SPREAD else None
 
 
 def _mean_speeds(moments: Array, pulses: int) -> tuple[Array, Array]:

@@ -12,7 +12,8 @@ from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
 from frbcli.cli.machines.stability_table import reduction_document, tell_coefficient_error, tell_reduction
-from frbcli.cli.options import OPERATING_OPTION, speeds_option
+from frbcli.cli.machines.standards import grade_document, limits_document, tell_grade, tell_limits
+from frbcli.cli.options import OPERATING_OPTION, GradeOption, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
 from frbcli.errors import Fault, InputError
@@ -46,7 +47,9 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
               help='The one load that excites the rotor, e.g. "force 2". '
                    "[the unbalance and all loads of order 1]")  # fmt: skip
 @click.option("--operating", type=OPERATING_OPTION, metavar="RANGE",
-              help='Speeds of operation, which critical speeds keep off, e.g. "8000..12000 rpm".')  # fmt: skip
+              help='Speeds of operation, whose vibration is judged, e.g. "8000..12000 rpm".')  # fmt: skip
+@click.option("--grade", type=GradeOption(), metavar="GRADE",
+              help="Balance quality grade of ISO 21940-11 to compare the unbalance with, e.g. G6.3.")  # fmt: skip
 @outputs_options("CASE-response.png, here")
 @output_options
 def command(
@@ -56,6 +59,7 @@ def command(
     as_map: bool,
     excitation: str,
     operating: tuple[float, float] | None,
+    grade: float | None,
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
@@ -67,6 +71,8 @@ def command(
     from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.modes import own_reduction
     from frbcli.linear.response import response
+    from frbcli.linear.standards.balance_quality import balance_quality
+    from frbcli.linear.standards.vibration import vibration_limits
     from frbcli.results.store import read_run
 
     if excitation != "unbalance" and run_file is not None:
@@ -78,6 +84,12 @@ def command(
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     reduced = own_reduction(case, found.resting)
     _tell(terminal, found, reduced, bool(speeds))
+    limits = None if operating is None else vibration_limits(found, operating)
+    quality = None if grade is None else balance_quality(case, grade, operating[1] if operating else None)
+    if limits is not None:
+        tell_limits(terminal, limits)
+    if quality is not None:
+        tell_grade(terminal, quality)
     films = ((point, film) for point in found.resting for film in point.films)
     terminal.emit(
         {
@@ -91,6 +103,8 @@ def command(
             "reduction": reduction_document(reduced),
             "critical_speeds_Hz": found.critical_speeds_Hz,
             "critical_speeds": documents(PEAKS, found.critical_speeds),
+            **({} if limits is None else {"limits": limits_document(limits)}),
+            **({} if quality is None else {"grade": grade_document(quality)}),
             "error": {"critical_speeds_Hz": [peak.speed_uncertainty_Hz for peak in found.critical_speeds]},
             **places.write(terminal, found, picture=lambda: _figure(found, tracks, as_map)),
         }

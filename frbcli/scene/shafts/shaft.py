@@ -32,6 +32,17 @@ class Stations:
 
 
 @dataclass(frozen=True)
+class BalancingPlane:
+    """A place of a shaft that has an unbalance and where masses can be added. node: of its machine; position: along
+    the shaft in m, None where a case gives none; unbalance: in kg m, with its angle on the rotor."""
+
+    name: str
+    node: str
+    position: float | None
+    unbalance: complex
+
+
+@dataclass(frozen=True)
 class Shaft(ABC):
     """The shaft of a case with its disks."""
 
@@ -87,6 +98,16 @@ class Shaft(ABC):
     @abstractmethod
     def eccentricity(self) -> float:
         """Distance of the centre of mass from the axis by the unbalance, that of all disks in phase, m."""
+
+    @property
+    @abstractmethod
+    def planes(self) -> tuple[BalancingPlane, ...]:
+        """Its planes for balancing, with their unbalances."""
+
+    @property
+    def centre_of_mass(self) -> float | None:
+        """Along the shaft in m, None where its bearings have no positions."""
+        return None
 
     @property
     def disk_mass(self) -> float:

@@ -11,7 +11,7 @@ import numpy as np
 from frbcli.case.rotor import JeffcottRotor, RigidRotor
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
-from frbcli.scene.shafts.shaft import STANDS, TURNS, Shaft, Stations, symmetric_stations
+from frbcli.scene.shafts.shaft import STANDS, TURNS, BalancingPlane, Shaft, Stations, symmetric_stations
 
 BENT = 21  # places along a shaft that bends
 
@@ -40,6 +40,10 @@ class RigidShaft(Shaft):
     @property
     def eccentricity(self) -> float:
         return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def planes(self) -> tuple[BalancingPlane, ...]:
+        return (BalancingPlane("journal", "journal", None, complex(self.rotor.unbalance)),)
 
     @property
     def dampings(self) -> tuple[tuple[str, float, str, str], ...]:
@@ -79,6 +83,10 @@ class JeffcottShaft(Shaft):
     @property
     def eccentricity(self) -> float:
         return self.rotor.unbalance / self.rotor.mass
+
+    @property
+    def planes(self) -> tuple[BalancingPlane, ...]:
+        return (BalancingPlane("disk", "disk", None, complex(self.rotor.unbalance)),)
 
     @property
     def dampings(self) -> tuple[tuple[str, float, str, str], ...]:

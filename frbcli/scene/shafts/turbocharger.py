@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -32,7 +33,7 @@ from frbcli.rotor.reduction import (
     with_static_modes,
 )
 from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
-from frbcli.scene.shafts.shaft import STANDS, TURNS, Shaft, Stations
+from frbcli.scene.shafts.shaft import STANDS, TURNS, BalancingPlane, Shaft, Stations
 
 USUAL = 4  # free modes of a reduction that is made for its target
 FREQUENCIES = 3  # bending modes that are shown
@@ -197,10 +198,31 @@ class TurbochargerShaft(Shaft):
         return tuple(Wheel(**{**dict(disk), "name": disk.name or str(number)}) for number, disk in named)
 
     @property
-    def mass(self) -> float:
+    def _section_masses(self) -> list[float]:
+        """Of the sections, kg."""
         areas = (0.25 * math.pi * (part.diameter**2 - part.inner_diameter**2) for part in self.case.shaft)
-        shaft = sum(area * part.length * part.density for area, part in zip(areas, self.case.shaft, strict=True))
-        return shaft + sum(disk.mass for disk in self.case.disks)
+        return [area * part.length * part.density for area, part in zip(areas, self.case.shaft, strict=True)]
+
+    @property
+    def mass(self) -> float:
+        return sum(self._section_masses) + sum(disk.mass for disk in self.case.disks)
+
+    @property
+    def centre_of_mass(self) -> float:
+        moment, end = sum(disk.mass * disk.position for disk in self.case.disks), 0.0
+        for mass, part in zip(self._section_masses, self.case.shaft, strict=True):
+            moment += mass * (end + 0.5 * part.length)
+            end += part.length
+        return moment / self.mass
+
+    @property
+    def planes(self) -> tuple[BalancingPlane, ...]:
+        return tuple(
+            BalancingPlane(
+                wheel.name, f"disk_{wheel.name}", wheel.position, cmath.rect(wheel.unbalance, wheel.phase)
+            )
+            for wheel in self._wheels
+        )  # fmt: skip
 
     @property
     def eccentricity(self) -> float:

@@ -1,0 +1,1 @@
+"""Balancing by influence coefficients: correction masses from the synchronous motion of a run."""
