@@ -133,12 +133,13 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
 
 
 def _bent(rotor: LinearRotor, omega: float) -> tuple[Array, Array]:
-    """(n,) m and m/s: the shape by the bow of a rotor at angle 0 with its journals held, and its rate at omega rad/s.
-    Raises NotConverged as held_rotor."""
+    """(n,) m and m/s: the shape by the bow of a rotor at angle 0 with its journals held, and its rate at omega rad/s,
+    at which the damping that turns with the shaft pulls at it as little as at rest. Raises NotConverged as
+    held_rotor."""
     if not rotor.bent.any():
         return np.zeros(rotor.size), np.zeros(rotor.size)
     in_plane = replace(rotor, journals=rotor.journals[:, : len(PLANE)])
-    now, rate = (held_rotor(replace(in_plane, static_load=load), omega) for load in (rotor.bent.real, -rotor.bent.imag))
+    now, rate = (held_rotor(replace(in_plane, static_load=load)) for load in (rotor.bent.real, -rotor.bent.imag))
     return now.shape, omega * rate.shape
 
 
