@@ -141,9 +141,12 @@ def test_a_bow_between_several_places_is_the_static_deflection_under_loads_there
     shape, places = held_rotor(loaded).shape, dict(loaded.points)
     given = [("nut", 0.0), ("compressor", 25.0), ("turbine", 224.0)]
     sags = {name: float((places[f"disk_{name}"] @ shape)[0]) for name, _ in given}
-    bows = [{"position": f"{place} mm", "offset": f"{abs(sags[name])!r} m", "phase": f"{180 if sags[name] < 0 else 0} deg"}
+    phases = {name: "180 deg" if sag < 0.0 else "0 deg" for name, sag in sags.items()}
+    bows = [{"position": f"{place} mm", "offset": f"{abs(sags[name])!r} m", "phase": phases[name]}
             for name, place in given]  # fmt: skip
-    disks = [one | {"unbalance": 0} for one in HEAVY["disk"]] + [{"name": "between", "position": "130 mm", "mass": "1 g"}]
+    disks = [one | {"unbalance": 0} for one in HEAVY["disk"]] + [
+        {"name": "between", "position": "130 mm", "mass": "1 g"}
+    ]
     bent = case_from_dict({**HEAVY, "rotor": rotor, "bow": bows, "disk": disks}, "bent")
     found = response(bent, [SLOW_Hz])
     for name in sags:
@@ -169,7 +172,9 @@ def test_a_reduced_shaft_has_its_bow_exactly() -> None:
 
 
 def test_a_bent_rotor_in_films_runs_as_its_linear_response(tmp_path: Path) -> None:
-    case = load_case("jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm", "rotor.bow=0.2 um", "rotor.bow_phase=1"])
+    case = load_case(
+        "jeffcott", ["film.theory=short", "rotor.unbalance=0 g*mm", "rotor.bow=0.2 um", "rotor.bow_phase=1"]
+    )
     run = run_at(case, 50.0, tmp_path / "run.h5", "speed.duration=1 s", "start.position=resting")
     found, late = response(case, [50.0]), run["time_s"] >= 0.8 - 1e-9
     turn = np.exp(-1j * TURN * 50.0 * run["time_s"][late][:-1])

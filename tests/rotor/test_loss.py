@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cmath
 import math
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -49,8 +50,8 @@ def disk(run: frbcli.Run, name: str = "disk") -> Complex:
 
 
 def test_a_jeffcott_rotor_goes_on_as_the_closed_form(tmp_path: Path) -> None:
-    """W'' + 2 zeta w W' + w^2 W = i u Omega^2 e^(i Omega t) / m in rigid bearings, by its free vibrations and its steady
-    state before and after the loss, which place and velocity at the loss join."""
+    """W'' + 2 zeta w W' + w^2 W = i u Omega^2 e^(i Omega t) / m in rigid bearings, by its free vibrations and its
+    steady state before and after the loss, which place and velocity at the loss join."""
     omega = TURN * 100.0
     run = frbcli.runup(jeffcott(100.0, 100.0), tmp_path / "run.h5")
     times, roots = run["time_s"], np.roots([M, D, C])
@@ -130,7 +131,7 @@ def test_two_disks_of_a_shaft_lose_blades_one_after_the_other(tmp_path: Path) ->
     times, begins = run["time_s"], (0.0, 0.02, 0.035, 0.06)
     state, place = np.zeros(2 * make_rotor(case).size), dict(make_rotor(case).points)["disk_turbine"]
     expected = np.zeros((len(times), len(state)))
-    for begin, end in zip(begins, begins[1:], strict=False):
+    for begin, end in pairwise(begins):
         rotor, span = make_rotor(case_at(case, begin)), (times >= begin) & (times <= end + 1e-12)
         expected[span] = exact(rotor, omega, times[span], begin, state)
         state = exact(rotor, omega, np.array([end]), begin, state)[0]
@@ -190,3 +191,17 @@ def test_a_run_that_goes_on_from_a_checkpoint_is_the_same_run() -> None:
         while status == RUNNING:
             status, _ = other.chunk()
         np.testing.assert_array_equal(other.snapshot()["q"], first.snapshot()["q"])
+
+
+def test_the_shipped_turbine_comes_to_a_larger_orbit(tmp_path: Path) -> None:
+    """Of the size that its linear response has, though a journal moves over much of its gap."""
+    case = load_case("blade-loss")
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    time, expected = run["time_s"], []
+    sizes = [0.5 * np.ptp(run["disk_turbine_x_m"][span]) for span in (time < 0.2, time > 0.38)]
+    for after_loss in (False, True):
+        found = response(case, [100.0], after_loss=after_loss)
+        expected.append(np.abs(found.motion[0, found.points.index("disk_turbine"), 0]))
+    assert [event["kind"] for event in run.events] == ["loss"]
+    assert sizes == pytest.approx(expected, rel=0.15)
+    assert sizes[1] > 15.0 * sizes[0]

@@ -27,9 +27,11 @@ MOST_MISSING = 20  # pulses between two
 
 @dataclass(frozen=True)
 class Tacho:
-    """speed_Hz: (n,) at the times of the samples; missing, double: how many pulses were added and left out."""
+    """speed_Hz, angle: (n,) at the times of the samples, the latter in rad, 0 at the first pulse; missing, double: how
+    many pulses were added and left out."""
 
     speed_Hz: Array
+    angle: Array
     missing: int
     double: int
 
@@ -48,7 +50,8 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
 
     A pulse begins where the signal rises through its middle level, interpolated between samples, after it was below by
     more than a hysteresis that follows from its range and its noise. The speed is that over REVOLUTIONS about a pulse,
-    fewer at the ends, as a rectangular pulse is known to a sample only. Raises ValueError if there are too few pulses.
+    fewer at the ends, as a rectangular pulse is known to a sample only. The angle is a cubic spline through the pulses.
+    Raises ValueError if there are too few pulses.
     """
     rises = _rises(signal, *_levels(signal))
     if len(rises) < LEAST_PULSES:
@@ -58,7 +61,16 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
     moments = time[rises] + share * (time[rises + 1] - time[rises])
     moments, missing, double = _regular(moments)
     speed = np.interp(time, *_mean_speeds(moments, pulses))
-    return Tacho(np.asarray(speed, dtype=np.float64), missing, double)
+    return Tacho(np.asarray(speed, dtype=np.float64), _angles(time, moments, pulses), missing, double)
+
+
+def _angles(time: Array, moments: Array, pulses: int) -> Array:
+    """(n,) rad at times (n,): a spline through the pulses at moments (m,), a straight line before and behind them."""
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(moments, 2.0 * np.pi / pulses * np.arange(len(moments)))
+    within = np.clip(time, moments[0], moments[-1])
+    return np.asarray(spline(within) + spline(within, 1) * (time - within), dtype=np.float64)
 
 
 def _mean_speeds(moments: Array, pulses: int) -> tuple[Array, Array]:
