@@ -1,5 +1,5 @@
 """Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
-contact, touch and lift-off of rough surfaces, pins and stops; and when a clearance changed.
+contact, touch and lift-off of rough surfaces, pins and stops; and when a clearance changed or a blade was lost.
 
 The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -35,10 +35,11 @@ from frbcli.analysis.signals import RunLike, joined, pieces, points
 from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
 from frbcli.analysis.spectra.spectrum import hann
 from frbcli.arrays import Array, Complex
+from frbcli.results.store import CLEARANCE_STEP, LOSS
 from frbcli.units import HERTZ, SpeedUnit
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
-               "clearance-step", "forced"]  # fmt: skip
+               "clearance-step", "loss", "forced"]  # fmt: skip
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -98,8 +99,8 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         Needs time_s and speed_Hz; per bearing journal_x_m, journal_y_m and, for contact, eccentricity (with several
         bearings journal_NAME_x_m, eccentricity_NAME) and the reference clearance_m, one for all or one per film. Uses
         ring_x_m, ring_speed_Hz and disk_x_m, disk_y_m where there are any, and the references clearance_step_1_s,
-        critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length. Motion with a frequency or
-        order of what forces the run is neither whirl nor resonance.
+        loss_1_s, critical_speed_1_Hz, forced_1_Hz, forced_2_order and so on. It may be of any length. Motion with a
+        frequency or order of what forces the run is neither whirl nor resonance.
 
     Returns
     -------
@@ -152,7 +153,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     for signal in [name for name in run.signals if name.startswith(STOP) and name.endswith(ALONG_X)]:
         stop = joined("stop", signal.removeprefix(STOP).removesuffix(ALONG_X).strip("_"))
         events += _touches(run, signal, None, stop, (PUSHES, PUSHES))
-    changes = _clearance_steps(run)  # before their consequences at the same time
+    changes = _changes(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events, *on_pads], key=lambda event: event.t_s))
 
 
@@ -276,13 +277,16 @@ def _quiet_spans(events: Sequence[Event], end_s: float) -> list[tuple[float, flo
     return [*quiet, (begin, np.inf)] if begin < end_s else quiet
 
 
-def _clearance_steps(run: RunLike) -> Iterator[Event]:
-    """Changes of a clearance between the first and the last sample, as possible causes of later events."""
+def _changes(run: RunLike) -> Iterator[Event]:
+    """Changes of clearances and of the unbalance between the first and the last sample, as possible causes of later
+    events."""
     count = len(run)
     begin, end = (signals.piece(run, "time_s", place, place + 1)[0] for place in (0, count - 1))
-    for t in signals.clearance_steps(run):
-        if begin <= t <= end:
-            yield Event("clearance-step", None, t, signals.speed_at(run, t), None, None)
+    kinds: tuple[tuple[Kind, str], ...] = (("clearance-step", CLEARANCE_STEP), ("loss", LOSS))
+    for kind, change in kinds:
+        for t in signals.times_of(run, change):
+            if begin <= t <= end:
+                yield Event(kind, None, t, signals.speed_at(run, t), None, None)
 
 
 def _whirls_of_any_frequency(

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import cmath
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -12,7 +13,8 @@ import numpy as np
 
 from frbcli.analysis.events import Event, find_events
 from frbcli.analysis.orders.forced import ForcedLine, constant_lines, forced_lines, forced_references
-from frbcli.analysis.orders.tacho import MARK, tacho_speed
+from frbcli.analysis.orders.slow_roll import slow_roll
+from frbcli.analysis.orders.tacho import MARK, Tacho, tacho_speed
 from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
 from frbcli.arrays import Array
@@ -64,6 +66,9 @@ class Measurement:
         the name of the column, or else 1 um, 1 s and 1 Hz. `Run.remarks` states the units that were used.
     speed_time : str, optional
         Column of the times of `speed`, where it was sampled at others than the displacements.
+    slow_roll_Hz : float, optional
+        A slow speed in Hz that the measurement has, whose motion with the angle of the rotor is subtracted from the
+        displacements at all speeds; needs `tacho`.
 
     Examples
     --------
@@ -86,6 +91,7 @@ class Measurement:
     time_unit_s: float | None = None
     speed_unit_Hz: float | None = None
     speed_time: str | None = None
+    slow_roll_Hz: float | None = None
 
 
 def measured_run(path: str | Path, given: Measurement) -> Run:
@@ -103,7 +109,7 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
     Run
         The signals time_s, speed_Hz, journal_x_m, journal_y_m, in SI, x and y less their means: the zero of a sensor is
         not the centre of a bearing. Without a column for y that is zero, and no events are sought. `remarks` state the
-        units, and pulses that were missing or double.
+        units, pulses that were missing or double, and the slow roll.
 
     Raises
     ------
@@ -193,14 +199,41 @@ def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], t
     time = _times(units, given, len(x))
     if len({len(x), len(y), len(time)}) > 1:
         raise wrong_file(columns.path, "has columns of unequal length.", "Give columns that were measured together.")
-    speed, tacho, references = _speeds(units, given, time)
+    speed, tacho = _speeds(units, given, time)
     _check_sampling(columns, given, time, speed)
+    seen = {"x": x} if given.y is None else {"x": x, "y": y}
+    seen, rolled = _without_slow_roll(columns, given, tacho, seen)
+    x, y = seen["x"], seen.get("y", y)
+    pulses = "" if tacho is None else tacho.remark(given.tacho or "")
     values = even_steps(time, {"speed_Hz": speed, "journal_x_m": x - x.mean(), "journal_y_m": y - y.mean()})
     signals = {name: Signal(values[name], {"time_s": "s", "speed_Hz": "Hz"}.get(name, "m")) for name in values}
     wrong = wrong_values(signals)
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
-    return signals, (units.sentence(), *([tacho] if tacho else [])), references
+    references = {} if tacho is None or tacho.mark is None else {MARK: tacho.mark}
+    return signals, tuple(filter(None, (units.sentence(), pulses, rolled))), references
+
+
+def _without_slow_roll(
+    columns: Columns, given: Measurement, tacho: Tacho | None, seen: Mapping[str, Array]
+) -> tuple[dict[str, Array], str]:
+    """(displacements (n,) in m without their slow roll, if that is asked for, what is to be said of it)."""
+    if given.slow_roll_Hz is None:
+        return dict(seen), ""
+    if tacho is None:
+        problem = "does not tell the angle of the rotor, which a slow roll turns with."
+        raise wrong_file(columns.path, problem, "Give --tacho COLUMN, or leave --slow-roll out.")
+    left, told, revolutions = dict[str, Array](), list[str](), 0.0
+    for name, signal in seen.items():
+        try:
+            found = slow_roll(signal, tacho.angle, tacho.speed_Hz, given.slow_roll_Hz)
+        except ValueError as error:
+            remedy = "Give --slow-roll a speed that it keeps for a while, well below the critical speeds."
+            raise wrong_file(columns.path, f"has a rotor that {error}", remedy) from None
+        left[name], revolutions = signal - found.at(tacho.angle), found.revolutions
+        told.append(f"{name} {1e6 * abs(found.vector):.4g} um at {math.degrees(cmath.phase(found.vector)):.4g} deg")
+    at = f"{given.slow_roll_Hz:g} Hz over {revolutions:.3g} revolutions"
+    return left, f"Slow roll subtracted, of {at}: {', '.join(told)}."
 
 
 class _Units:
@@ -292,17 +325,17 @@ def _number(columns: Columns, name: str) -> float:
     raise wrong_file(columns.path, f'has no single number "{name}".', remedy)
 
 
-def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str, dict[str, float]]:
-    """(the rotor speed (n,) in Hz at the times (n,) in s, what is to be said of its pulses, references to them)."""
+def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tacho | None]:
+    """(the rotor speed (n,) in Hz at the times (n,) in s, what its pulses tell)."""
     columns = units.columns
     if given.speed is not None:
         speed = units.column(given.speed, given.speed_unit_Hz, SPEED, "--speed-unit", gaps=True)
         own = columns.own_times.get(columns.named(given.speed))
         if given.speed_time is not None:
             own = units.column(given.speed_time, given.time_unit_s, "s", "--time-unit", gaps=True)
-        return sampled_at(time, columns, given.speed, time if own is None else own, speed), "", {}
+        return sampled_at(time, columns, given.speed, time if own is None else own, speed), None
     if given.speed_Hz is not None:
-        return np.full(len(time), given.speed_Hz), "", {}
+        return np.full(len(time), given.speed_Hz), None
     if given.tacho is None:
         remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
         raise wrong_file(columns.path, "does not tell the rotor speed.", remedy)
@@ -313,7 +346,7 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, str,
         found = tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
-    return found.speed_Hz, found.remark(given.tacho), {} if found.mark is None else {MARK: found.mark}
+    return found.speed_Hz, found
 
 
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:

@@ -13,7 +13,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.errors import input_error
 from frbcli.nearest import did_you_mean
 from frbcli.results.records import TIME
-from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS
+from frbcli.results.store import CRITICAL_SPEED, CRITICAL_SPEEDS
 
 KINDS = ("journal", "disk", "ring", "shell", "support", "housing")  # of points
 END = "_x_m"
@@ -208,9 +208,9 @@ def is_forced(name: str, kind: str) -> bool:
     return name.startswith(f"{FORCED}_") and name.endswith(f"_{kind}")
 
 
-def clearance_steps(run: RunLike) -> list[float]:
-    """Times in s at which clearances change, ascending; whether the run has reached them or not."""
-    return sorted(time for name, time in run.references.items() if name.startswith(CLEARANCE_STEP))
+def times_of(run: RunLike, change: str) -> list[float]:
+    """Times in s of sudden changes, CLEARANCE_STEP or LOSS, ascending; whether the run has reached them or not."""
+    return sorted(time for name, time in run.references.items() if name.startswith(f"{change}_"))
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:

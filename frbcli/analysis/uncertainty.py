@@ -41,7 +41,7 @@ FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run h
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
 SMALLER = 100.0  # times: the errors of steps at a tenth of the target, from which a whirl may grow as well
 LONG = 20.0  # revolutions: what comes so early before a contact is a motion beside the shell, not the fall into it
-GIVEN = "clearance-step"  # its time stands in the case
+GIVEN = ("clearance-step", "loss")  # their times stand in the case
 SAME = ("kind", "film", "point")
 CONTACT = "contact"
 OF_WHIRLS = ("onset", "lock-in", "offset")
@@ -161,7 +161,7 @@ def _are_near(event: Record, other: Record, times: float = 1.0) -> bool:
 
 def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[str, Any]:
     """What is added to an event that the second run has, too."""
-    if event["kind"] == GIVEN:
+    if event["kind"] in GIVEN:
         return {"speed_uncertainty_Hz": 0.0, "certain": True}
     step_Hz, line_Hz = resolution(run, event)
     off = {key: safety * _apart(event, other, key) for key, safety in usual.safety.items()}

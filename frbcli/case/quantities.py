@@ -164,6 +164,7 @@ MOST_INERTIA, MOST_UNBALANCE = 1e9, 1e5  # kg m^2, kg m
 
 Length = Annotated[float, Quantity("m", "20 mm", above=0, most=LONGEST)]
 Play = Annotated[float, Quantity("m", "0.1 mm", least=0, most=LONGEST)]
+Offset = Annotated[float, Quantity("m", "10 um", least=0, most=LONGEST)]
 Clearance = Annotated[float, Quantity("m", "35 um", above=0, most=LONGEST)]
 Position = Annotated[float, Quantity("m", "80 mm", least=-LONGEST, most=LONGEST)]
 InnerDiameter = Annotated[float, Quantity("m", "8 mm", least=0, most=LONGEST)]

@@ -6,7 +6,9 @@ A symmetric rotor lies in two equal bearings, of which a case describes one; ano
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal
+import cmath
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -20,6 +22,7 @@ from frbcli.case.quantities import (
     DampingTime,
     Density,
     Fraction,
+    Hold,
     Identifier,
     Inertia,
     InnerDiameter,
@@ -28,14 +31,42 @@ from frbcli.case.quantities import (
     Length,
     Mass,
     Modulus,
+    Offset,
     Position,
     Ratio,
     Speed,
     Stiffness,
     Unbalance,
 )
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
+from frbcli.units import display
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
 
 GRAVITY = 9.81
+
+
+class Loss(Model):
+    """A blade or a weight that is lost: an unbalance that joins the others at a time of a run."""
+
+    time: Hold = Field(description="from the start of the run; at 0 it is there from the beginning")
+    unbalance: Unbalance = Field(description="mass times radius, in addition")
+    phase: Angle = Field(default=0.0, description="its angle on the rotor")
+
+
+def with_loss(unbalance: float, phase: float, loss: Loss | None) -> tuple[float, float]:
+    """Size in kg m and angle on the rotor in rad of an unbalance with what a loss adds to it from the beginning."""
+    if loss is None or loss.time > 0.0:
+        return unbalance, phase
+    return cmath.polar(cmath.rect(unbalance, phase) + cmath.rect(loss.unbalance, loss.phase))
+
+
+def unbalance_sizes(part: RigidRotor | JeffcottRotor | Disk) -> float:
+    """The unbalance of a rotor or a disk and that of its loss, in phase, kg m."""
+    return part.unbalance + (0.0 if part.loss is None else part.loss.unbalance)
 
 
 class RigidRotor(Model):
@@ -46,6 +77,7 @@ class RigidRotor(Model):
     kind: Literal["rigid"] = Field(description="one mass, no tilting (2.3)")
     mass: Mass = Field(description="mass of the whole rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
+    loss: Loss | None = Field(default=None, description="unbalance that joins at a time")
     external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
@@ -60,6 +92,9 @@ class JeffcottRotor(Model):
     journal_mass: JournalMass = Field(description="mass of both journals together")
     shaft_stiffness: Stiffness = Field(description="stiffness between disk and journals")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius, at the disk")
+    loss: Loss | None = Field(default=None, description="unbalance of the disk that joins at a time")
+    bow: Offset = Field(default=0.0, description="of the disk off the line of the journals, without any load")
+    bow_phase: Angle = Field(default=0.0, description="angle of the bow on the rotor; the unbalance is at 0")
     external_damping: Damping = Field(default=0.0, description="damping of the disk against the ground")
     shaft_damping: Damping = Field(default=0.0, description="damping between disk and journals that does not turn")
     internal_damping: Damping = Field(
@@ -109,6 +144,43 @@ class ShaftSection(Model):
     stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")
 
 
+class Bow(MachineTable):
+    """A place of a bent shaft, as it is without any load."""
+
+    position: Position = Field(description="along the shaft, from the start of its first section")
+    offset: Offset = Field(description="off the line through the outermost bearings")
+    phase: Angle = Field(default=0.0, description="its angle on the rotor")
+
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        length = sum(section.length for section in case.shaft)
+        if case.rotor.symmetric:
+            remedy = 'Write rotor.bow = "10 um".' if case.rotor.kind == "jeffcott" else "Remove it: it cannot bend."
+            yield Breach(path, f"does not go with a {case.rotor.kind} rotor.", remedy)
+        elif not 0.0 <= self.position <= length * (1.0 + 1e-9):
+            problem = f"is {display(self.position, 'm')}, not on the shaft of {display(length, 'm')}."
+            yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
+        elif any(other is not self and abs(other.position - self.position) < BESIDE * length for other in case.bows):
+            problem = "is, within a thousandth of the shaft, that of another one, between which no shaft bends so."
+            yield Breach((*path, "position"), problem, "Keep one of the two.")
+        elif self is case.bows[0] and len(bow_places(case)) < LEAST_PLACES:
+            problem = "is at a bearing, and a straight line runs through this and the other outermost bearing."
+            yield Breach((*path, "position"), problem, "Add a [[bow]] at another place.")
+
+
+BESIDE, LEAST_PLACES = 1e-3, 3  # of the shaft's length: places that count as one; a bow has
+
+
+def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
+    """Positions in m of the bow of a shaft, each with its offset in m times exp(i its angle on the rotor): 0 in the
+    outermost bearings where none is given. Empty for a straight shaft."""
+    if not any(bow.offset for bow in case.bows):
+        return ()
+    given = tuple((bow.position, cmath.rect(bow.offset, bow.phase)) for bow in case.bows)
+    held, near = [each.position or 0.0 for each in case.placed_bearings], BESIDE * sum(s.length for s in case.shaft)
+    ends = (end for end in (min(held), max(held)) if all(abs(end - place) >= near for place, _ in given))
+    return *((end, 0j) for end in ends), *given
+
+
 class Disk(Model):
     """A wheel, a nut or a thrust disk on a turbocharger's shaft."""
 
@@ -119,3 +191,4 @@ class Disk(Model):
     diametral_inertia: Inertia = Field(default=0.0, description="about a diameter")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     phase: Angle = Field(default=0.0, description="angle of the unbalance on the rotor")
+    loss: Loss | None = Field(default=None, description="unbalance that joins at a time")

@@ -28,7 +28,7 @@ from frbcli.case.model import Model, altered
 from frbcli.case.oil import Oil
 from frbcli.case.quantities import Label
 from frbcli.case.reading.text import as_text
-from frbcli.case.rotor import Disk, Rotor, ShaftSection
+from frbcli.case.rotor import Bow, Disk, Rotor, ShaftSection
 from frbcli.case.surroundings.base import Bases
 from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
@@ -60,6 +60,7 @@ class Case(Model):
     )
     shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
     disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
+    bows: tuple[Bow, ...] = Field(default=(), alias="bow", description="places of a bent shaft of a turbocharger")
     forces: tuple[AppliedForce, ...] = Field(
         default=(), alias="force", description="forces besides unbalance and weight"
     )

@@ -7,8 +7,8 @@ with the angle alpha of the rotor follows from
     (K + P^T K_f P + i Omega (D + Omega G + P^T D_f P) - Omega^2 M) Q = Omega^2 (u_sin + i u_cos),
 
 what (2.3) is at a constant speed. Films of unlike stiffness in x and y, or cross-coupled, make ellipses of it.
-Loads of the case that turn or swing once in a revolution join the unbalance. The motion by a single harmonic load has
-the frequency of that load, and its phase counts from there.
+Loads of the case that turn or swing once in a revolution join the unbalance, and so does a bow. The motion by a single
+harmonic load has the frequency of that load, and its phase counts from there.
 
 The motion is in proportion to the unbalance, whatever the gap: where a journal moves over more than DOUBTFUL of the gap
 that its resting position leaves, the coefficients are doubtful, and no journal moves beyond its clearance.
@@ -49,11 +49,13 @@ from frbcli.linear.stability import check_machine, stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.nearest import did_you_mean
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.loads import Harmonic
+from frbcli.rotor.loads import BOW, Harmonic
+from frbcli.scene.changes import after_losses, has_lost, loss_times
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE
 from frbcli.scene.machine.elements import element_forces, harmonics_of
 from frbcli.scene.machine.system import System, elastic_shell
+from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds
 
 UNBALANCE = "unbalance"  # as excitation
@@ -106,12 +108,14 @@ class Response(Tabular):
     @property
     def what(self) -> str:
         """What it is, in words."""
-        return "unbalance response" if self.excitation == UNBALANCE else f"response to {self.excitation}"
+        if self.excitation != UNBALANCE:
+            return f"response to {self.excitation}"
+        return "unbalance response after the loss" if has_lost(self.case) else "unbalance response"
 
     @property
     def angle(self) -> str:
         """What phases count from, in words."""
-        return f"angle of {'the rotor' if self.excitation == UNBALANCE else self.excitation}"
+        return f"angle of {'the rotor' if self.excitation in (UNBALANCE, BOW) else self.excitation}"
 
     @property
     def bearings(self) -> tuple[str, ...]:
@@ -194,6 +198,7 @@ def response(
     observe: Callable[[int, int], None] | None = None,
     excitation: str = UNBALANCE,
     operating_Hz: tuple[float, float] | None = None,
+    after_loss: bool = False,
 ) -> Response:
     """Compute the linear response of a case to its unbalance, or to another of its loads.
 
@@ -206,11 +211,13 @@ def response(
     observe : callable, optional
         Called with each speed's number and their number.
     excitation : str, optional
-        Load that excites alone, such as "force 2" for the second force of the case; by default the unbalance with all
-        loads of order 1.
+        Load that excites alone, such as "force 2" for the second force of the case, or "bow"; by default the
+        unbalance with all loads of order 1.
     operating_Hz : tuple of float, optional
         Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin. Both are
         among the default speeds where these reach so far.
+    after_loss : bool
+        Take the unbalance after all losses of the case, in place of that before.
 
     Returns
     -------
@@ -232,6 +239,9 @@ def response(
     2
     """
     faults = [*_excitation_faults(case, excitation), *_operating_faults(operating_Hz)]
+    if after_loss:
+        faults += _loss_faults(case)
+        case = after_losses(case)
     require(case, RANGE if speeds_Hz is None else FILMS, faults)
     asked = _default_speeds(case, operating_Hz) if speeds_Hz is None else tuple(sorted(set(speeds_Hz)))
     check_machine(case, asked)
@@ -300,10 +310,16 @@ def _operating_faults(operating_Hz: tuple[float, float] | None) -> Iterator[Faul
 def _excitation_faults(case: Case, excitation: str) -> Iterator[Fault]:
     if excitation == UNBALANCE:
         return
-    known = (UNBALANCE, *(load.name for load in harmonics_of(case)))
+    known = (UNBALANCE, *([BOW] if shaft_of(case).bow else []), *(load.name for load in harmonics_of(case)))
     if excitation not in known:
         problem = "is no load of the case that changes with angle or time."
         yield Fault("excitation", excitation, None, problem, did_you_mean(excitation, known))
+
+
+def _loss_faults(case: Case) -> Iterator[Fault]:
+    if not loss_times(case):
+        remedy = 'Write e.g. loss = { time = "0.5 s", unbalance = "10 g*mm" } in [[disk]] or [rotor].'
+        yield Fault("loss", "", None, "is missing: no unbalance is lost during a run.", remedy)
 
 
 def _frequency(case: Case, excitation: str, omega: float) -> float:

@@ -43,7 +43,7 @@ if TYPE_CHECKING:
 __all__ = ["Header", "Run", "RunWriter", "Signal", "check_output", "read_run"]
 
 INTERRUPTED = "interrupted"
-CLEARANCE_STEP = "clearance_step"  # begins the names of the references that are times of one
+CLEARANCE_STEP, LOSS = "clearance_step", "loss"  # begin the names of the references that are times of one
 CRITICAL_SPEEDS, CRITICAL_SPEED = "critical_speeds", "critical_speed"  # how many there are; begins the name of each
 TEXTS = ("title", "command", "case_name", "case_text", "status")
 RECORDS = ("versions", "references", "cost", "error", "events")  # kept as JSON text

@@ -21,7 +21,7 @@ from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.rotor.body import COORDINATES, PLANE, Body
 from frbcli.rotor.linear import LinearRotor
-from frbcli.rotor.loads import LinearPart, Load
+from frbcli.rotor.loads import LinearPart, Load, bow_load
 from frbcli.rotor.port import ForceLaw, Port
 
 GROUND = ""
@@ -90,9 +90,19 @@ def assembled(
     constant = (nodes[each.node][: len(PLANE)].T @ np.array(each.force) for each in forces)
     if all(body.inertia is not None for body in bodies):
         nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
-    varying = tuple(load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
     laws = tuple(Port(name, relative(link), link.count, law) for name, link, law in ports)
-    return replace(machine, static_load=sum(constant, machine.static_load), loads=varying, ports=laws)
+    varying = (load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
+    loaded = (*_bows(bodies, size), *varying)
+    return replace(machine, static_load=sum(constant, machine.static_load), loads=loaded, ports=laws)
+
+
+def _bows(bodies: Sequence[Body], size: int) -> Iterator[Load]:
+    """The loads of bodies that are bent without load, on all degrees of freedom of a machine with n of them."""
+    first = 0
+    for body in bodies:
+        if body.bow is not None:
+            yield bow_load(body.bow).seen_by(np.eye(body.size, size, first))
+        first += body.size
 
 
 def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart]:

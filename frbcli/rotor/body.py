@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.arrays import Array
+from frbcli.arrays import Array, Complex
 
 # Of a node, in the order of the rows of its map: displacements along x and y, then small rotations about x and y.
 COORDINATES = ("x", "y", "tilt_x", "tilt_y")
@@ -22,7 +23,9 @@ class Body:
     records, with rows for the first c of the COORDINATES: the two of the PLANE, or all four of a node that tilts;
     inertia: (2, n) kg against accelerations of the ground in x and y, the mass matrix times a displacement of the whole
     body, None where that is not known. internal: (n / 2, n / 2) N s/m, damping of each plane that turns with the rotor,
-    of a body whose degrees of freedom are those of x and then those of y; None without any.
+    of a body whose degrees of freedom are those of x and then those of y; None without any. bow: (n / 2,) complex N of
+    such a body, the forces that bend it to the shape that it has without any load, by the angle on the rotor of an
+    unbalance; None of a straight one.
     """
 
     mass: Array
@@ -35,6 +38,7 @@ class Body:
     nodes: tuple[tuple[str, Array], ...]
     inertia: Array | None = None
     internal: Array | None = None
+    bow: Complex | None = None
 
     @property
     def size(self) -> int:
@@ -62,12 +66,23 @@ def free_body(
     )
 
 
-def point_mass(node: str, mass: float, gravity: float, unbalance: float = 0.0, external_damping: float = 0.0) -> Body:
+def point_mass(
+    node: str, mass: float, gravity: float, unbalance: float = 0.0, external_damping: float = 0.0, phase: float = 0.0
+) -> Body:
     """A body that moves in the plane and does not tilt: a ring, the mass of a support, a rigid rotor. mass in kg,
-    gravity in m/s^2, unbalance in kg m, external_damping against the ground in N s/m. q = [x, y]."""
+    gravity in m/s^2, unbalance in kg m at an angle phase on the rotor, external_damping against the ground in N s/m.
+    q = [x, y]."""
     plane = np.eye(2)
     body = free_body(mass * plane, ((node, plane),), gravity, mass * plane, external_damping * plane)
-    return replace(body, unbalance_cos=unbalance * plane[0], unbalance_sin=unbalance * plane[1])
+    cos, sin = unbalance_loads(unbalance, phase, np.ones(1))
+    return replace(body, unbalance_cos=cos, unbalance_sin=sin)
+
+
+def unbalance_loads(unbalance: float, phase: float, shape: Array) -> tuple[Array, Array]:
+    """(2 n,) unbalance_cos and unbalance_sin in kg m of an unbalance at an angle phase in rad on the rotor; shape: (n,)
+    the displacement of its place by the degrees of freedom of one plane."""
+    cos, sin = unbalance * math.cos(phase), unbalance * math.sin(phase)
+    return np.outer([cos, sin], shape).ravel(), np.outer([-sin, cos], shape).ravel()
 
 
 def tilting_ring(node: str, mass: float, tilt_inertia: float, gravity: float) -> Body:
@@ -105,24 +120,29 @@ def jeffcott_rotor(
     shaft_damping: float,
     gravity: float,
     internal_damping: float = 0.0,
+    phase: float = 0.0,
+    bow: complex = 0.0,
 ) -> Body:
     """The symmetric Jeffcott rotor (2.4): a disk on a massless flexible shaft, two equal journals moving as one.
 
     Masses m_D, m_J in kg, stiffness c in N/m, unbalance U of the disk in kg m, dampings d_o, d_i in N s/m, gravity in
-    m/s^2. internal_damping, N s/m, turns with the shaft, and shaft_damping does not. q = [x_J, x_D, y_J, y_D]."""
+    m/s^2. internal_damping, N s/m, turns with the shaft, and shaft_damping does not. phase: of the unbalance, rad; bow:
+    offset of the disk without load in m times exp(i its angle on the rotor). q = [x_J, x_D, y_J, y_D]."""
     coupling = np.array([[1.0, -1.0], [-1.0, 1.0]])
     masses = np.array([journal_mass, mass])
+    cos, sin = unbalance_loads(unbalance, phase, np.array([0.0, 1.0]))
     return Body(
         mass=_both_planes(np.diag([journal_mass, mass])),
         damping=_both_planes(shaft_damping * coupling + np.diag([0.0, external_damping])),
         gyroscopic=np.zeros((4, 4)),
         stiffness=_both_planes(shaft_stiffness * coupling),
         static_load=np.concatenate([np.zeros(2), -gravity * masses]),
-        unbalance_cos=np.array([0.0, unbalance, 0.0, 0.0]),
-        unbalance_sin=np.array([0.0, 0.0, 0.0, unbalance]),
+        unbalance_cos=cos,
+        unbalance_sin=sin,
         nodes=(("journal", planar(4, 0, 2)), ("disk", planar(4, 1, 3))),
         inertia=np.kron(np.eye(2), masses),
         internal=internal_damping * coupling if internal_damping else None,
+        bow=shaft_stiffness * coupling @ np.array([0.0, bow]) if bow else None,
     )
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.rotor.loads import LinearPart, Load, summed
+from frbcli.rotor.loads import BOW, Harmonic, LinearPart, Load, summed
 from frbcli.rotor.port import Port
 
 
@@ -66,6 +66,12 @@ class LinearRotor:
     def unbalance(self) -> NDArray[np.complex128]:
         """(n,) kg m: at a constant speed Omega the unbalance pulls with Re(Omega^2 unbalance exp(i alpha))."""
         return np.asarray(self.unbalance_sin + 1j * self.unbalance_cos)
+
+    @property
+    def bent(self) -> NDArray[np.complex128]:
+        """(n,) N: the forces by the bow are Re(bent exp(i alpha))."""
+        bows = (load for load in self.loads if isinstance(load, Harmonic) and load.name == BOW)
+        return sum((load.excitation(0.0)[1] for load in bows), np.zeros(self.size, dtype=np.complex128))
 
     def at(self, omega: float) -> LinearRotor:
         """The rotor at omega rad/s, with matrices that do not depend on the speed any more, but for the gyroscopic

@@ -24,7 +24,7 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from frbcli.arrays import Array
+from frbcli.arrays import Array, Complex
 
 
 @dataclass(frozen=True)
@@ -94,6 +94,17 @@ class Harmonic(Load):
         rotor that turns with omega rad/s."""
         frequency, load = self.order * omega + self.frequency, self.columns[0] - 1j * self.columns[1]
         return (frequency, load) if frequency >= 0.0 else (-frequency, np.conj(load))
+
+
+BOW = "bow"  # the name of its load
+
+
+def bow_load(bow: Complex) -> Harmonic:
+    """The load of the forces (n,) in N that bend a shaft to its bow in one plane: K (q - b) has the bow b, which turns
+    with the rotor, where its stiffness K has q. Degrees of freedom are those of x and then those of y; a bow of angle
+    0 points to where an unbalance of phase 0 does."""
+    turning = np.concatenate([1j * bow, bow])
+    return Harmonic(BOW, np.array([turning.real, -turning.imag]), 1.0, 0.0)
 
 
 @dataclass(frozen=True)

@@ -20,12 +20,12 @@ free modes: a rotor in soft bearings at its ends then needs few of these.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.arrays import Array
+from frbcli.arrays import Array, Complex
 from frbcli.errors import NotConverged
 from frbcli.rotor.beam import Plane
 
@@ -91,17 +91,47 @@ class FreeModes:
 
 
 @dataclass(frozen=True)
+class PointForces:
+    """Forces (k,) in N on places of a shaft, in one plane, complex by their angles on the rotor. positions: (k,) m."""
+
+    positions: tuple[float, ...]
+    forces: tuple[complex, ...]
+
+    def of(self, modes: FreeModes) -> Complex:
+        """(n,) N of modes."""
+        return np.asarray(np.array(self.forces) @ np.stack([modes.at(place) for place in self.positions]))
+
+
+def bending_forces(modes: FreeModes, positions: Sequence[float], offsets: Sequence[complex]) -> PointForces:
+    """The forces that bend a free shaft to offsets (k,) in m at distinct positions (k,) in m: of all shapes through
+    these that of least energy, which is the shape of a shaft loaded there alone. modes: all of it."""
+    at, count = np.stack([modes.at(place) for place in positions]), len(positions)
+    bent = at[:, RIGID:] / modes.frequencies[RIGID:]
+    flexibility, rigid = bent @ bent.T, at[:, :RIGID]
+    size = flexibility.max()
+    whole = np.block([[flexibility / size, rigid], [rigid.T, np.zeros((RIGID, RIGID))]])
+    forces = np.linalg.solve(whole, np.concatenate([np.asarray(offsets), np.zeros(RIGID)]))[:count] / size
+    return PointForces(tuple(positions), tuple(forces.tolist()))
+
+
+@dataclass(frozen=True)
 class Places:
-    """Where a rotor is loaded: positions in m of its bearings, its wheels, and collars, which are held in tilt."""
+    """Where a rotor is loaded: positions in m of its bearings, its wheels, and collars, which are held in tilt; bow:
+    the forces that bend it without load."""
 
     bearings: tuple[float, ...]
     wheels: tuple[float, ...]
     collars: tuple[float, ...] = ()
+    bow: PointForces | None = None
 
     def of(self, modes: FreeModes) -> Array:
-        """(p, n) displacements of modes at bearings and wheels, then their slopes at collars."""
+        """(p, n) displacements of modes at bearings and wheels, their slopes at collars, and the shares of the bow."""
         slopes = [modes.slope_at(collar) for collar in self.collars]
-        return np.stack([*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes])
+        found = [*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes]
+        if self.bow is not None:
+            shares = self.bow.of(modes) / max(map(abs, self.bow.forces))
+            found += [shares.real, shares.imag]
+        return np.stack(found)
 
 
 @dataclass(frozen=True)

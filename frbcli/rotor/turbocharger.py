@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -10,8 +9,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.rotor.beam import BeamSection, Plane, beam
-from frbcli.rotor.body import Body
-from frbcli.rotor.reduction import FreeModes
+from frbcli.rotor.body import Body, unbalance_loads
+from frbcli.rotor.reduction import FreeModes, PointForces
 
 
 @dataclass(frozen=True)
@@ -59,23 +58,24 @@ def turbocharger_rotor(
     external_damping: float,
     gravity: float,
     collars: Sequence[Journal] = (),
+    bow: PointForces | None = None,
 ) -> Body:
     """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
 
     journals: the places of all bearings, with a film or without one; collars: those of thrust bearings. modal_damping:
     ratio to the critical damping of every elastic mode; external_damping: of each wheel against the ground, N s/m;
-    gravity in m/s^2.
+    gravity in m/s^2. bow: the forces that bend a shaft to the shape that it has without load.
     """
     n = len(modes.frequencies)
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
     damping = modes.damping + np.diag(2 * modal_damping * modes.frequencies)
-    unbalance_cos, unbalance_sin = np.zeros((2, n)), np.zeros((2, n))
+    unbalance_cos, unbalance_sin = np.zeros(2 * n), np.zeros(2 * n)
     for wheel in wheels:
         shape = modes.at(wheel.position)
         damping += external_damping * np.outer(shape, shape)
-        cos, sin = wheel.unbalance * math.cos(wheel.phase), wheel.unbalance * math.sin(wheel.phase)
-        unbalance_cos += np.outer([cos, sin], shape)
-        unbalance_sin += np.outer([-sin, cos], shape)
+        cos, sin = unbalance_loads(wheel.unbalance, wheel.phase, shape)
+        unbalance_cos += cos
+        unbalance_sin += sin
     tilting = [(f"journal_{each.name}", each.position) for each in journals]
     tilting += [(each.name, each.position) for each in collars]
     nodes = [
@@ -89,11 +89,12 @@ def turbocharger_rotor(
         gyroscopic=_of(turned, modes.polar),
         stiffness=_of(both, np.diag(modes.frequencies**2)),
         static_load=np.concatenate([np.zeros(n), -gravity * modes.weight]),
-        unbalance_cos=unbalance_cos.ravel(),
-        unbalance_sin=unbalance_sin.ravel(),
+        unbalance_cos=unbalance_cos,
+        unbalance_sin=unbalance_sin,
         nodes=tuple(nodes),
         inertia=_of(both, modes.weight[None, :]),
         internal=modes.internal if modes.internal.any() else None,
+        bow=None if bow is None else bow.of(modes),
     )
 
 

@@ -18,7 +18,7 @@ from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
 from frbcli.runs.record.header import forcing
 from frbcli.runs.record.restored import number_of
-from frbcli.scene.clearance_steps import case_at, step_times
+from frbcli.scene.changes import case_at, step_times
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import film_places
 from frbcli.scene.planning.cell_choice import gap_ratio

@@ -14,7 +14,6 @@ from frbcli.case.schema import Case
 from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.loads import SpeedProfile
-from frbcli.runs.clearance_step import largest_eccentricity, with_clearances
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import budget_of_segments, grows_from, quick_budget, summed
 from frbcli.runs.heat import RunHeat
@@ -26,6 +25,7 @@ from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
 from frbcli.runs.start import control_of, first_state, in_turn, micro_cost, rotor_data
+from frbcli.runs.sudden_change import largest_eccentricity, with_clearances, with_unbalance
 from frbcli.scene.costs.cost import expected_cost
 from frbcli.scene.costs.course import expected_course
 from frbcli.scene.costs.preparation import film_error_s
@@ -140,14 +140,17 @@ class March:
 
     def _change(self) -> int:
         """At the end of a segment: the machine and the state of the next one. Returns the status of the run."""
-        before = self._warm
+        before, passed = self._warm, self._system
         self._take_up(self._current + 1)
+        self._noted[:] = np.nan
+        if self._system.films is passed.films:
+            self._state = with_unbalance(passed, self._system, self._profile, self._state, self._apart)
+            return RUNNING
         self._heat.take_up(self._segments[self._current].case, self._system)
         after = self._warm
         if largest_eccentricity(after, self._state) >= self._control.contact_eccentricity:
             return CONTACT  # the new clearance is below the displacement
         self._state = with_clearances(before, after, self._profile, self._state, self._apart)
-        self._noted[:] = np.nan
         return RUNNING
 
     @property

@@ -18,7 +18,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.roughness.asperities import Asperities
 from frbcli.rotor.assembly import held_rotor
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.linear import unbalance_shares
+from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.rotor.port import port_forces
 from frbcli.scene.costs.course import longest_step, steps_of_a_turn
@@ -119,7 +119,7 @@ def _factor(system: System) -> int:
 
 def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
     """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in the resting position,
-    where rings turn already.
+    where rings turn already. A shaft with a bow is bent, and turns so.
 
     Raises NotConverged if a resting position is asked for and there is none at the first speed.
     """
@@ -132,7 +132,19 @@ def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
     elif start.position == "resting":
         resting = resting_position(system, float(profile.speeds[0]))
         q, v = resting.displacements, resting.velocities(system)
-    return state_at(system, profile, q, v)
+    bent, turning = _bent(rotor, float(profile.speeds[0]))
+    return state_at(system, profile, q + bent, v + turning)
+
+
+def _bent(rotor: LinearRotor, omega: float) -> tuple[Array, Array]:
+    """(n,) m and m/s: the shape by the bow of a rotor at angle 0 with its journals held, and its rate at omega rad/s,
+    at which the damping that turns with the shaft pulls at it as little as at rest. Raises NotConverged as
+    held_rotor."""
+    if not rotor.bent.any():
+        return np.zeros(rotor.size), np.zeros(rotor.size)
+    in_plane = replace(rotor, journals=rotor.journals[:, : len(PLANE)])
+    now, rate = (held_rotor(replace(in_plane, static_load=load)) for load in (rotor.bent.real, -rotor.bent.imag))
+    return now.shape, omega * rate.shape
 
 
 def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -13,6 +14,7 @@ from scipy.io import savemat, wavfile
 from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
+from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.analysis.orders.tacho import tacho_speed
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
@@ -267,3 +269,74 @@ def test_whirl_beside_hum_is_found_as_without_it(tmp_path: Path) -> None:
 def test_a_whip_and_a_line_at_one_speed_are_not_forced(speeds_Hz: tuple[float, ...], tmp_path: Path) -> None:
     rotor = Rotor(whirl_s=-1.0, speeds_Hz=speeds_Hz, step_s=STEP_s, critical_Hz=None)
     assert [kind for kind, *_ in hum(tmp_path, rotor, {})] == ["onset"]
+
+
+ROLL = np.array([14.0 * np.exp(0.7j), 9.0 * np.exp(-2.0j)])  # um of x and y, of a shaft that runs out
+CRITICAL_Hz, ZETA, FORCED = 60.0, 0.05, 3.0  # of the resonance; um of its mass off the axis
+
+
+def running_out(rate: float = 5000.0) -> tuple[pd.DataFrame, np.ndarray]:
+    """A hold at 4 Hz and a run-up to 120 Hz as probes see it: a resonance and a runout, with a pickup at the shaft. And
+    the resonance alone, (n,) of x in um."""
+    time = np.arange(int(24.0 * rate)) / rate
+    speed = 4.0 + np.clip(time - 4.0, 0.0, None) * 116.0 / 20.0
+    turn = 4.0 * time + 0.5 * np.clip(time - 4.0, 0.0, None) ** 2 * 116.0 / 20.0
+    angle, r = 2.0 * np.pi * (turn - 0.3), speed / CRITICAL_Hz
+    whirl = FORCED * r**2 / (1.0 - r**2 + 2j * ZETA * r)
+    motion = np.array([whirl, -1j * whirl])
+    x, y = ((motion + ROLL[:, None]) * np.exp(1j * angle)).real
+    key = 5.0 * np.sin(angle + 0.5 * np.pi)  # of a pickup, which rises where the angle does not begin a revolution
+    return pd.DataFrame({"t": time, "x": x + 7.0, "y": y - 3.0, "key": key}), (motion[0] * np.exp(1j * angle)).real
+
+
+TURNING = Measurement("x", CLEARANCE, "y", time="t", tacho="key", unit_m=1e-6)
+
+
+def test_a_resonance_is_right_without_the_slow_roll(tmp_path: Path) -> None:
+    """To 1e-3 of its height, where the runout shifts it by more than a tenth."""
+    path, (table, alone) = tmp_path / "run.csv", running_out()
+    table.to_csv(path, index=False)
+    run, as_seen = (measured_run(path, replace(TURNING, slow_roll_Hz=speed)) for speed in (4.0, None))
+    time = run["time_s"]
+    height = np.abs(alone).max()
+    near = (time > 8.0) & (time < 20.0)
+    left = 1e6 * run["journal_x_m"] - alone
+    # What turns at 4 Hz is subtracted at all speeds, with the motion of then: FORCED (4 / 60)^2.
+    of_motion = FORCED * (4.0 / CRITICAL_Hz) ** 2 / (1.0 - (4.0 / CRITICAL_Hz) ** 2)
+    assert np.abs(left - left.mean())[near].max() < of_motion + 1e-3 * height
+    assert of_motion < 1e-3 * height
+    peak, seen = (1e6 * np.abs(order_track(each, 1.0, revolutions=4).along("x")).max() for each in (run, as_seen))
+    assert peak == pytest.approx(height, rel=1e-3)
+    assert abs(seen / height - 1.0) > 0.1
+    assert any("Slow roll subtracted, of 4 Hz" in remark for remark in run.remarks)
+
+
+def test_the_slow_roll_vector_is_that_of_a_surface(tmp_path: Path) -> None:
+    path, (table, _) = tmp_path / "run.csv", running_out()
+    table.to_csv(path, index=False)
+    remark = measured_run(path, replace(TURNING, slow_roll_Hz=4.0)).remarks[-1]
+    sizes = [float(part.split()[1]) for part in remark.partition(": ")[2].split(", ")]
+    assert sizes == pytest.approx(np.abs(ROLL), abs=0.015)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        ({"tacho": None, "speed_Hz": 4.0}, "does not tell the angle"),
+        ({"slow_roll_Hz": 2.0}, "turns 0 times within 10% of 2 Hz"),
+    ],
+)
+def test_a_slow_roll_that_is_not_measured_is_refused(tmp_path: Path, changes: dict[str, Any], fault: str) -> None:
+    path, (table, _) = tmp_path / "run.csv", running_out(1000.0)
+    table.to_csv(path, index=False)
+    with pytest.raises(InputError, match=fault):
+        measured_run(path, replace(TURNING, **({"slow_roll_Hz": 4.0} | changes)))
+
+
+def test_the_command_subtracts_the_slow_roll(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, (table, alone) = tmp_path / "run.csv", running_out(1000.0)
+    table.to_csv(path, index=False)
+    columns = ["--x", "x", "--y", "y", "--time", "t", "--tacho", "key", "--order", "1", "--json"]
+    assert frb(["waterfall", str(path), *columns, "--slow-roll", "4 Hz", "-o", str(tmp_path / "orders.png")]) == 0
+    told = json.loads(capsys.readouterr().out)["orders"][0]
+    assert 1e6 * told["amplitude_max_m"] == pytest.approx(np.abs(alone).max(), rel=5e-3)

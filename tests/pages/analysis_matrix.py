@@ -48,6 +48,7 @@ HARMONIC = 'force=[{at="disk", force=["10 N", "0 N"], order=2}]'
 TABLE = 'force=[{at="disk", over_time={time=[0, 1000], x=[0, 1]}}]'
 GROUND = 'base={acceleration=["2 m/s^2", "0 m/s^2"], order=2, speed="50 Hz"}'
 STEP = 'bearing.clearance_steps=[{time="0.1 s", clearance="40 um"}]'
+LOSS = 'rotor.loss={time="0.1 s", unbalance="10 g*mm"}'
 ROUGH = 'contact={model="asperities", roughness="0.4 um", summit_radius="20 um", summit_density="5e9 1/m^2"}'
 SHELL = "contact={policy='elastic', stiffness='1e8 N/m'}"
 DAMPER = (
@@ -147,6 +148,8 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "harmonic forces": ("jeffcott", (HARMONIC,)),
     "forces over time": ("jeffcott", (TABLE,)),
+    "blade loss": ("jeffcott", (LOSS,)),
+    "bow": ("jeffcott", ("rotor.bow=10 um",)),
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS)),
     "floating rings that tilt": ("turbocharger-car", (TILTS,)),
@@ -178,6 +181,7 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and squeeze film dampers": ("jeffcott", (OIL, HEAT, DAMPER)),
     "clearance steps and the published form": ("jeffcott", (STEP, *PUBLISHED)),
     "clearance steps and a bearing model from Python": ("jeffcott", (STEP, MODEL_THEORY)),
+    "blade loss and co-simulation": ("jeffcott", (LOSS, APART)),
     "clearance steps and co-simulation": ("jeffcott", (STEP, APART)),
     "clearance steps and rings that turn": (
         "floating-ring", ('bearing.outer.clearance_steps=[{time="0.1 s", clearance="75 um"}]',)

@@ -46,6 +46,8 @@ TABLES = {
     '[rotor] kind = "turbocharger"': "TurbochargerRotor",
     "[[shaft]]": "ShaftSection",
     "[[disk]]": "Disk",
+    "loss = { ... }": "Loss",
+    "[[bow]]": "Bow",
     '[bearing] kind = "single-film"': "SingleFilmBearing",
     '[bearing] kind = "floating-ring"': "FloatingRingBearing",
     '[bearing] kind = "cartridge"': "CartridgeBearing",

@@ -18,7 +18,7 @@ from frbcli.errors import InputError
 from frbcli.film.state import OIL
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
-from frbcli.scene.clearance_steps import case_at
+from frbcli.scene.changes import case_at
 from frbcli.scene.machine.segments import Segment, make_segments
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.eccentricity import run_up_profile

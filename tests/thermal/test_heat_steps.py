@@ -14,7 +14,7 @@ from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
-from frbcli.scene.clearance_steps import case_at
+from frbcli.scene.changes import case_at
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan

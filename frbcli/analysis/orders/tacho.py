@@ -29,11 +29,12 @@ MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
 
 @dataclass(frozen=True)
 class Tacho:
-    """speed_Hz: (n,) at the times of the samples; missing, double: how many pulses were added and left out; mark: the
-    angle in revolutions, from the first sample on, at which the rotor is at a pulse; None where it is not the same at
-    all of them, or there are several in a revolution."""
+    """speed_Hz, angle: (n,) at the times of the samples, the latter in rad, 0 at the first pulse; missing, double: how
+    many pulses were added and left out; mark: the angle in revolutions, as the speed has it from the first sample on, at
+    which the rotor is at a pulse; None where it is not the same at all of them, or there are several in a revolution."""
 
     speed_Hz: Array
+    angle: Array
     missing: int
     double: int
     mark: float | None = None
@@ -53,7 +54,8 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
 
     A pulse begins where the signal rises through its middle level, interpolated between samples, after it was below by
     more than a hysteresis that follows from its range and its noise. The speed is that over REVOLUTIONS about a pulse,
-    fewer at the ends, as a rectangular pulse is known to a sample only. Raises ValueError if there are too few pulses.
+    fewer at the ends, as a rectangular pulse is known to a sample only. The angle is a cubic spline through the pulses.
+    Raises ValueError if there are too few pulses.
     """
     rises = _rises(signal, *_levels(signal))
     if len(rises) < LEAST_PULSES:
@@ -63,7 +65,8 @@ def tacho_speed(time: Array, signal: Array, pulses: int) -> Tacho:
     moments = time[rises] + share * (time[rises + 1] - time[rises])
     moments, missing, double = _regular(moments)
     speed = np.asarray(np.interp(time, *_mean_speeds(moments, pulses)), dtype=np.float64)
-    return Tacho(speed, missing, double, _mark(time, speed, moments) if pulses == 1 else None)
+    mark = _mark(time, speed, moments) if pulses == 1 else None
+    return Tacho(speed, _angles(time, moments, pulses), missing, double, mark)
 
 
 def _mark(time: Array, speed: Array, moments: Array) -> float | None:
@@ -72,6 +75,15 @@ def _mark(time: Array, speed: Array, moments: Array) -> float | None:
     mean = complex(np.exp(2j * np.pi * np.interp(moments, time, angle)).mean())
     spread = np.sqrt(-2.0 * np.log(min(abs(mean), 1.0))) / (2.0 * np.pi) if mean else np.inf
     return float(np.angle(mean) / (2.0 * np.pi)) if spread < MOST_SPREAD else None
+
+
+def _angles(time: Array, moments: Array, pulses: int) -> Array:
+    """(n,) rad at times (n,): a spline through the pulses at moments (m,), a straight line before and behind them."""
+    from scipy.interpolate import CubicSpline
+
+    spline = CubicSpline(moments, 2.0 * np.pi / pulses * np.arange(len(moments)))
+    within = np.clip(time, moments[0], moments[-1])
+    return np.asarray(spline(within) + spline(within, 1) * (time - within), dtype=np.float64)
 
 
 def _mean_speeds(moments: Array, pulses: int) -> tuple[Array, Array]:

@@ -142,6 +142,8 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
                 yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm".')
         yield from _on_shaft(data, bearings)
     elif kind in SYMMETRIC:
+        if "bow_phase" in table(data, "rotor") and not number(table(data, "rotor"), "bow", "m", 0.0):
+            yield Breach(("rotor", "bow_phase"), "has no effect: there is no bow.", 'Add e.g. bow = "10 um".')
         for key in ("shaft", "disk"):
             if key in data:
                 yield Breach((key,), f"does not go with a {kind} rotor.", 'Remove it, or take kind = "turbocharger".')

@@ -272,7 +272,7 @@ def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
 
 
 def _left_out(found: LimitCycles) -> list[str]:
-    from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.changes import loss_note, step_times
     from frbcli.scene.gate.cycles import drives
 
     notes = []
@@ -280,6 +280,8 @@ def _left_out(found: LimitCycles) -> list[str]:
         notes.append("Beyond a torus point the motion has a second frequency: a run (frb runup) shows it.")
     if driven := " and ".join(drives(found.case)):
         notes.append(f"Branches are those without {driven}; a run (frb runup) shows the whirl with it.")
+    if before := loss_note(found.case):
+        notes.append(f'{before}; with time = "0 s" it is that after it.')
     if step_times(found.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes

@@ -44,8 +44,9 @@ MARKS = {"linear": "", "doubtful": " ?", "beyond-gap": " !"}  # behind eps
 @click.option("--map", "as_map", is_flag=True,
               help="Draw the undamped critical speed map, over the stiffness of the bearings.")  # fmt: skip
 @click.option("--excitation", default="unbalance", metavar="LOAD",
-              help='The one load that excites the rotor, e.g. "force 2". '
+              help='The one load that excites the rotor, e.g. "force 2" or "bow". '
                    "[the unbalance and all loads of order 1]")  # fmt: skip
+@click.option("--after-loss", is_flag=True, help="With the unbalance after the losses of CASE. [before them]")
 @click.option("--operating", type=OPERATING_OPTION, metavar="RANGE",
               help='Speeds of operation, whose vibration is judged, e.g. "8000..12000 rpm".')  # fmt: skip
 @click.option("--grade", type=GradeOption(), metavar="GRADE",
@@ -58,6 +59,7 @@ def command(
     run_file: Path | None,
     as_map: bool,
     excitation: str,
+    after_loss: bool,
     operating: tuple[float, float] | None,
     grade: float | None,
     outputs: OutputOptions,
@@ -65,7 +67,7 @@ def command(
 ) -> None:
     """Synchronous motion and bearing forces of CASE under its unbalance, with the films' stiffness and damping.
 
-    Loads of order 1 join the unbalance; --excitation takes any harmonic load alone.
+    Loads of order 1 and a bow join the unbalance; --excitation takes any of them alone.
     """
     from frbcli.columns import documents, spread_table
     from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
@@ -74,13 +76,14 @@ def command(
     from frbcli.linear.standards.balance_quality import balance_quality
     from frbcli.linear.standards.vibration import vibration_limits
     from frbcli.results.store import read_run
+    from frbcli.scene.changes import loss_times
 
     if excitation != "unbalance" and run_file is not None:
         raise click.UsageError("--excitation and --run exclude each other: --run is for the synchronous motion.")
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
     with computing(terminal, case, kernels="rest") as shown:
-        found = response(case, speeds or None, shown.counting(), excitation, operating)
+        found = response(case, speeds or None, shown.counting(), excitation, operating, after_loss)
     tracks = () if run is None else _tracks(run, found.points, str(run_file))
     reduced = own_reduction(case, found.resting)
     _tell(terminal, found, reduced, bool(speeds))
@@ -96,6 +99,7 @@ def command(
             "command": "response",
             "case": case.name,
             "excitation": excitation,
+            **({"after_loss": after_loss} if after_loss or loss_times(case) else {}),
             "points": found.table().documents(),
             "forces": spread_table(RESPONSE_FORCES, found).documents(),
             "films": spread_table(RESPONSE_FILMS, found).documents(),
@@ -182,14 +186,21 @@ def _tell(terminal: Terminal, found: Response, reduced: Reduction | None, every_
 
 
 def _excitation(found: Response) -> list[str]:
-    """Sentences on the loads of the case, which do not excite together."""
+    """Sentences on the loads of the case, which do not excite together, and on its losses."""
+    from frbcli.rotor.loads import BOW
+    from frbcli.scene.changes import has_lost, loss_note
     from frbcli.scene.machine.elements import harmonics_of
 
     loads = {load.name: load for load in harmonics_of(found.case)}
     if found.excitation in loads:
         return [f"Excited by {found.excitation} alone, {loads[found.excitation].turning}."]
+    if found.excitation == BOW:
+        return ["Excited by the bow alone."]
     others = ", ".join(name for name, load in loads.items() if not load.synchronous)
-    return [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
+    told = [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
+    if before := loss_note(found.case):
+        told.append(f"{before}; --after-loss takes that after it.")
+    return [*told, *(["With the unbalance after the loss."] if has_lost(found.case) else [])]
 
 
 def _doubts(found: Response, unit: SpeedUnit) -> list[str]:

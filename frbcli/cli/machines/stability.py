@@ -106,7 +106,7 @@ def command(
 def _tell(
     terminal: Terminal, found: Stability, kind: ThresholdKind | None, reduced: Reduction | None, every_speed: bool
 ) -> None:
-    from frbcli.scene.clearance_steps import step_times
+    from frbcli.scene.changes import step_times
     from frbcli.scene.supply import unfed_films
 
     tell_points(terminal, found, every_speed)

@@ -50,6 +50,10 @@ def measured_options(function: Function) -> Function:
         "speed-at": ({"metavar": "SPEED", "type": SPEED_OPTION}, 'A constant rotor speed, e.g. "100 Hz".'),
         "tacho": ({"metavar": "COLUMN"}, "Column of a signal with pulses, from which the rotor speed follows."),
         "pulses": ({"type": click.IntRange(min=1), "default": 1, "show_default": True}, "Pulses per revolution."),
+        "slow-roll": (
+            {"metavar": "SPEED", "type": SPEED_OPTION},
+            'Subtract what turns with the rotor at this slow speed, e.g. "10 Hz": runout and bow. Needs --tacho.',
+        ),
         "unit": ({"type": _UNITS["length"]}, "Unit of the displacements. [of the file, or 1 um]"),
         "time-unit": ({"type": _UNITS["time"]}, "Unit of the times. [of the file, or 1 s]"),
         "speed-unit": ({"type": _UNITS["speed"]}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
@@ -101,6 +105,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
         time_unit_s=given["time_unit"],
         speed_unit_Hz=given["speed_unit"],
         speed_time=given["speed_time"],
+        slow_roll_Hz=given["slow_roll"],
     )
 
 

@@ -45,6 +45,7 @@ NAMES = {
     "lock-in": "lock-in",
     "contact": "contact",
     "clearance-step": "clearance step",
+    "loss": "loss",
     "forced": "forced",
 }
 

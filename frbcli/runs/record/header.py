@@ -17,11 +17,12 @@ from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
 from frbcli.results.columns import AXIAL_SIGNALS
-from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
+from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS, Header
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.loads import Harmonic, SpeedProfile, Tabulated
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
+from frbcli.scene.changes import loss_times, step_times
 from frbcli.scene.machine.elements import element_parts
 from frbcli.scene.machine.machine_films import model_record
 from frbcli.scene.machine.segments import Segment
@@ -160,11 +161,17 @@ def header(
         references=({} if system.names else {"length_m": system.length})
         | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
-        | {f"{CLEARANCE_STEP}_{number}_s": segment.start for number, segment in enumerate(segments[1:], start=1)}
+        | _numbered(CLEARANCE_STEP, step_times(case))
+        | _numbered(LOSS, loss_times(case))
         | forced_references(forcing(case)[0])
         | ({} if critical_speeds is None else {CRITICAL_SPEEDS: float(len(critical_speeds))})
         | {f"{CRITICAL_SPEED}_{number}_Hz": speed for number, speed in enumerate(critical_speeds or (), start=1)},
     )
+
+
+def _numbered(name: str, times: Sequence[float]) -> dict[str, float]:
+    """References of sudden changes at times in s."""
+    return {f"{name}_{number}_s": time for number, time in enumerate(times, start=1)}
 
 
 def forcing(case: Case) -> tuple[list[ForcedLine], list[str]]:

@@ -175,7 +175,8 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
     def steps(w: Array | float, size: Array | float) -> Array:
         return np.asarray(w / SMOOTH * (size / (plan.tolerance * clearance)) ** (1.0 / order), dtype=np.float64)
 
-    rate = np.maximum(steps(omega, shaft.eccentricity), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
+    turned = shaft.eccentricity + shaft.bow
+    rate = np.maximum(steps(omega, turned), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
     if shaft.compliance and case.start.position == "centre":  # it falls to its resting position
         natural = 1.0 / math.sqrt(shaft.compliance)
         left = np.exp(-FADING * natural * (times - times[0]))

@@ -14,7 +14,7 @@ from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.reduction import DENSE, MOST
-from frbcli.scene.clearance_steps import step_times
+from frbcli.scene.changes import step_times
 from frbcli.scene.films import film_places, full_films, rings, turning_rings
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.tables import TABLE

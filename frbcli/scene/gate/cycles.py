@@ -109,8 +109,9 @@ def unbalance_faults(case: Case) -> Iterator[Fault]:
 
 def drives(case: Case) -> list[str]:
     """What shakes the rotor of a case once or several times in a revolution, in words."""
-    unbalance = ["unbalance"] if shaft_of(case).eccentricity != 0.0 else []
-    return unbalance + (["harmonic forces"] if harmonics_of(case) else [])
+    shaft = shaft_of(case)
+    own = [name for name, size in (("unbalance", shaft.eccentricity), ("bow", shaft.bow)) if size != 0.0]
+    return own + (["harmonic forces"] if harmonics_of(case) else [])
 
 
 def by_shooting(case: Case) -> bool:

@@ -95,8 +95,8 @@ def remarks(case: Case) -> tuple[str, ...]:
     if case.given_rotor is None:
         return ()
     found: list[str] = []
-    unbalances = [getattr(case.given_rotor, "unbalance", 0.0), *(disk.unbalance for disk in case.disks)]
-    if not any(unbalances) and not case.forces and not case.bases:
+    shaft = shaft_of(case)
+    if not (shaft.eccentricity or shaft.bow) and not case.forces and not case.bases:
         found.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
     return (*found, *_journals_off_the_shaft(case), *_names_off_their_place(case))
 

@@ -107,11 +107,11 @@ def film_tilts(case: Case) -> tuple[FilmTilt, ...]:
 
 
 def _whirl(rotor: LinearRotor, omega: float) -> NDArray[np.complex128]:
-    """(n,) complex amplitudes of the motion with the unbalance at omega rad/s, journals held in the middle."""
+    """(n,) complex amplitudes of the motion with unbalance and bow at omega rad/s, journals held in the middle."""
     here, p = rotor.at(omega), rotor.journals.reshape(-1, rotor.size)
     dynamic = here.stiffness + 1j * omega * (here.damping + omega * here.gyroscopic) - omega**2 * here.mass
     held = np.block([[dynamic, p.T], [p, np.zeros((len(p), len(p)))]])
-    pulled = np.concatenate([omega**2 * here.unbalance, np.zeros(len(p))])
+    pulled = np.concatenate([omega**2 * here.unbalance + here.bent, np.zeros(len(p))])
     return np.asarray(np.linalg.solve(held, pulled)[: rotor.size])
 
 

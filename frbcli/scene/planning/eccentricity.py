@@ -138,11 +138,11 @@ def _weight(case: Case) -> float:
 
 
 def _unbalance(case: Case, omega: float) -> float:
-    """Force of the unbalance on a film, N, with omega rad/s, or with the natural frequency of the shaft, if that is
-    lower: a faster rotor turns about its centre of mass."""
+    """Force of unbalance and bow on a film, N, with omega rad/s, or with the natural frequency of the shaft, if that is
+    lower: a faster rotor turns about its centre of mass. A bow bends a shaft as an unbalance of that eccentricity."""
     shaft = shaft_of(case)
     square = omega**2 if shaft.compliance == 0.0 else min(omega**2, 1.0 / shaft.compliance)
-    return shaft.disk_mass * shaft.eccentricity * square / _films(case)
+    return shaft.disk_mass * (shaft.eccentricity + shaft.bow) * square / _films(case)
 
 
 def _films(case: Case) -> int:

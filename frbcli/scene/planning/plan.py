@@ -14,8 +14,8 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
+from frbcli.scene.changes import clearance_decisions, loss_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
-from frbcli.scene.clearance_steps import clearance_decisions
 from frbcli.scene.costs.cost import clock
 from frbcli.scene.costs.resolution import reference_length, resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
@@ -198,6 +198,9 @@ def _decide_scene(case: Case, decide: Decide) -> None:
     for choice, size, unit, acts in shaft.dampings:
         if size > 0.0:
             decide(choice, display(size, unit), acts)
+    if shaft.bow > 0.0:
+        offset, where = shaft.bow_words
+        decide("bow", offset, f"{where}; turns with the shaft, also slowly")
     for decided in element_decisions(case):
         decide(*decided)
     if rings(case):
@@ -219,7 +222,7 @@ def _decide_scene(case: Case, decide: Decide) -> None:
             decide(f"{place.name} ends".strip().replace("_", " "), *sealing)
     if summits := case.contact.about_summits:
         decide("contact", *summits)
-    for decided in (*clearance_decisions(case), *input_decisions(case)):
+    for decided in (*clearance_decisions(case), *loss_decisions(case), *input_decisions(case)):
         decide(*decided)
     if case.heat is not None:
         gap = "follows the temperatures" if case.heat.clearance == "follows" else "does not follow it"

@@ -97,7 +97,17 @@ class Shaft(ABC):
     @property
     @abstractmethod
     def eccentricity(self) -> float:
-        """Distance of the centre of mass from the axis by the unbalance, that of all disks in phase, m."""
+        """Distance of the centre of mass from the axis by the unbalance, that of all disks and losses in phase, m."""
+
+    @property
+    def bow(self) -> float:
+        """Largest offset that it has without any load, m."""
+        return 0.0
+
+    @property
+    def bow_words(self) -> tuple[str, str]:
+        """Its bow for a plan, and where it is; of no meaning where it is straight."""
+        return "", ""
 
     @property
     @abstractmethod

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import cmath
 import math
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from frbcli.case.rotor import JeffcottRotor, RigidRotor
+from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_loss
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.shafts.shaft import STANDS, TURNS, BalancingPlane, Shaft, Stations, symmetric_stations
+from frbcli.units import ANGLE, display
 
 BENT = 21  # places along a shaft that bends
 
@@ -28,7 +30,8 @@ class RigidShaft(Shaft):
 
     def body(self) -> Body:
         rotor = self.rotor
-        return point_mass("journal", rotor.mass, rotor.gravity, rotor.unbalance, rotor.external_damping)
+        unbalance, phase = with_loss(rotor.unbalance, 0.0, rotor.loss)
+        return point_mass("journal", rotor.mass, rotor.gravity, unbalance, rotor.external_damping, phase)
 
     def undamped_body(self) -> Body:
         return point_mass("journal", self.rotor.mass, 0.0)
@@ -39,7 +42,7 @@ class RigidShaft(Shaft):
 
     @property
     def eccentricity(self) -> float:
-        return self.rotor.unbalance / self.rotor.mass
+        return unbalance_sizes(self.rotor) / self.rotor.mass
 
     @property
     def planes(self) -> tuple[BalancingPlane, ...]:
@@ -66,7 +69,12 @@ class JeffcottShaft(Shaft):
     freedoms: ClassVar[int] = 4
 
     def body(self) -> Body:
-        return jeffcott_rotor(**self.rotor.model_dump(exclude={"kind"}))
+        rotor = self.rotor
+        unbalance, phase = with_loss(rotor.unbalance, 0.0, rotor.loss)
+        return jeffcott_rotor(
+            rotor.mass, rotor.journal_mass, rotor.shaft_stiffness, unbalance, rotor.external_damping,
+            rotor.shaft_damping, rotor.gravity, rotor.internal_damping, phase, cmath.rect(rotor.bow, rotor.bow_phase),
+        )  # fmt: skip
 
     def undamped_body(self) -> Body:
         rotor = self.rotor
@@ -82,7 +90,16 @@ class JeffcottShaft(Shaft):
 
     @property
     def eccentricity(self) -> float:
-        return self.rotor.unbalance / self.rotor.mass
+        return unbalance_sizes(self.rotor) / self.rotor.mass
+
+    @property
+    def bow(self) -> float:
+        return self.rotor.bow
+
+    @property
+    def bow_words(self) -> tuple[str, str]:
+        where = f"{display(self.rotor.bow, 'm')} at {display(self.rotor.bow_phase, ANGLE)}"
+        return where, "of the disk off the line of the journals"
 
     @property
     def planes(self) -> tuple[BalancingPlane, ...]:

@@ -12,7 +12,7 @@ from typing import ClassVar
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.rotor import ShaftSection, TurbochargerRotor
+from frbcli.case.rotor import Disk, ShaftSection, TurbochargerRotor, bow_places, unbalance_sizes, with_loss
 from frbcli.elements.collar.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.rotor.beam import ELEMENTS, BeamSection
@@ -24,8 +24,10 @@ from frbcli.rotor.reduction import (
     RIGID,
     FreeModes,
     Places,
+    PointForces,
     Reduction,
     ReductionError,
+    bending_forces,
     free_modes,
     judged,
     reduction,
@@ -34,6 +36,7 @@ from frbcli.rotor.reduction import (
 )
 from frbcli.rotor.turbocharger import Journal, Wheel, turbocharger_rotor, wheels_on_shaft
 from frbcli.scene.shafts.shaft import STANDS, TURNS, BalancingPlane, Shaft, Stations
+from frbcli.units import display
 
 USUAL = 4  # free modes of a reduction that is made for its target
 FREQUENCIES = 3  # bending modes that are shown
@@ -42,13 +45,15 @@ FREQUENCIES = 3  # bending modes that are shown
 @dataclass(frozen=True)
 class FreeShaft:
     """A shaft in its free modes. modes: all of each plane; reduced: those of its body; journals: places of all
-    bearings, those with a film first; wheels: its disks; collars: places that are held in tilt."""
+    bearings, those with a film first; wheels: its disks; collars: places that are held in tilt; bow: what bends it
+    without load, None of a straight one."""
 
     modes: FreeModes
     reduced: Reduction
     journals: tuple[Journal, ...]
     wheels: tuple[Wheel, ...]
     collars: tuple[Journal, ...] = ()
+    bow: PointForces | None = None
 
     @property
     def kept(self) -> int:
@@ -62,8 +67,8 @@ class FreeShaft:
 
     def reduced_on(self, springs: Array, top: float) -> Reduction:
         """The reduction with its changes on springs (b,) in N/m of the bearings, up to the speed `top` in rad/s."""
-        positions = (tuple(each.position for each in some) for some in (self.journals, self.wheels, self.collars))
-        return _judged(self.modes, self.reduced.modes, Places(*positions), top, self.reduced.free, springs)
+        places = _places(self.journals, self.wheels, self.collars, self.bow)
+        return _judged(self.modes, self.reduced.modes, places, top, self.reduced.free, springs)
 
     def _held(self, modes: FreeModes) -> Array:
         slopes = [modes.slope_at(collar.position) for collar in self.collars]
@@ -80,19 +85,31 @@ def _free_shaft(
     wheels: tuple[Wheel, ...],
     journals: tuple[Journal, ...],
     collars: tuple[Journal, ...],
+    offsets: tuple[tuple[float, complex], ...],
     top: float,
     asked: tuple[int | None, float | None, float],
 ) -> FreeShaft:
     """A shaft in the modes that are asked for: their number, or a cut-off in Hz, or as many as a target needs up to the
-    speed `top` in rad/s. A command makes its machine several times. Raises NotConverged."""
-    modes = free_modes(wheels_on_shaft(sections, wheels, (*journals, *collars)))
-    positions = (tuple(each.position for each in some) for some in (journals, wheels, collars))
-    places, (count, cutoff, target) = Places(*positions), asked
+    speed `top` in rad/s. offsets: positions and sizes of its bow in m. A command makes its machine several times.
+    Raises NotConverged."""
+    bent = tuple(Journal("bow", position) for position, _ in offsets)
+    modes = free_modes(wheels_on_shaft(sections, wheels, (*journals, *collars, *bent)))
+    bow = bending_forces(modes, *zip(*offsets, strict=True)) if offsets else None
+    places, (count, cutoff, target) = _places(journals, wheels, collars, bow), asked
     if count is None and cutoff is None:
-        return FreeShaft(modes, reduction(modes, places, top, target), journals, wheels, collars)
-    count = count or RIGID if cutoff is None else modes.below(2.0 * math.pi * cutoff)
-    kept = min(max(count, RIGID), len(modes.frequencies))
-    return FreeShaft(modes, _judged(modes, modes.lowest(kept), places, top, kept), journals, wheels, collars)
+        reduced = reduction(modes, places, top, target)
+    else:
+        count = count or RIGID if cutoff is None else modes.below(2.0 * math.pi * cutoff)
+        kept = min(max(count, RIGID), len(modes.frequencies))
+        reduced = _judged(modes, modes.lowest(kept), places, top, kept)
+    return FreeShaft(modes, reduced, journals, wheels, collars, bow)
+
+
+def _places(
+    journals: tuple[Journal, ...], wheels: tuple[Wheel, ...], collars: tuple[Journal, ...], bow: PointForces | None
+) -> Places:
+    bearings, disks, held = (tuple(each.position for each in some) for some in (journals, wheels, collars))
+    return Places(bearings, disks, held, bow)
 
 
 def _judged(
@@ -124,7 +141,7 @@ class TurbochargerShaft(Shaft):
         rotor, free = self.rotor, self.free()
         modes = free.reduced.modes
         damping = rotor.modal_damping, rotor.external_damping
-        return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.collars)
+        return turbocharger_rotor(modes, free.wheels, free.journals, *damping, rotor.gravity, free.collars, free.bow)
 
     def undamped_body(self) -> Body:
         free = self.free()
@@ -147,7 +164,7 @@ class TurbochargerShaft(Shaft):
         top = 0.0 if speed is None else 2.0 * math.pi * max(abs(speed.start), abs(speed.end))
         asked = (rotor.modes, rotor.cutoff, case.accuracy.target)
         try:
-            return _free_shaft(sections, self._wheels, journals, collars, top, asked)
+            return _free_shaft(sections, self._wheels, journals, collars, bow_places(case), top, asked)
         except NotConverged as error:
             problem = f"is no shaft whose motion can be computed. {error}"
             remedy = "Check the orders of magnitude of its sections and of the masses of [[disk]]."
@@ -194,8 +211,7 @@ class TurbochargerShaft(Shaft):
     @property
     def _wheels(self) -> tuple[Wheel, ...]:
         """The disks of the case; those without a name are numbered."""
-        named = enumerate(self.case.disks, start=1)
-        return tuple(Wheel(**{**dict(disk), "name": disk.name or str(number)}) for number, disk in named)
+        return tuple(_wheel(disk, disk.name or str(number)) for number, disk in enumerate(self.case.disks, start=1))
 
     @property
     def _section_masses(self) -> list[float]:
@@ -226,7 +242,16 @@ class TurbochargerShaft(Shaft):
 
     @property
     def eccentricity(self) -> float:
-        return sum(disk.unbalance for disk in self.case.disks) / self.mass
+        return sum(map(unbalance_sizes, self.case.disks)) / self.mass
+
+    @property
+    def bow(self) -> float:
+        return max((bow.offset for bow in self.case.bows), default=0.0)
+
+    @property
+    def bow_words(self) -> tuple[str, str]:
+        told = (f"{display(bow.offset, 'm')} at {display(bow.position, 'm')}" for bow in self.case.bows)
+        return ", ".join(told), "off the line through the outermost bearings; between, as a shaft loaded there bends"
 
     @property
     def disk_count(self) -> int:
@@ -269,3 +294,8 @@ class TurbochargerShaft(Shaft):
         marks = [(bearing.name, bearing.position or 0.0) for bearing in self.case.placed_bearings]
         marks += [(disk.name, disk.position) for disk in self.case.disks]
         return Stations(free.modes.positions, maps, True, tuple(marks))
+
+
+def _wheel(disk: Disk, name: str) -> Wheel:
+    unbalance, phase = with_loss(disk.unbalance, disk.phase, disk.loss)
+    return Wheel(name, disk.position, disk.mass, disk.polar_inertia, disk.diametral_inertia, unbalance, phase)

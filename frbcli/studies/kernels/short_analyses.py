@@ -20,6 +20,7 @@ from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Decision
+from frbcli.scene.shafts.table import shaft_of
 
 MOMENT_s = 1e-3  # of a run
 PERIODS = 1e-3  # of a squeeze or a whirl
@@ -64,7 +65,7 @@ def machine_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, 
     inputs = machine_inputs(case)
     return (
         *_film_kernels(case, decisions),
-        bool(element_parts(case).loads),
+        bool(element_parts(case).loads) or shaft_of(case).bow > 0.0,
         inputs is not None,
         films_change(case),
         case.contact.rough,
