@@ -6,6 +6,7 @@ A symmetric rotor lies in two equal bearings, of which a case describes one; ano
 
 from __future__ import annotations
 
+import math
 from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
@@ -30,6 +31,7 @@ from frbcli.case.quantities import (
     Modulus,
     Position,
     Ratio,
+    RotorInertia,
     Speed,
     Stiffness,
     Unbalance,
@@ -47,6 +49,7 @@ class RigidRotor(Model):
     mass: Mass = Field(description="mass of the whole rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
 
@@ -65,6 +68,7 @@ class JeffcottRotor(Model):
     internal_damping: Damping = Field(
         default=0.0, description="damping between disk and journals that turns with the shaft"
     )
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
 
@@ -72,6 +76,7 @@ class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
     symmetric: ClassVar[bool] = False
+    polar_inertia: ClassVar[None] = None  # that of its sections and disks
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
@@ -107,6 +112,12 @@ class ShaftSection(Model):
     )
     mass_damping: DampingRate = Field(default=0.0, description="of the section over its mass; does not turn")
     stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")
+
+    @property
+    def polar_inertia(self) -> float:
+        """About the axis of rotation [kg m^2]."""
+        fourth = self.diameter**4 - self.inner_diameter**4
+        return math.pi / 32.0 * self.density * self.length * fourth
 
 
 class Disk(Model):

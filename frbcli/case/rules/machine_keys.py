@@ -13,7 +13,10 @@ TABLES = tuple(
 )
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
 # course and the end of a run.
-OTHERS = re.compile(r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|thermal\.hottest_film|contact\.eccentricity")
+OTHERS = re.compile(
+    r"rotor\.cutoff|drive\.(start|to|duration|down_duration|reaction)|.*\.ramp|.*\.clearance_steps\..*\.time|"
+    r"thermal\.hottest_film|contact\.eccentricity"
+)
 
 _NUMBERED = re.compile(r"\.\d+(?=\.|$)")
 

@@ -18,6 +18,7 @@ from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.loads import Harmonic, Tabulated
+from frbcli.runs.drive import drive_units
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.elements import element_parts
@@ -129,6 +130,7 @@ def header(
     units |= dict.fromkeys(ring_names(system), "Hz")
     units |= pin_units(system)
     units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
+    units |= drive_units(system)
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))
     return Header(

@@ -24,5 +24,5 @@ def make_segments(case: Case, plan: Plan) -> tuple[Segment, ...]:
     found = []
     for start in (0.0, *step_times(case)):
         then = case_at(case, start)
-        found.append(Segment(start, then, make_system(then, plan)))
+        found.append(Segment(start, then, make_system(then, plan, free_speed=case.drive is not None)))
     return tuple(found)

@@ -62,7 +62,7 @@ class JeffcottShaft(Shaft):
     freedoms: ClassVar[int] = 4
 
     def body(self) -> Body:
-        return jeffcott_rotor(**self.rotor.model_dump(exclude={"kind"}))
+        return jeffcott_rotor(**self.rotor.model_dump(exclude={"kind", "polar_inertia"}))
 
     def undamped_body(self) -> Body:
         rotor = self.rotor
