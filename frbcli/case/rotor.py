@@ -7,6 +7,7 @@ A symmetric rotor lies in two equal bearings, of which a case describes one; ano
 from __future__ import annotations
 
 import cmath
+import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
@@ -34,6 +35,7 @@ from frbcli.case.quantities import (
     Offset,
     Position,
     Ratio,
+    RotorInertia,
     Speed,
     Stiffness,
     Unbalance,
@@ -79,6 +81,7 @@ class RigidRotor(Model):
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     loss: Loss | None = Field(default=None, description="unbalance that joins at a time")
     external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
 
@@ -100,6 +103,7 @@ class JeffcottRotor(Model):
     internal_damping: Damping = Field(
         default=0.0, description="damping between disk and journals that turns with the shaft"
     )
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
     gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
 
 
@@ -107,6 +111,7 @@ class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
     symmetric: ClassVar[bool] = False
+    polar_inertia: ClassVar[None] = None  # that of its sections and disks
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
@@ -142,6 +147,12 @@ class ShaftSection(Model):
     )
     mass_damping: DampingRate = Field(default=0.0, description="of the section over its mass; does not turn")
     stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")
+
+    @property
+    def polar_inertia(self) -> float:
+        """About the axis of rotation [kg m^2]."""
+        fourth = self.diameter**4 - self.inner_diameter**4
+        return math.pi / 32.0 * self.density * self.length * fourth
 
 
 class Bow(MachineTable):

@@ -1,10 +1,10 @@
 """A case: one machine and one run as the user describes them, frozen, in SI.
 
 Keys of the file that are no Python words have other attribute names: `from` and `to` of [speed] are `start` and `end`,
-`two-phase` of [film] is `two_phase`, [bearing] or [[bearing]] are `given_bearings`, [[disk]] is `disks`. `clearance`
-and `viscosity` may be given as a law: the attributes of these names are its value. `given_bearings` are all tables
-[[bearing]], `placed_bearings` the same with a cartridge as its two ends; of these `bearings` are those with a film and
-`elements` the others.
+`two-phase` of [film] is `two_phase`, [speed] is `speed_ramp`, [bearing] or [[bearing]] are `given_bearings`,
+[[disk]] is `disks`. `clearance` and `viscosity` may be given as a law: the attributes of these names are its value.
+`given_bearings` are all tables [[bearing]], `placed_bearings` the same with a cartridge as its two ends; of these
+`bearings` are those with a film and `elements` the others.
 Rules that tie several keys together are in `checks.py`.
 """
 
@@ -17,6 +17,7 @@ from pydantic import Field, PrivateAttr
 
 from frbcli.case.bearing import Bearings, FilmBearing
 from frbcli.case.course.control import Accuracy, Output, Start
+from frbcli.case.course.drive import Drive
 from frbcli.case.course.motion import KinematicMotion
 from frbcli.case.course.speed import SpeedRamp, given_speed_unit
 from frbcli.case.elements import Axial, Element, ThrustBearings
@@ -88,9 +89,10 @@ class Case(Model):
     )
     film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
     thermal: AnyThermal = Field(default=None, description="heat; without it film temperatures are constant")
-    given_speed: SpeedRamp | None = Field(
-        default=None, alias="speed", description="must be given, but for a case with [motion]"
+    speed_ramp: SpeedRamp | None = Field(
+        default=None, alias="speed", description="must be given, but for a case with [motion] or [drive]"
     )
+    drive: Drive | None = Field(default=None, description="free speed, by a torque; replaces [speed]")
     motion: KinematicMotion | None = Field(default=None, description="motion of the journal in a kinematic test")
     start: Start = Field(default=Start(), description="where the rotor begins a run")
     contact: Contact = Field(default=Contact(), description="what happens where journal and shell touch")
@@ -224,8 +226,22 @@ class Case(Model):
         return self.given_rotor
 
     @property
+    def polar_inertia(self) -> float:
+        """Of the rotor with its disks about the axis of rotation [kg m^2], 0 where it is not known."""
+        own = None if self.given_rotor is None else self.given_rotor.polar_inertia
+        sections = sum(section.polar_inertia for section in self.shaft)
+        return (own or 0.0) + sections + sum(disk.polar_inertia for disk in self.disks)
+
+    @property
+    def given_speed(self) -> SpeedRamp | None:
+        """The speeds of a run, those that its drive is expected to reach at the most; None of a case without any."""
+        if self.drive is None or not self.polar_inertia:
+            return self.speed_ramp
+        return self.drive.expected(self.polar_inertia)
+
+    @property
     def speed(self) -> SpeedRamp:
-        """The speeds of a run. Raises InputError for a case of kinematic tests, which has none."""
+        """The speeds of a run, see given_speed. Raises InputError for a case of kinematic tests, which has none."""
         if self.given_speed is None:
             raise self._without("speed")
         return self.given_speed

@@ -90,7 +90,14 @@ AXIAL_SIGNALS = (
            more="the gap over the lands less what the tilt of the collar takes at its rim"),
     Column("thrust_loss", "W", "power that it puts into them"),
 )  # fmt: skip
-MACHINE_SIGNALS = (Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"), *AXIAL_SIGNALS)
+DRIVE_SIGNALS = (
+    Column("drive_torque", "N m", "torque of the drive of a rotor whose speed is free"),
+    Column("drive_power", "W", "its power"),
+)  # fmt: skip
+FRICTION_SIGNAL = Column("friction_torque", "N m", "torque with which all films and their contacts brake the rotor")
+MACHINE_SIGNALS = (
+    Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"), *AXIAL_SIGNALS, *DRIVE_SIGNALS, FRICTION_SIGNAL
+)  # fmt: skip
 # Those of one of several films, bearings or disks have its name behind the quantity: eccentricity_inner, disk_left_x_m
 PART_SIGNALS = (
     Column("eccentricity", "", "relative eccentricity of a journal"),

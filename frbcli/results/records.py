@@ -18,7 +18,7 @@ from frbcli.results.columns import MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.results.signals import Signal, pieces
 
 COMMANDS = ("runup", "rundown")
-STATUSES = ("finished", "contact", "starved", "overheated", "not-converged", "interrupted")
+STATUSES = ("finished", "standstill", "contact", "starved", "overheated", "not-converged", "interrupted")
 TIME, SPEED = "time_s", "speed_Hz"
 LONGEST_LABEL = 200  # characters
 MOST_ENTRIES = 500  # of a table

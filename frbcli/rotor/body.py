@@ -107,7 +107,8 @@ def tilting_mass(nodes: tuple[str, str], mass: float, tilt_inertia: float, lengt
 
 
 def spin(inertia: float) -> Body:
-    """The angle of a ring that turns, in rad, which no element between nodes acts on; inertia in kg m^2."""
+    """The angle in rad of a ring that turns or of a rotor whose speed is free, which no element between nodes acts on;
+    inertia in kg m^2."""
     return free_body(inertia * np.eye(1), (), 0.0, np.zeros((2, 1)))
 
 

@@ -14,13 +14,21 @@ from frbcli.case.schema import Case
 from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.loads import SpeedProfile
+from frbcli.runs.drive import begin_to_turn, brakes, drive_signals, loop_drive, rotation_at, rotation_of
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.errors.error_budget import budget_of_segments, grows_from, quick_budget, summed
 from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
-from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, fillings, film_signals, tilt_signals
-from frbcli.runs.record.header import FLOW, named, pin_signals, port_signals, recorded, ring_names
+from frbcli.runs.record.film_signals import (
+    OF_THE_STEPS,
+    Samples,
+    fillings,
+    film_signals,
+    port_signals,
+    tilt_signals,
+)
+from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_names
 from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
@@ -104,6 +112,7 @@ class March:
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)
+        begin_to_turn(case, system, self._state)
         self._kept = KeptFilms(case.output.films, system)
         self._wear = RunWear(case.contact.wear_rate, case.output.step, system.bodies)
         self._apart = coupling_named(plan.coupling).in_turn
@@ -115,6 +124,7 @@ class March:
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
         # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
         self._watches = self._inputs.limited or any(kind in OF_THE_STEPS for kind in recorded(case))
+        self._watches |= brakes(system)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
         self._noted, self._out_noted = np.full(notes, np.nan), np.empty((rows, notes))
         # States at some fixed output times, at which the films are solved again and runs compared.
@@ -136,7 +146,8 @@ class March:
         self._far_open = films.far_open
         self._films = films.changeable() if self._inputs.change_films else films
         until = self._profile.until(ends[0] if ends else self._profile.end)
-        self._rotor = rotor_data(self._system, until, self._inputs.loop(self._system))
+        drive = loop_drive(self._case, self._system)
+        self._rotor = rotor_data(self._system, until, self._inputs.loop(self._system), drive)
 
     def _change(self) -> int:
         """At the end of a segment: the machine and the state of the next one. Returns the status of the run."""
@@ -181,6 +192,11 @@ class March:
         return self._heat.warm(self._segments[self._current].case, self._plan, self._system)
 
     @property
+    def _rotation(self) -> tuple[float, float, float]:
+        """Angular acceleration, speed and angle of the rotor now, rad and s."""
+        return rotation_of(self._system, self._profile, self._state)
+
+    @property
     def samples(self) -> Array:
         """(k, 2 n + 1 + films) states so far at the fixed output times: see film_force_errors, and the mean oil
         fraction of each film, which is of no meaning where it keeps none; with heat clearances and scales behind."""
@@ -221,16 +237,18 @@ class March:
         self._cpu_s += ended.cpu_s - begun.cpu_s
         self._wall_s += spent
         self._budget = max(1, min(BUDGET, int(budget * min(GROWTH, CHUNK_s / max(spent, 1e-9)))))
-        self._kept.take(self._now, self._state, self._profile.angle(self.time))
+        self._kept.take(self._now, self._state, self._rotation[2])
         first = int(self._state.numbers[OUTPUTS]) - rows
         times: Array = self._control.output_step * (first + np.arange(rows, dtype=np.float64))
-        speeds = self._profile.speed(times)
+        q, v, noted = (each[:rows] for each in (self._q, self._v, self._out_noted))
+        samples = Samples(times, q, v, noted, rotation_at(self._system, self._profile, times, q, v, noted))
+        speeds = samples.rotation.speeds
         kept = np.flatnonzero((first + np.arange(rows)) % self._sample_every == 0)
         warm = self._numbers(times)
         changed = () if warm is None else (warm.clearances[kept], warm.scales[kept])
         fresh = np.column_stack([self._q[kept], self._v[kept], speeds[kept], self._oil[kept], *changed])
         self._samples = np.concatenate([self._samples, fresh])
-        signals = self._signals(times, speeds, self._q[:rows], self._v[:rows]) | self._heat.signals(rows)
+        signals = self._signals(samples, speeds) | self._heat.signals(rows)
         if status == FINISHED and self._current + 1 < len(self._segments):
             status = self._change()
         if status == RUNNING and self._state.numbers[STEPS] > self._most_steps:
@@ -249,9 +267,9 @@ class March:
         places = (selection @ self._state.q for _, selection in self._system.rotor.points)
         return max(float(np.hypot(*place)) for place in places) / self._system.length
 
-    def _signals(self, times: Array, speeds: Array, q: Array, v: Array) -> dict[str, Array]:
+    def _signals(self, samples: Samples, speeds: Array) -> dict[str, Array]:
+        times, q, v, system = samples.times, samples.q, samples.v, self._system
         signals = {"time_s": times, "speed_Hz": speeds / (2 * math.pi)}
-        system = self._system
         clearances = self._heat.clearances(len(times)) or system.clearances
         films = zip(system.names, system.rotor.journals, clearances, system.films.standing, strict=True)
         for name, selection, clearance, standing in films:
@@ -266,13 +284,13 @@ class March:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
         for name, spin in ring_names(system).items():
             signals[name] = v[:, spin] / (2 * math.pi)
-        signals |= pin_signals(system, q, v) | port_signals(system, self._profile, times, q, v)
-        samples = Samples(times, q, v, self._out_noted[: len(times)])
+        signals |= pin_signals(system, q, v) | port_signals(system, samples)
         kinds, warm = recorded(self._case), self._numbers(times)
-        self._wear.add(system, warm, self._profile, samples)
+        self._wear.add(system, warm, samples)
         signals |= self._inputs.signals(system, times, fillings(system, samples))
         signals |= {} if self._axis is None else self._axis.signals(times, q)
-        return signals | film_signals(system, self._control, self._profile, samples, kinds, self._ends, warm)
+        signals |= drive_signals(self._rotor.drive, times, speeds)
+        return signals | film_signals(system, self._control, samples, kinds, self._ends, warm)
 
     def _numbers(self, times: Array) -> FilmNumbers | None:
         """The numbers of the films that change, in the rows that the loop has written."""
@@ -305,7 +323,8 @@ class March:
 
     def check_samples(self, run: Run) -> None:
         """Raise WrongCheckpoint unless the samples of a run are those before the state that was taken up of it."""
-        check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step)
+        is_free = self._system.rotation is not None
+        check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step, is_free)
 
     def cost(self) -> dict[str, float]:
         """The cost of the run so far, compilation apart and without tabulating the films."""
@@ -331,7 +350,7 @@ class March:
 
     def error_so_far(self) -> dict[str, float | None]:
         """The part of the error that is known during a run."""
-        known = quick_budget(self._now, self._state, self._profile.angle(self.time))
+        known = quick_budget(self._now, self._state, self._rotation[2])
         return {**known, **self._heat.balance()}
 
     def again(self, plan: Plan) -> March:
@@ -365,7 +384,7 @@ class March:
         return Progress(
             t_s=t,
             end_s=end,
-            speed_Hz=float(self._profile.speed(np.array([t]))[0]) / (2 * math.pi),
+            speed_Hz=self._rotation[1] / (2 * math.pi),
             eccentricity=float(np.max(here)) if len(here) else math.nan,
             steps=int(numbers[STEPS]),
             steps_per_revolution=float(numbers[STEPS] / numbers[TURNS]) if numbers[TURNS] > 0 else math.inf,

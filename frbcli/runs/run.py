@@ -30,13 +30,13 @@ from frbcli.scene.planning.coarser_plan import cost_of_run, is_cheap, second_run
 from frbcli.scene.planning.eccentricity import run_down_profile, run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING
+from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING, STANDSTILL
 
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
 WAIT_s = 10.0  # CPU time for the error of a run that was interrupted
 PROFILES = {"runup": run_up_profile, "rundown": run_down_profile}
-STATUS = {FINISHED: "finished", CONTACT: "contact", OVERHEATED: "overheated"}
+STATUS = {FINISHED: "finished", CONTACT: "contact", OVERHEATED: "overheated", STANDSTILL: "standstill"}
 STARVED = "starved"
 
 Observer = Callable[[Progress], None]
@@ -207,7 +207,7 @@ def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: flo
         if status == RUNNING:
             return _interrupted(march, writer)
     ended = STATUS.get(status, "not-converged")
-    if status not in (FINISHED, OVERHEATED) and march.starves:
+    if status not in (FINISHED, OVERHEATED, STANDSTILL) and march.starves:
         ended = STARVED
     so_far = writer.so_far(ended)
     events = [asdict(event) for event in find_events(so_far)]

@@ -26,6 +26,7 @@ from frbcli.scene.coupling import coupling_named
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
+from frbcli.solve.drive import DrivenRotor
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs
 from frbcli.solve.ring_spin import RADIUS, STIFFNESS
@@ -51,8 +52,10 @@ FIRST_STEP = 1e-7  # s; the error control enlarges it within a few steps
 HELD_BY_SUMMITS = 1e-9  # N/m: films keep a contact gap and a run goes on as with an elastic shell, which pushes nothing
 
 
-def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()] = ()) -> RotorData:
-    """The system, its speed and its inputs over time as the time loop takes them."""
+def rotor_data(
+    system: System, profile: SpeedProfile, inputs: Inputs | tuple[()] = (), drive: DrivenRotor | tuple[()] = ()
+) -> RotorData:
+    """The system, its speed or its drive, and its inputs over time as the time loop takes them."""
     rotor = system.rotor
     # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
     table, stations = rotor.over_speed or no_part(rotor.size), system.films.stations
@@ -61,6 +64,8 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         observed += _half_tilts(system)
     observed += list(_turns_at_pins(system))
     observed += [port.place / port.law.length for port in rotor.ports]
+    if system.rotation is not None:  # an angle of 1 rad counts as a clearance: it turns the force of the unbalance
+        observed.append(np.eye(1, rotor.size, system.rotation))
     standing = system.films.seen(system.films.standing)
     return RotorData(
         mass=rotor.mass,
@@ -94,6 +99,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         standing=standing if stations > 1 else (),
         cones=make_cones(rotor.cones, rotor.size - system.ring_count),
         ports=make_ports(rotor.ports),
+        drive=drive,
     )
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from frbcli.film.cells.motion import turned
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.loads import SpeedProfile
+from frbcli.runs.drive import rotation_of
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.start import FIRST_STEP, accelerations, in_turn, settled_forces
 from frbcli.scene.machine.system import System
@@ -31,14 +32,17 @@ def with_clearances(before: System, after: System, profile: SpeedProfile, state:
     Journals must lie within their new clearances. apart: rotor and films are solved in turn.
     """
     state = State(*(part.copy() for part in state))
-    numbers, rotation = state.numbers, profile.rotation(float(state.numbers[TIME]))
+    numbers, rotation = state.numbers, rotation_of(after, profile, state)
     forces = settled_forces(after, rotation[1], state.q, state.v)
     for i in range(len(forces)):
         turn = grid_angle(after, state, i, rotation[2])
         held = after.films.refill(i, before.films, turned(displacement(after, state, i), -turn), state.wet, state.flows)
         if held is not None:
             forces[i] = turned(held, turn)
+    turned_by = () if after.rotation is None else (after.rotation,)  # its torques stay
+    alpha = state.a[list(turned_by)]
     state.a[:] = accelerations(after, float(numbers[TIME]), rotation, state.q, state.v, forces)
+    state.a[list(turned_by)] = alpha
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[ERROR_BEFORE] = numbers[STEP_BEFORE] = 0.0
     return in_turn(after, state, rotation[1]) if apart else state

@@ -17,6 +17,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.data import Records
+from frbcli.solve.drive import begin_pull, pull, turns_freely
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.scratch import Scratch
 from frbcli.solve.stage.contact import feel, rubbing
@@ -71,8 +72,8 @@ def guess_speeds(
 def spin_up(
     films: Any, work: Any, rotor: RotorData, s: int, g: float, control: Control, scratch: Scratch, rings: Rings
 ) -> float:
-    """Let the films' torques (4.17) turn the rings: speeds and angles of the stage. Returns how far, in rad, the angle
-    of a ring was off.
+    """Let the films' torques (4.17) turn the rings: speeds and angles of the stage; a rotor whose speed is free gets
+    its own torque for turn_on of drive.py. Returns how far, in rad, the angle of a ring was off.
 
     Couette's term pulls at the surfaces against each other, Poiseuille's, half the moment of the film's force about the
     middle between them, at both in the same sense. How Couette's term of a ring falls with its own speed is taken in by
@@ -80,8 +81,9 @@ def spin_up(
     """
     count, clearances, journal, at = rotor.spins.shape[0], rotor.clearances, scratch.journal, scratch.at
     bodies, angles, torque, held = rings
-    if count == 0:
+    if count == 0 and not turns_freely(rotor.drive):
         return 0.0
+    begin_pull(rotor.drive)
     for r in range(count):
         torque[r] = held[r] = 0.0
     for f in range(clearances.shape[0]):
@@ -98,6 +100,7 @@ def spin_up(
         f_x, f_y = journal[FORCE, x] - summits.f_x, journal[FORCE, y] - summits.f_y
         poiseuille = -0.5 * (e_x * f_y - e_y * f_x) if rotor.torque_terms[0] == 1 else 0.0
         inside, outside = rotor.ring_of[f, 0], rotor.ring_of[f, 1]
+        pull(rotor.drive, rotor, f, couette + poiseuille + summits.torque, resistance + summits.grip)
         if inside >= 0:
             torque[inside] += couette + poiseuille + summits.torque
             held[inside] += resistance + summits.grip

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 
-RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED = range(5)  # what advance returns
+RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED, STANDSTILL = range(6)  # what advance returns
 # omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.
 SUM, SLIP, GRID, TURNING = range(4)
 
@@ -48,6 +48,7 @@ class RotorData(NamedTuple):
     standing: Any = ()  # (journals, 2) m, where these are in their shells when the rotor has not moved; empty: centred
     cones: Any = ()  # of rings that turn and tilt, see stage/contact.py
     ports: Any = ()  # forces that are not linear, see stage/ports.py
+    drive: Any = ()  # of a rotor whose speed is free, see drive.py
 
 
 class Control(NamedTuple):

@@ -7,10 +7,11 @@ The functions are given few arrays each: to pass a tuple of many costs more than
 from __future__ import annotations
 
 import math
+from typing import Any
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.solve.scratch import rotation
+from frbcli.solve.drive import speed_now
 from frbcli.solve.state import (
     CONTACT,
     ERROR_BEFORE,
@@ -122,7 +123,7 @@ def step_to_take(
 
 @compiled()
 def begin_step(
-    numbers: Array, times: Array, speeds: Array, angles: Array, control: Control, room: int,
+    drive: Any, v: Array, numbers: Array, times: Array, speeds: Array, angles: Array, control: Control, room: int,
 ) -> tuple[int, float, int, float, float]:  # fmt: skip
     """(status, t, piece, h, step): how things stand, the time, its piece of the profile, and both of step_to_take.
 
@@ -135,7 +136,7 @@ def begin_step(
         numbers[PIECE] = piece
     if t >= times[-1]:
         return FINISHED, t, piece, 0.0, 0.0
-    speed = rotation(times, speeds, angles, piece, t)[1]
+    speed = speed_now(drive, v, times, speeds, angles, piece, t)
     h, step = step_to_take(
         numbers[STEP], numbers[STEP_BEFORE], times[piece + 1] - t, speed, control.steps_per_revolution,
         control.longest_step)  # fmt: skip

@@ -14,12 +14,13 @@ from numba.extending import overload
 
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled, folder_of
+from frbcli.solve.drive import end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, have_heat, warm_stage, write_heat
 from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
-from frbcli.solve.scratch import Scratch, make_scratch, rotation, selected
+from frbcli.solve.scratch import Scratch, make_scratch, selected
 from frbcli.solve.stage.contact import prepare_cones, set_sliding, turn_cones
 from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
@@ -28,6 +29,7 @@ from frbcli.solve.stage.loads import add_loads, prepare_loads
 from frbcli.solve.stage.ports import left_at_ports, push_ports, shortest, turn_ports
 from frbcli.solve.state import (
     HISTORY,
+    INVERSE_SPEED,
     OUTPUTS,
     RUNNING,
     SOLVES,
@@ -162,14 +164,14 @@ def _solve_stage(
     selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     newton, past, rings = own.newton, own.past, own.rings
     t_s = t + moments[s] * step
-    acceleration, speed, angle = rotation(
-        rotor.profile_times, rotor.profile_speeds, rotor.profile_angles, piece, t_s
+    predict(weights, s, step, q, v, stage_v, stage_a, at)
+    acceleration, speed, angle = stage_rotation(
+        rotor.drive, rotor.profile_times, rotor.profile_speeds, rotor.profile_angles, piece, t_s, s, g, at, stage_a
     )
     if outdated(numbers, g, speed, rotor.has_gyroscopic, rotor.follows_speed):
         prepare(rotor, selection, numbers, g, speed, products, loads, spread, compliance, elimination)
         prepare_loads(rotor.loads, rotor, g, speed)
         prepare_cones(rotor.cones, rotor, g, speed)
-    predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
     add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
     turn_ports(rotor.ports, speed, angle)
@@ -194,8 +196,13 @@ def _solve_stage(
         if share == 1.0:
             late = accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
             left = max(left, g * late / _smallest(clearances, rotor.ports))
-            if spins.shape[0] > 0:
+            if spins.shape[0] > 0 or turns_freely(rotor.drive):
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
+                left = max(left, turn_on(rotor.drive, rotor, t, t_s, s, g, rings.bodies, rings.angles, scratch))
+                if turns_freely(rotor.drive):
+                    speed = rings.bodies[0]
+                    lag = g * (speed - numbers[INVERSE_SPEED]) if rotor.has_gyroscopic else 0.0
+                    turn_ports(rotor.ports, speed, rings.angles[0])
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
                 set_sliding(control.rough, turning, rings.bodies)
                 turned = turn_cones(rotor.cones, rings.bodies, s, s, g, selection, at, stage_a, journal)
@@ -230,7 +237,8 @@ def _advance(
     stages, written, done = tableau.times.shape[0], 0, 0
 
     while done < budget:
-        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        left = len(out_q) - written
+        status, t, piece, h, step = begin_step(rotor.drive, v, numbers, times, speeds, angles, control, left)
         if step == 0.0:
             return status, written
         set_inputs(rotor.inputs, films, heat, t, step)
@@ -242,6 +250,8 @@ def _advance(
             if not solved:
                 break
         error = UNSOLVED
+        if solved and overshoots(rotor.drive, numbers, v, stage_v, step):
+            continue
         if solved:
             error = local_error(tableau.defect, rotor.observed, stage_v, stage_a, step, g)
             error = (error + film_error(films, work, flows, weights, tableau.defect, step)) / control.tolerance
@@ -268,7 +278,8 @@ def _advance(
         done += 1
         largest = _largest_eccentricity(clearances, scratch.selection, journal, q)
         status = count_step(numbers, errors, control, t_new, step, speed, error * control.tolerance, largest)
-        if status != RUNNING or hot != RUNNING:
-            return status if status != RUNNING else hot, written
+        stands = end_of_turning(rotor.drive, numbers, stage_v, v, a)
+        if status != RUNNING or hot != RUNNING or stands != RUNNING:
+            return status if status != RUNNING else max(hot, stands), written
         choose_next(numbers, h, error, order, math.inf)
     return RUNNING, written

@@ -30,8 +30,8 @@ MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
 @dataclass(frozen=True)
 class Tacho:
     """speed_Hz, angle: (n,) at the times of the samples, the latter in rad, 0 at the first pulse; missing, double: how
-    many pulses were added and left out; mark: the angle in revolutions, as the speed has it from the first sample on, at
-    which the rotor is at a pulse; None where it is not the same at all of them, or there are several in a revolution."""
+    many pulses were added and left out; mark: the angle in revolutions, as the speed has it from the first sample on,
+    at which the rotor is at a pulse; None where it differs between them, or there are several in a revolution."""
 
     speed_Hz: Array
     angle: Array

@@ -57,7 +57,7 @@ def given_speed_unit(text: str) -> SpeedUnit:
         return SpeedUnit()
     motion = tables.get("motion")
     of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
-    return SpeedUnit(_any_per_minute([tables.get("speed"), of_motion]))
+    return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), of_motion]))
 
 
 def _any_per_minute(given: object) -> bool:

@@ -58,8 +58,10 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     yield from _motion(table(data, "motion"))
     yield from thrust_breaches(data)
     for key in () if thrust_alone(data) else ("rotor", "speed"):
-        if key not in data and "motion" not in data:
+        if key not in data and "motion" not in data and not (key == "speed" and "drive" in data):
             yield Breach((key,), "is missing.", f"Add the table [{key}].")
+    if {"speed", "drive"} <= data.keys():
+        yield Breach(("speed",), "is given beside [drive], from which the speed follows.", "Keep one of the two.")
 
 
 def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -180,7 +182,7 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
 
 
 def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
-    start, speed = table(data, "start"), table(data, "speed")
+    start, speed = table(data, "start"), table(data, "drive" if "drive" in data else "speed")
     displacement = start.get("displacement")
     if isinstance(displacement, list) and len(displacement) == 2:
         x, y = (number({"": item}, "", NUMBER) for item in displacement)
@@ -194,7 +196,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
     if step >= duration:
         problem = f"is {display(step, 's')}, not below the duration of {display(duration, 's')}."
         yield Breach(("output", "step"), problem, "Shorten the step.")
-    whole = duration + (number(speed, "hold", "s", DEFAULT_HOLD) or 0.0)
+    whole = duration + (number(speed, "hold", "s", 0.0 if "drive" in data else DEFAULT_HOLD) or 0.0)
     whole += number(speed, "down_duration", "s", duration) or 0.0
     yield from _kept(table(table(data, "output"), "films"), whole)
     if whole / step > MOST_SAMPLES:

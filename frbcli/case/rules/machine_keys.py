@@ -14,7 +14,8 @@ TABLES = tuple(
 # Keys of these tables that are no numbers of the machine: of the reduction of its rotor, of kinematic tests, of the
 # course and the end of a run.
 OTHERS = re.compile(
-    r"rotor\.cutoff|.*\.ramp|.*\.clearance_steps\..*\.time|.*\.loss\.time|thermal\.hottest_film|contact\.eccentricity"
+    r"rotor\.cutoff|drive\.(start|to|duration|down_duration|reaction)|.*\.ramp|.*\.clearance_steps\..*\.time|"
+    r".*\.loss\.time|thermal\.hottest_film|contact\.eccentricity"
 )
 
 _NUMBERED = re.compile(r"\.\d+(?=\.|$)")

@@ -17,7 +17,8 @@ from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
-from frbcli.rotor.loads import SpeedProfile, loads_at
+from frbcli.rotor.loads import loads_at
+from frbcli.runs.drive import Rotation, friction_signal
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.header import (
     FLOW,
@@ -40,7 +41,7 @@ OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW, SHARE)  # they ask for what is known
 
 @dataclass(frozen=True)
 class Samples:
-    """States of a run at k output times, SI: times (k,); displacements q, velocities v (k, n).
+    """States of a run at k output times, SI: times (k,); displacements q, velocities v (k, n); rotation of the rotor.
 
     noted (k, n + NOTES films): see advance_watched of solve/watched.py, without columns if nothing is asked for that
     needs it.
@@ -50,18 +51,18 @@ class Samples:
     q: Array
     v: Array
     noted: Array
+    rotation: Rotation
 
 
 def film_signals(
     system: System,
     control: Control,
-    profile: SpeedProfile,
     samples: Samples,
     kinds: Sequence[str],
     ends: Sequence[EndFlow] = (),
     warm: FilmNumbers | None = None,
 ) -> dict[str, Array]:
-    """The signals (k,) of all films by their names.
+    """The signals (k,) of all films by their names, and the friction torque on a rotor whose speed is free.
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
@@ -70,15 +71,16 @@ def film_signals(
     films (Films.end_flows), if these are asked for their oil; warm: what heat has changed.
     """
     found, films = dict[str, Array](), warm or unchanged(system)
-    if any(kind in OF_THE_STEPS for kind in kinds):
-        forces = film_forces(system.rotor, profile, samples)
-        summits = _summits(system, films, profile, samples)
-        torques, powers = _torques(system, films, profile, samples, forces - summits[..., :2])
+    if samples.noted.size and (system.rotation is not None or any(kind in OF_THE_STEPS for kind in kinds)):
+        forces = film_forces(system.rotor, samples)
+        summits = _summits(system, films, samples)
+        torques, powers = _torques(system, films, samples, forces - summits[..., :2])
         torques, powers = torques + summits[..., 2], powers + summits[..., 3]
         shares = _shares(forces, summits[..., :2])
         flows = _flows(system, films, samples)
         if ends:
-            flows = _flows_of_motions(system, films, control, profile, samples, ends)
+            flows = _flows_of_motions(system, films, control, samples, ends)
+        found |= friction_signal(system, torques)
     for i, name in enumerate(system.names):
         for kind in kinds:
             if kind == FORCE:
@@ -91,24 +93,33 @@ def film_signals(
     return found
 
 
-def _summits(system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples) -> Array:
+def port_signals(system: System, samples: Samples) -> dict[str, Array]:
+    """The signals (k,) of forces that are not linear."""
+    found: dict[str, Array] = {}
+    for port in system.rotor.ports:
+        speed = samples.rotation.speeds
+        angle = samples.rotation.states[2] if port.law.turns else np.zeros(len(speed))
+        forces = port.along(samples.q, samples.v, speed, angle)
+        found |= {f"{port.name}_x_N": forces[:, 0], f"{port.name}_y_N": forces[:, 1]}
+    return found
+
+
+def _summits(system: System, films: FilmNumbers, samples: Samples) -> Array:
     """(k, films, 4) of rub_along; 0 between smooth surfaces."""
     found = np.zeros((len(samples.times), len(system.names), 4))
     if system.asperities is None:
         return found
     for i in range(len(system.names)):
-        clearances, motions = film_motions(system, films, profile, samples, i)
+        clearances, motions = film_motions(system, films, samples, i)
         own = np.zeros((len(motions), 4))
         rub_along(system.asperities, i, clearances, motions, own)
         found[:, i] = own
     return found
 
 
-def film_motions(
-    system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples, i: int
-) -> tuple[Array, Array]:
+def film_motions(system: System, films: FilmNumbers, samples: Samples, i: int) -> tuple[Array, Array]:
     """(k,) clearances in m of film i, and (k, 6) the motions of its surfaces: the arguments of `rub` from e_x on."""
-    total, slip = (_speeds(system, profile, samples, row)[:, i] for row in (SUM, SLIP))
+    total, slip = (_speeds(system, samples, row)[:, i] for row in (SUM, SLIP))
     selection = system.rotor.journals[i]
     motions = np.column_stack([samples.q @ selection.T, samples.v @ selection.T, slip, 0.5 * (total - slip)])
     return np.ascontiguousarray(np.broadcast_to(films.clearances[:, i], len(motions))), motions
@@ -131,9 +142,9 @@ def tilt_signals(system: System, q: Array) -> dict[str, Array]:
     return found
 
 
-def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> Array:
+def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
     """(k, films, 2) N, on the journal by one bearing: what the equation of the rotor leaves for the films."""
-    alpha, omega, angle = np.array([profile.rotation(float(t)) for t in samples.times]).reshape(-1, 3).T
+    alpha, omega, angle = samples.rotation.states
     along, across = unbalance_shares(alpha, omega, np.sin(angle), np.cos(angle))
     a = samples.noted[:, : rotor.size]
     left = a @ rotor.mass.T + samples.v @ rotor.damping.T + samples.q @ rotor.stiffness.T - rotor.static_load
@@ -153,12 +164,10 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 
 
-def _torques(
-    system: System, films: FilmNumbers, profile: SpeedProfile, samples: Samples, forces: Array
-) -> tuple[Array, Array]:
+def _torques(system: System, films: FilmNumbers, samples: Samples, forces: Array) -> tuple[Array, Array]:
     """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
     n, count = system.rotor.size, len(system.names)
-    total, slip = (_speeds(system, profile, samples, row) for row in (SUM, SLIP))
+    total, slip = (_speeds(system, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
     place, rate = (np.einsum("fij,kj->kfi", system.rotor.journals, each) for each in (samples.q, samples.v))
     couette = -films.drags * drag * slip
@@ -169,20 +178,19 @@ def _torques(
     return couette + poiseuille, power
 
 
-def _speeds(system: System, profile: SpeedProfile, samples: Samples, row: int) -> Array:
+def _speeds(system: System, samples: Samples, row: int) -> Array:
     """(k, films) rad/s: SUM or SLIP of the bodies of each film, see RotorData."""
-    bodies = np.column_stack([profile.speed(samples.times), samples.v[:, list(system.spins)]])
+    bodies = np.column_stack([samples.rotation.speeds, samples.v[:, list(system.spins)]])
     return np.asarray(bodies @ system.turning[:, row].T)
 
 
 def _flows_of_motions(
-    system: System, films: FilmNumbers, control: Control, profile: SpeedProfile, samples: Samples,
-    ends: Sequence[EndFlow],
-) -> Array:  # fmt: skip
+    system: System, films: FilmNumbers, control: Control, samples: Samples, ends: Sequence[EndFlow]
+) -> Array:
     """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move. It is homogeneous
     in their motion and the given pressures, which are divided by the scale."""
     found = np.empty((len(samples.times), len(ends)))
-    total = _speeds(system, profile, samples, SUM)
+    total = _speeds(system, samples, SUM)
     for i, end in enumerate(ends):
         clearance, scale = films.clearances[:, i : i + 1], films.scales[:, i : i + 1]
         d, v = (each @ system.rotor.journals[i].T / clearance for each in (samples.q, samples.v))

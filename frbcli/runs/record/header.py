@@ -19,7 +19,8 @@ from frbcli.elements.pin import pin_torque
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS, Header
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.loads import Harmonic, SpeedProfile, Tabulated
+from frbcli.rotor.loads import Harmonic, Tabulated
+from frbcli.runs.drive import drive_units
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.changes import loss_times, step_times
@@ -120,16 +121,6 @@ def port_units(system: System) -> dict[str, str]:
     return {f"{port.name}_{axis}_N": "N" for port in system.rotor.ports for axis in "xy"}
 
 
-def port_signals(system: System, profile: SpeedProfile, times: Array, q: Array, v: Array) -> dict[str, Array]:
-    """The signals (k,) of forces that are not linear, of displacements q and velocities v (k, n)."""
-    found: dict[str, Array] = {}
-    for port in system.rotor.ports:
-        angle = np.array([profile.angle(float(t)) for t in times]) if port.law.turns else np.zeros(len(times))
-        forces = port.along(q, v, profile.speed(times), angle)
-        found |= {f"{port.name}_x_N": forces[:, 0], f"{port.name}_y_N": forces[:, 1]}
-    return found
-
-
 def header(
     command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
 ) -> Header:
@@ -147,6 +138,7 @@ def header(
     units |= dict.fromkeys(ring_names(system), "Hz")
     units |= pin_units(system) | port_units(system)
     units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
+    units |= drive_units(system)
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))
     return Header(

@@ -47,16 +47,18 @@ def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfil
     return state
 
 
-def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float) -> None:
-    """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one."""
+def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float, is_free: bool) -> None:
+    """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one.
+    is_free: whether its speed is, and not that of the profile."""
     if run.checkpoint_samples != count:
         raise WrongCheckpoint(f"it belongs to {count} samples, not {run.checkpoint_samples}")
     fastest = float(np.max(np.abs(profile.speeds)))
     for first, last in pieces(0, count):
         times: Array = output_step * np.arange(first, last, dtype=np.float64)
         speeds = profile.speed(times)
+        turned = speeds if is_free else 2.0 * math.pi * run.read(SPEED_SIGNAL, first, last)
         late = np.abs(run.read(TIME_SIGNAL, first, last) - times).max()
-        off = np.abs(2.0 * math.pi * run.read(SPEED_SIGNAL, first, last) - speeds).max()
+        off = np.abs(turned - speeds).max()
         if late > SAME * profile.end or off > SAME * fastest:
             raise WrongCheckpoint("its samples have other times or speeds")
 

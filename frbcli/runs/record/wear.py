@@ -26,7 +26,6 @@ from frbcli.film.roughness.asperities import wear_along
 from frbcli.results.files.container import refuse
 from frbcli.results.records import untold
 from frbcli.results.store import Run, read_run
-from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.film_signals import Samples, film_motions
 from frbcli.runs.record.header import PROGRAM, version_of
@@ -47,12 +46,12 @@ class RunWear:
         self._depths = np.zeros((0 if rate is None else len(bodies), ANGLES))
         self._turns = bodies[:, 1] >= 0
 
-    def add(self, system: System, warm: FilmNumbers | None, profile: SpeedProfile, samples: Samples) -> None:
+    def add(self, system: System, warm: FilmNumbers | None, samples: Samples) -> None:
         """Let the surfaces wear as they slide at these samples."""
         if system.asperities is None or not len(self._depths):
             return
         for i, depths in enumerate(self._depths):
-            clearances, motions = film_motions(system, warm or unchanged(system), profile, samples, i)
+            clearances, motions = film_motions(system, warm or unchanged(system), samples, i)
             wear_along(system.asperities, i, clearances, motions, self._scale, depths)
 
     def snapshot(self) -> dict[str, Array]:

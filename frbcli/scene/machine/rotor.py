@@ -20,13 +20,13 @@ from frbcli.scene.machine.elements import element_parts, site_of
 from frbcli.scene.shafts.table import shaft_of
 
 
-def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
+def make_rotor(case: Case, sees: tuple[str, ...] = PLANE, free_speed: bool = False) -> LinearRotor:
     """The machine of a case, with its films in the order of film_places and the angles of its turning rings last. sees:
-    the coordinates of their journals that films act on.
+    the coordinates of their journals that films act on; free_speed: with the angle of the rotor before them.
 
     Raises InputError if its shaft has no modes.
     """
-    bodies, films, elements, centred = _bodies_and_links(case, sees)
+    bodies, films, elements, centred = _bodies_and_links(case, sees, free_speed)
     rotor = preset(_assembled(bodies, films, elements), centred)
     return replace(rotor, cones=tuple(_cones(case, bodies)))
 
@@ -42,7 +42,9 @@ def collar_tilt(case: Case) -> Array | None:
     return assembled(bodies, links).journals[0] if links else None
 
 
-def _bodies_and_links(case: Case, sees: tuple[str, ...]) -> tuple[list[Body], list[Link], Parts, list[int]]:
+def _bodies_and_links(
+    case: Case, sees: tuple[str, ...], free_speed: bool = False
+) -> tuple[list[Body], list[Link], Parts, list[int]]:
     """Bodies of the machine, links of its films, parts of its elements, and which of the films are centred dampers."""
     site, count = site_of(case), float(shaft_of(case).equal_bearings)
     bodies, films = [shaft_of(case).body()], []
@@ -60,7 +62,8 @@ def _bodies_and_links(case: Case, sees: tuple[str, ...]) -> tuple[list[Body], li
     films += [replace(damper.link(site), sees=sees) for damper in dampers]
     elements = element_parts(case)
     spins = [spin(sum(bearing.ring_inertia for bearing in around)) for around in turning_rings(case)]
-    return [*bodies, *elements.bodies, *spins], films, elements, centred
+    rotation = [spin(case.polar_inertia)] if free_speed else []
+    return [*bodies, *elements.bodies, *rotation, *spins], films, elements, centred
 
 
 def _ring_node(bearing: FloatingRingBearing) -> str:

@@ -28,10 +28,12 @@ def make_segments(case: Case, plan: Plan) -> tuple[Segment, ...]:
     found, steps = list[Segment](), step_times(case)
     for start in (0.0, *change_times(case)):
         then = case_at(case, start)
+        free = case.drive is not None
         if found and start not in steps:
             before = found[-1].system
-            system = replace(before, rotor=make_rotor(then, COORDINATES[: before.films.coordinates]))
+            rotor = make_rotor(then, COORDINATES[: before.films.coordinates], free_speed=free)
+            system = replace(before, rotor=rotor)
         else:
-            system = make_system(then, plan)
+            system = make_system(then, plan, free_speed=free)
         found.append(Segment(start, then, system))
     return tuple(found)

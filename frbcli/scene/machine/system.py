@@ -35,7 +35,8 @@ class System:
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
     torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces;
     pins: (rings or 0, PIN) of the rings, see solve/pin.py; shell: in which smooth surfaces rest where nothing else
-    carries them, None where contact ends a run.
+    carries them, None where contact ends a run; free_speed: whether the rotor has it, whose angle then comes before
+    those of the rings.
     """
 
     rotor: LinearRotor
@@ -51,6 +52,7 @@ class System:
     asperities: Asperities | None = None
     pins: Array = field(default_factory=lambda: pin_rows(()))
     shell: ElasticShell | None = None
+    free_speed: bool = False
 
     def force(
         self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None, slip: float | None = None
@@ -113,6 +115,11 @@ class System:
         return tuple(range(self.rotor.size - self.ring_count, self.rotor.size))
 
     @property
+    def rotation(self) -> int | None:
+        """Degree of freedom in which a rotor turns whose speed is free, None of any other."""
+        return self.rotor.size - self.ring_count - 1 if self.free_speed else None
+
+    @property
     def pinned(self) -> NDArray[np.bool_]:
         """(rings,) which of them a pin holds, at rest: their films pull at them in one sense."""
         return held_by_pins(self.pins, self.ring_count)
@@ -140,14 +147,16 @@ class System:
             yield place, selection @ v, total
 
 
-def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None) -> System:
+def make_system(
+    case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None, free_speed: bool = False
+) -> System:
     """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
-    rotor, default that of the run."""
+    rotor, default that of the run; free_speed: whether its speed is."""
     places, ringed = film_places(case), turning_rings(case)
     films = make_films(case, plan, top_Hz)
     with_oil = [plan.form.turns_cells and turns_with_oil(case, place) for place in places]
     return System(
-        rotor=make_rotor(case, COORDINATES[: films.coordinates]) if rotor is None else rotor,
+        rotor=make_rotor(case, COORDINATES[: films.coordinates], free_speed) if rotor is None else rotor,
         films=films,
         names=tuple(place.name for place in places),
         bodies=np.array([[place.inside, place.outside] for place in places], dtype=np.int64).reshape(-1, 2),
@@ -160,6 +169,7 @@ def make_system(case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz
         asperities=rough_surfaces(case),
         pins=pin_rows([around[0].pin for around in ringed]),
         shell=elastic_shell(case) if films.coordinates == len(PLANE) else None,
+        free_speed=free_speed,
     )
 
 

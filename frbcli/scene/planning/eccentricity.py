@@ -160,6 +160,9 @@ def run_down_profile(case: Case) -> SpeedProfile:
     """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which tell the way down
     themselves, for an axial load over time, and for a table over time that ends before."""
     speed = case.speed
+    if case.drive is not None:
+        whole = case.drive.duration + case.drive.down_duration
+        return _with_tables(case, *map(list, case.drive.course(case.polar_inertia, whole)))
     if speed.times:
         problem = "say how the speed goes down, too."
         fault = Fault("speed.points", f"{len(speed.times)} points", None, problem, "Call `frb runup`.")
@@ -182,5 +185,5 @@ def _with_tables(case: Case, times: list[float], speeds: list[float]) -> SpeedPr
     faults = (*table_faults(case, times[0], times[-1]), *input_faults(case, times[0], times[-1]))
     if faults:
         raise InputError(case.name or "case", faults)
-    stops = (*table_times(case).tolist(), *input_times(case))
+    stops = (*table_times(case).tolist(), *input_times(case), *(() if case.drive is None else case.drive.stops))
     return speed_profile(times, [2 * math.pi * value for value in speeds]).with_stops(stops)

@@ -279,7 +279,7 @@ def _advance(
     solve_columns(exchange.columns, exchange.responses, exchange.elimination, rotor, 0.0, numbers[INVERSE_SPEED])
 
     while done < budget:
-        status, t, piece, h, step = begin_step(numbers, times, speeds, angles, control, out_q.shape[0] - written)
+        status, t, piece, h, step = begin_step((), v, numbers, times, speeds, angles, control, len(out_q) - written)
         if step == 0.0:
             return status, written
         set_inputs(rotor.inputs, films, heat, t, step)

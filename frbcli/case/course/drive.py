@@ -1,0 +1,260 @@
+"""The drive of a rotor whose speed is free: its torque, what brakes it, and how fast the rotor can become by them."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from bisect import bisect_right
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
+from pydantic_core import CoreSchema, core_schema
+
+from frbcli.case.course.speed import SpeedRamp
+from frbcli.case.model import Model, with_default
+from frbcli.case.quantities import Duration, Quantity, Speed, TopSpeed
+from frbcli.case.reading.lines import Path
+from frbcli.case.reading.tables import Breach
+from frbcli.case.surroundings.machine_table import MachineTable
+from frbcli.case.surroundings.over_time import Entry, over_time_problem
+from frbcli.units import SPEED, ValueFault, display, quantity
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
+
+TORQUE = Quantity("N*m", "0.05 N*m")
+Torque = Annotated[float, TORQUE]
+CONSTANT = Quantity("N*m", "0.01 N*m", least=0)
+LINEAR = Quantity("N*m*s", "1e-4 N*m*s", least=0)
+SQUARE = Quantity("N*m*s^2", "1e-7 N*m*s^2", least=0)
+POWERS = {"constant": CONSTANT, "linear": LINEAR, "square": SQUARE}  # of the speed in rad/s
+GOVERNED = 0.02  # share of the highest speed over which a governor takes the torque away
+STEPS, POINTS = 2000, 32  # of the course that is expected
+FLAT = 1e-9  # exponent from which on a step is that of a line
+TURN = 2.0 * math.pi
+
+
+class TorquePoints(Model):
+    """A torque over the speed of the rotor or over time: linear between its points, constant beyond them."""
+
+    over: Literal["speed", "time"] = Field(description="what it depends on")
+    at: tuple[Entry, ...] = Field(description="speeds in Hz, or times in s, ascending")
+    torque: tuple[Torque, ...] = Field(description="at each of them")
+
+    def value(self, place: float) -> tuple[float, float]:
+        """The torque in N m at a speed in Hz or a time in s, and its slope there."""
+        if not self.at[0] <= place < self.at[-1]:
+            return self.torque[0 if place < self.at[0] else -1], 0.0
+        row = bisect_right(self.at, place) - 1
+        slope = (self.torque[row + 1] - self.torque[row]) / (self.at[row + 1] - self.at[row])
+        return self.torque[row] + slope * (place - self.at[row]), slope
+
+
+class BrakingLoad(Model):
+    """A torque against the rotation: the sum of three powers of the speed."""
+
+    constant: Annotated[float, CONSTANT] = Field(default=0.0, description="at any speed above 0")
+    linear: Annotated[float, LINEAR] = Field(default=0.0, description="times the speed in rad/s")
+    square: Annotated[float, SQUARE] = Field(default=0.0, description="times its square")
+
+
+@dataclass(frozen=True)
+class _Points:
+    """Reads a list of speeds or times with torques."""
+
+    remedy = 'Write e.g. [["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]], or times in place of the speeds.'
+
+    def read(self, given: object) -> TorquePoints:
+        """Raises ValueFault."""
+        if isinstance(given, TorquePoints):
+            return given
+        if isinstance(given, dict) and given.keys() == TorquePoints.model_fields.keys():
+            over, places, torques = given["over"], given["at"], given["torque"]
+        elif isinstance(given, list | tuple) and all(isinstance(row, list | tuple) and len(row) == 2 for row in given):
+            places, torques = [row[0] for row in given], [row[1] for row in given]
+            over = "time" if self._are(places, "s") else "speed"
+        else:
+            raise ValueFault("is no list of speeds or times with torques.", self.remedy)
+        if over not in ("speed", "time") or not isinstance(places, list) or not isinstance(torques, list):
+            raise ValueFault("is no list of speeds or times with torques.", self.remedy)
+        try:
+            unit = {"speed": SPEED, "time": "s"}[over]
+            at, torque = tuple(quantity(each, unit) for each in places), tuple(TORQUE.read(each) for each in torques)
+        except ValueFault as fault:
+            raise ValueFault(f"has a value that {fault.problem}", self.remedy) from None
+        if problem := over_time_problem(at, torque):
+            problem = problem.replace("times", f"{over}s").replace(" s ", f" {unit} ")
+            raise ValueFault(problem if torque else f"needs at least two {over}s.", self.remedy)
+        return TorquePoints(over=over, at=at, torque=torque)
+
+    def _are(self, places: list[object], unit: str) -> bool:
+        """Whether all places that have a unit can be read in this one. Raises ValueFault where none has a unit."""
+        named = [each for each in places if isinstance(each, str)]
+        if not named:
+            raise ValueFault("has places without a unit: they can be speeds or times.", self.remedy)
+        try:
+            return all(math.isfinite(quantity(each, unit)) for each in named)
+        except ValueFault:
+            return False
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        pair = {"type": "array", "minItems": 2, "maxItems": 2}
+        told = "speeds or times with torques"
+        return {"type": "array", "items": pair, "minItems": 2, "description": told,
+                "examples": [[["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]]]}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class _Loads:
+    """Reads a load: one quantity, whose unit tells the power of the speed, or a table of several."""
+
+    remedy = 'Write e.g. "0.01 N*m", "1e-4 N*m*s", "1e-7 N*m*s^2", or { constant = "0.01 N*m", square = ... }.'
+
+    def read(self, given: object) -> BrakingLoad:
+        """Raises ValueFault."""
+        if isinstance(given, BrakingLoad):
+            return given
+        if isinstance(given, dict) and given.keys() <= POWERS.keys():
+            return BrakingLoad(**{key: self._one(POWERS[key], value) for key, value in given.items()})
+        if isinstance(given, str):
+            for key, power in POWERS.items():
+                try:
+                    quantity(given, power.unit)
+                except ValueFault:
+                    continue
+                return BrakingLoad(**{key: self._one(power, given)})
+        raise ValueFault("is no torque over a power of the speed.", self.remedy)
+
+    def _one(self, power: Quantity, given: object) -> float:
+        try:
+            return power.read(given)
+        except ValueFault as fault:
+            raise ValueFault(fault.problem, self.remedy) from None
+
+    def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self.read)
+
+    def __get_pydantic_json_schema__(self, _schema: CoreSchema, handler: GetJsonSchemaHandler) -> dict[str, Any]:
+        text = {"type": "string", "examples": [power.example for power in POWERS.values()]}
+        powers = {key: power.__get_pydantic_json_schema__({}, handler) for key, power in POWERS.items()}
+        table = {"type": "object", "properties": powers, "additionalProperties": False}
+        return {"description": "a torque in N*m, N*m*s or N*m*s^2", "anyOf": [text, table]}
+
+
+class Drive(MachineTable):
+    """Free speed: J omega' = torque - load - friction of the films. It replaces [speed]."""
+
+    torque: Torque = Field(default=0.0, description="of the drive; below 0 it brakes")
+    points: Annotated[TorquePoints, _Points()] | None = Field(
+        default=None, description="replaces torque: speeds or times with torques, linear between them"
+    )
+    load: Annotated[BrakingLoad, _Loads()] = Field(
+        default=BrakingLoad(), description="brakes: constant, with the speed or its square, by the unit; or a table"
+    )
+    start: Speed = Field(default=0.0, description="speed at the start of a run")
+    end: TopSpeed | None = Field(
+        default=None,
+        alias="to",
+        description="highest speed, held by a governor; by default that of torque and load without friction of films",
+    )
+    duration: Duration = Field(description="of the torque, and of a run-up")
+    down_duration: Duration = Field(
+        default=math.nan, description="of a run-down behind it, without torque; the duration if not given"
+    )
+    reaction: bool = Field(default=False, description="whether the whirl of the unbalance acts on the rotation")
+
+    @model_validator(mode="before")
+    @classmethod
+    def _down_as_long_as_up(cls, data: object) -> object:
+        return with_default(data, "down_duration", "duration")
+
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        if not case.polar_inertia:
+            remedy = 'Add e.g. polar_inertia = "2e-4 kg*m^2" to [rotor].'
+            yield Breach(("rotor", "polar_inertia"), "is missing; [drive] turns it.", remedy)
+            return
+        if self.points is not None and "torque" in self.model_fields_set:
+            yield Breach((*path, "torque"), "is given beside points.", "Keep one of the two.")
+        if self.end is not None and self.end <= self.start:
+            problem = f"is {display(self.end, SPEED)}, not above the start at {display(self.start, SPEED)}."
+            yield Breach((*path, "to"), problem, "Raise it, or leave it out.")
+        if self.start == 0.0 and not self._begins_to_turn:
+            held = f"does not turn a rotor from rest against a load of {display(self.load.constant, 'N*m')}."
+            key = "torque" if self.points is None else "points"
+            yield Breach((*path, key), held, 'Give a larger torque at the start, or e.g. start = "100 Hz".')
+
+    @property
+    def _begins_to_turn(self) -> bool:
+        """Whether a rotor at rest turns; without a load a torque over time may still be to come."""
+        net = self.net(0.0, 0.0)[0]
+        later = self.points is not None and self.points.over == "time" and self.load.constant == 0.0
+        return net > 0.0 or (later and net == 0.0)
+
+    def net(self, time: float, omega: float) -> tuple[float, float]:
+        """Torque less load in N m at a time in s and a speed in rad/s, and by how much it rises with the speed."""
+        given, slope = self._driving(time, omega) if time < self.duration else (0.0, 0.0)
+        load = self.load
+        against = load.constant + (load.linear + load.square * omega) * omega
+        return given - against, slope - load.linear - 2.0 * load.square * omega
+
+    def _driving(self, time: float, omega: float) -> tuple[float, float]:
+        """The torque of the drive in N m, and by how much it rises with the speed: governed below its highest one."""
+        torque, slope = self.torque, 0.0
+        if self.points is not None:
+            of_speed = self.points.over == "speed"
+            torque, slope = self.points.value(omega / TURN if of_speed else time)
+            slope = slope / TURN if of_speed else 0.0
+        if self.end is None or torque <= 0.0:
+            return torque, slope
+        width = GOVERNED * TURN * self.end
+        share = (TURN * self.end - omega) / width
+        if share >= 1.0:
+            return torque, slope
+        return max(share, 0.0) * torque, max(share, 0.0) * slope - (torque / width if share > 0.0 else 0.0)
+
+    @property
+    def stops(self) -> tuple[float, ...]:
+        """Times in s at which the torque has a kink."""
+        over_time = self.points is not None and self.points.over == "time"
+        return (*(self.points.at if over_time and self.points is not None else ()), self.duration)
+
+    def expected(self, inertia: float) -> SpeedRamp:
+        """The speeds of a run-up without friction of films, which no run exceeds, as far as a governor lets them;
+        inertia in kg m^2. Of a rotor that only slows down they end at 0."""
+        times, speeds = self.course(inertia, self.duration)
+        top = max(speeds)
+        ramp = {"from": self.start, "to": top if top > self.start else 0.0, "duration": self.duration}
+        down = {"hold": 0.0, "down_duration": self.down_duration}
+        return SpeedRamp.model_validate({**ramp, **down, "times": times, "speeds": speeds})
+
+    def course(self, inertia: float, end: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+        """Times in s up to `end` with the speeds in Hz of `expected`."""
+        return _course(self, inertia, end)
+
+
+@lru_cache(maxsize=64)
+def _course(drive: Drive, inertia: float, end: float) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """By exponential steps, exact where the torque is linear in the speed, between the kinks of the torque."""
+    kinks = sorted({0.0, end, *(t for t in drive.stops if 0.0 < t < end)})
+    times, speeds, omega = [0.0], [drive.start], TURN * drive.start
+    for begin, stop in itertools.pairwise(kinks):
+        share = (stop - begin) / end
+        points = max(1, math.ceil(POINTS * share))
+        inner = max(1, math.ceil(STEPS * share / points))
+        step = (stop - begin) / (points * inner)
+        for point in range(1, points + 1):
+            for each in range(inner):
+                time = begin + ((point - 1) * inner + each + 0.5) * step  # the middle: also between two kinks
+                torque, slope = drive.net(time, omega)
+                rate = slope / inertia * step
+                grown = math.expm1(rate) / rate if abs(rate) > FLAT else 1.0
+                omega = max(omega + step * grown * torque / inertia, 0.0)
+            times.append(stop if point == points else begin + point * inner * step)
+            speeds.append(omega / TURN)
+    return tuple(times), tuple(speeds)
