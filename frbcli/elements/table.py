@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
+from frbcli.elements.ball import BallBearingElement
 from frbcli.elements.base import BaseElement
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.collar.thrust import ThrustElement
@@ -17,8 +18,8 @@ from frbcli.elements.pin import PinElement
 from frbcli.elements.support import SupportElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
-    GivenCoefficients, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
-    MagneticPullElement, BaseElement,
+    GivenCoefficients, BallBearingElement, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement,
+    ForceElement, MagneticPullElement, BaseElement,
 )  # fmt: skip
 
 

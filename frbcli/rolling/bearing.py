@@ -16,8 +16,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
+from frbcli.materials.solids import Elastic
 from frbcli.rolling.force import BELOW, KNOWN, BallBearings, ball_bearing_force, rings
-from frbcli.rolling.hertz import Elastic, HertzContact, contact
+from frbcli.rolling.hertz import HertzContact, contact
 
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help

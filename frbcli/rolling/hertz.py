@@ -13,21 +13,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from frbcli.materials.solids import Elastic
+
 NEARLY_ROUND = 1e-4  # difference of the curvatures below which F is 3/4 ln kappa but for its third power
-
-
-@dataclass(frozen=True)
-class Elastic:
-    """An elastic body: modulus in Pa, Poisson's ratio, density in kg/m^3."""
-
-    modulus: float
-    poisson: float
-    density: float
-
-    @property
-    def compliance(self) -> float:
-        """(1 - nu^2) / E in 1/Pa."""
-        return (1.0 - self.poisson**2) / self.modulus
 
 
 @dataclass(frozen=True)

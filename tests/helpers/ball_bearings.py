@@ -2,9 +2,9 @@
 
 from math import radians
 
+from frbcli.materials.solids import ROLLING
 from frbcli.rolling.bearing import BallBearing
-from frbcli.rolling.hertz import Elastic
 
-STEEL, NITRIDE = Elastic(207e9, 0.3, 7800.0), Elastic(310e9, 0.27, 3200.0)
+STEEL, NITRIDE = ROLLING["steel"], ROLLING["silicon nitride"]
 A = BallBearing(8, 3.175e-3, 14e-3, radians(15.0), 0.53, 0.53, STEEL, STEEL, preload=60.0)
 B = BallBearing(9, 4e-3, 18e-3, radians(25.0), 0.52, 0.53, NITRIDE, STEEL, preload=60.0)

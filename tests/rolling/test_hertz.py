@@ -5,7 +5,8 @@ from math import pi, sqrt
 import pytest
 from ball_bearings import STEEL, A, B
 
-from frbcli.rolling.hertz import Elastic, contact
+from frbcli.materials.solids import Elastic
+from frbcli.rolling.hertz import contact
 
 RADIUS = 5e-3
 
