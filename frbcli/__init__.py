@@ -38,6 +38,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
+    from frbcli.linear.rolling.sheet import ball_bearing_sheet as ball_bearing_sheet
     from frbcli.linear.stability import stability as stability
     from frbcli.linear.thrust.sheet import thrust_sheet as thrust_sheet
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
@@ -83,6 +84,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "add_bearing": "frbcli.case.films.additions",
     "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
+    "ball_bearing_sheet": "frbcli.linear.rolling.sheet",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",

@@ -66,6 +66,11 @@ class BallBearingElement(MachineElement):
         return Parts(links=((self.link(site), LinearPart.of(np.zeros((2, 2)), self.given.damping * np.eye(2))),))
 
     def told(self, site: Site) -> Line:
+        return self.line
+
+    @property
+    def line(self) -> Line:
+        """Its line of the plan, also of one without a machine."""
         given, rings = self.given, self.rings
         rows = f"two rows {given.arrangement}, each of " if rings.rows > 1 else ""
         value = f"{given.name}: {rows}{given.balls} balls of {display(given.ball_diameter, 'm')}".removeprefix(": ")

@@ -16,7 +16,8 @@ import math
 
 import numpy as np
 
-from frbcli.rolling.bearing import BallBearing, Balls
+from frbcli.rolling.bearing import BallBearing
+from frbcli.rolling.rest import Balls
 
 STANDING, TURNING, WEIBULL = 10.0 / 3.0, 3.0, 0.9
 

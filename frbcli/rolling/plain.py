@@ -7,12 +7,11 @@ together to round-off.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.rolling.force import BELOW, BallBearings
+from frbcli.rolling.force import BELOW, BallNumbers
 
 MICROMETRE = 1e-6
 
@@ -28,13 +27,10 @@ class PlainRings:
     stiffness: Array
 
 
-def solve_plain(
-    data: BallBearings, b: int, displacement: tuple[float, float], omega: float, cage: float = 0.0
-) -> PlainRings:
-    """Bearing b at a displacement (x, y) in m and a speed in rad/s; cage: its angle in rad."""
+def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float = 0.0) -> PlainRings:
+    """The bearing at a displacement (x, y) in m and a speed in rad/s; cage: its angle in rad."""
     from scipy.optimize import minimize
 
-    of: Any = BallBearings(*(column[b].item() for column in data))  # numbers, of one
     psi = BELOW + cage + 2.0 * np.pi * np.arange(of.points) / of.points
     free = np.arange(3 if of.held else 2, 3 + 2 * of.points)
     start = np.zeros(3 + 2 * of.points)
@@ -62,7 +58,7 @@ def solve_plain(
     return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness)
 
 
-def _energy(of: Any, psi: Array, q: Array, centrifugal: float) -> tuple[float, Array, Array]:
+def _energy(of: BallNumbers, psi: Array, q: Array, centrifugal: float) -> tuple[float, Array, Array]:
     """Energy in J with its gradient and matrix by q = (x, y, z, u_0, v_0, u_1, ...)."""
     size = len(q)
     energy, gradient, matrix = -float(of.preload) * q[2] * (1 - of.held), np.zeros(size), np.zeros((size, size))

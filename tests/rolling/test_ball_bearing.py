@@ -9,10 +9,11 @@ import pytest
 from ball_bearings import STEEL, A, B
 from paths import DATA
 
-from frbcli.rolling.bearing import BallBearing, at_displacement, joined, scratch, under_load
-from frbcli.rolling.force import BallBearings, ball_bearing_force
+from frbcli.rolling.bearing import BallBearing
+from frbcli.rolling.force import ball_bearing_force
 from frbcli.rolling.life import rating_life
 from frbcli.rolling.plain import solve_plain
+from frbcli.rolling.rest import at_displacement, under_load
 
 BEARINGS = {"A": A, "B": B}
 # independent program: Hertz contacts by elliptic integrals, centrifugal force of the balls, no friction, no gyroscopic
@@ -47,15 +48,14 @@ def random_points() -> list[tuple[BallBearing, np.ndarray, float, float]]:
     return points
 
 
-def kernel(data: BallBearings, place: np.ndarray, omega: float, cage: float) -> np.ndarray:
-    return np.array(ball_bearing_force(data, 0, *place.tolist(), omega, cage, scratch(data)[0]))
+def kernel(bearing: BallBearing, place: np.ndarray, omega: float, cage: float) -> np.ndarray:
+    return np.array(ball_bearing_force(bearing.numbers, *place.tolist(), omega, cage, bearing.memory))
 
 
 @pytest.mark.parametrize("point", random_points())
 def test_kernel_is_the_plain_form(point: tuple[BallBearing, np.ndarray, float, float]) -> None:
     bearing, place, omega, cage = point
-    data = joined([bearing])
-    found, plain = kernel(data, place, omega, cage), solve_plain(data, 0, tuple(place), omega, cage)
+    found, plain = kernel(bearing, place, omega, cage), solve_plain(bearing.numbers, place, omega, cage)
     assert found[:2] == pytest.approx(plain.force, rel=1e-9, abs=1e-9 * np.abs(plain.force).max())
     assert found[2:] == pytest.approx(plain.stiffness.ravel(), abs=1e-6 * np.abs(plain.stiffness).max())
 
@@ -63,24 +63,23 @@ def test_kernel_is_the_plain_form(point: tuple[BallBearing, np.ndarray, float, f
 @pytest.mark.parametrize("point", random_points()[::2])
 def test_stiffness_is_the_derivative(point: tuple[BallBearing, np.ndarray, float, float]) -> None:
     bearing, place, omega, cage = point
-    data, step = joined([bearing]), 1e-10
-    stiffness = kernel(data, place, omega, cage)[2:].reshape(2, 2)
+    step = 1e-10
+    stiffness = kernel(bearing, place, omega, cage)[2:].reshape(2, 2)
     for axis in range(2):
         off = step * np.eye(2)[axis]
-        forces = [kernel(data, place + way * off, omega, cage)[:2] for way in (1.0, -1.0)]
+        forces = [kernel(bearing, place + way * off, omega, cage)[:2] for way in (1.0, -1.0)]
         difference = (forces[1] - forces[0]) / (2.0 * step)
         assert stiffness[:, axis] == pytest.approx(difference, abs=1e-5 * max(np.abs(stiffness).max(), 1e4))
 
 
 def test_what_the_last_call_left_does_not_change_the_answer() -> None:
     """Jumps as a run never has them: from any state to any other, also beyond the grooves."""
-    random, data = np.random.default_rng(1), joined([A])
-    kept = scratch(data)[0]
+    random, kept = np.random.default_rng(1), A.memory
     for _ in range(300):
         place = random.normal(size=2) * 10.0 ** random.uniform(-8.0, -3.9)
         omega, cage = 10.0 ** random.uniform(-1.0, 4.4), random.uniform(0.0, 7.0)
-        found = np.array(ball_bearing_force(data, 0, *place.tolist(), omega, cage, kept))
-        assert found == pytest.approx(kernel(data, place, omega, cage), rel=1e-5, abs=1e-6 * np.abs(found).max())
+        found = np.array(ball_bearing_force(A.numbers, *place.tolist(), omega, cage, kept))
+        assert found == pytest.approx(kernel(A, place, omega, cage), rel=1e-5, abs=1e-6 * np.abs(found).max())
 
 
 def test_radial_load_is_carried_as_stribeck_says() -> None:
@@ -145,10 +144,10 @@ def test_mean_over_the_cage_is_the_same_in_all_directions() -> None:
     """The mean of the force over angles of the cage, for rings that are held: they have one axial displacement."""
     held, omega, size = replace(A, preload=None, offset=8e-6), 6000.0, 2e-6
     angles = np.linspace(0.0, 2.0 * math.pi / A.balls, 12, endpoint=False)
-    mean = joined([replace(held, turning=False)])
+    mean = replace(held, turning=False)
     for phi in (0.0, 0.3, 2.0):
         place = size * np.array([math.cos(phi), math.sin(phi)])
-        forces = [kernel(joined([held]), place, omega, angle) for angle in angles]
+        forces = [kernel(held, place, omega, angle) for angle in angles]
         assert kernel(mean, place, omega, 0.0) == pytest.approx(np.mean(forces, axis=0), rel=1e-4, abs=1.0)
 
 

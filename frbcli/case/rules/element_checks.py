@@ -27,6 +27,12 @@ def has_films(data: Mapping[str, Any]) -> bool:
     return not found or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in found)
 
 
+def balls_alone(data: Mapping[str, Any]) -> bool:
+    """Whether a case is of ball bearings alone, for their sheet."""
+    kinds = {bearing.get("kind") for _, bearing in tables(data, "bearing")}
+    return kinds == {"ball"} and not {"rotor", "speed"} & data.keys()
+
+
 def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Every broken rule of elements without a film, of dampers and of supports."""
     for path, bearing in tables(data, "bearing"):

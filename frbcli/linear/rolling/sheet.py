@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -15,8 +16,8 @@ from frbcli.elements.ball import BallBearingElement
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.rolling.columns import BALL_SHEET
-from frbcli.rolling.bearing import RestingRings, under_load
 from frbcli.rolling.life import rating_life
+from frbcli.rolling.rest import RestingRings, under_load
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10
@@ -158,7 +159,7 @@ def _state(element: BallBearingElement, load: Array, speed: float) -> BallState:
     )  # fmt: skip
 
 
-def _of_balls(element: BallBearingElement, rest: RestingRings) -> dict[str, float]:
+def _of_balls(element: BallBearingElement, rest: RestingRings) -> dict[str, Any]:
     """What the balls of a row bear."""
     balls, (inner, outer) = rest.balls, element.rings.contacts
     most = int(np.argmax(balls.inner_load))

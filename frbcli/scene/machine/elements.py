@@ -149,8 +149,14 @@ def without_film(case: Case, what: str) -> list[Fault]:
     if case.films or not case.given_bearings:
         return []
     problem = f"has no film, and {what}."
-    first = next(GivenCoefficients.of(case))
-    return [Fault(f"{first.key}.kind", first.given.kind, None, problem, "Add a bearing with a film.")]
+    key, kind = first_without_film(case)
+    return [Fault(key, kind, None, problem, "Add a bearing with a film.")]
+
+
+def first_without_film(case: Case) -> tuple[str, str]:
+    """Key and value of the kind of the first bearing without a film, of a case that has one."""
+    keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
+    return next((f"{key}.kind", bearing.kind) for key, bearing in keyed if bearing in case.elements)
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
