@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
-from frbcli.elements.ball import BallBearingElement
 from frbcli.elements.base import BaseElement
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.collar.thrust import ThrustElement
@@ -15,6 +14,7 @@ from frbcli.elements.force import ForceElement
 from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.pin import PinElement
+from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.support import SupportElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (

@@ -2,8 +2,8 @@
 
 from math import radians
 
+from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.materials.solids import ROLLING
-from frbcli.rolling.bearing import BallBearing
 
 STEEL, NITRIDE = ROLLING["steel"], ROLLING["silicon nitride"]
 A = BallBearing(8, 3.175e-3, 14e-3, radians(15.0), 0.53, 0.53, STEEL, STEEL, preload=60.0)

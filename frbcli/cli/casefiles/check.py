@@ -119,7 +119,7 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
 
 def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
     """What `frb bearing` models of a case of ball bearings alone."""
-    from frbcli.elements.ball import BallBearingElement
+    from frbcli.elements.rolling.ball import BallBearingElement
     from frbcli.scene.planning.planned import Decision
 
     if everything:

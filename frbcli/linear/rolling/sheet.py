@@ -12,12 +12,12 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
-from frbcli.elements.ball import BallBearingElement
+from frbcli.elements.rolling.ball import BallBearingElement
+from frbcli.elements.rolling.life import rating_life
+from frbcli.elements.rolling.rest import RestingRings, under_load
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.rolling.columns import BALL_SHEET
-from frbcli.rolling.life import rating_life
-from frbcli.rolling.rest import RestingRings, under_load
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 from matplotlib.figure import Figure
 
 from frbcli.linear.rolling.sheet import BallSheet, BallState
 from frbcli.plot.style import COLOURS, new_figure, styled
 
-STIFFNESSES = (("xx", lambda state: state.stiffness[0, 0]), ("yy", lambda state: state.stiffness[1, 1]),
-               ("axial", lambda state: state.axial_stiffness))  # fmt: skip
 PRESSURES = (("inner ring", "inner_p_max"), ("outer ring", "outer_p_max"))
 
 
@@ -23,12 +22,13 @@ def ball_figure(sheet: BallSheet) -> Figure:
     with styled():
         figure = new_figure(sheet.case.heading, name, width=9.6, height=4.6)
         stiffness, pressure = figure.subplots(1, 2)
-        for number, (label, of) in enumerate(STIFFNESSES):
-            values = [1e-6 * of(state) for state in states]
-            stiffness.plot(along, values, color=COLOURS[number], marker=".", label=label)
+        radial = np.array([np.diag(state.stiffness) for state in states if state.stiffness is not None])
+        curves = {"xx": radial[:, 0], "yy": radial[:, 1], "axial": np.array([each.axial_stiffness for each in states])}
+        for number, (label, values) in enumerate(curves.items()):
+            stiffness.plot(along, 1e-6 * values, color=COLOURS[number], marker=".", label=label)
         for number, (label, quantity) in enumerate(PRESSURES):
-            values = [1e-6 * getattr(state, quantity) for state in states]
-            pressure.plot(along, values, color=COLOURS[number], marker=".", label=label)
+            pressures = [1e-6 * getattr(state, quantity) for state in states]
+            pressure.plot(along, pressures, color=COLOURS[number], marker=".", label=label)
         for panel, label in ((stiffness, "stiffness in N/µm"), (pressure, "largest pressure in MPa")):
             panel.set(xlabel="load in N" if over_load else "speed in Hz", ylabel=label, ylim=(0.0, None))
             panel.legend()

@@ -14,9 +14,9 @@ from functools import cached_property
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.elements.rolling.force import KNOWN, BallNumbers
+from frbcli.elements.rolling.hertz import HertzContact, contact
 from frbcli.materials.solids import Elastic
-from frbcli.rolling.force import KNOWN, BallNumbers
-from frbcli.rolling.hertz import HertzContact, contact
 
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 

@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.elements.rolling.bearing import BallBearing
+from frbcli.elements.rolling.force import BELOW, KNOWN, BallNumbers, ball_bearing_force, rings
 from frbcli.errors import NotConverged
-from frbcli.rolling.bearing import BallBearing
-from frbcli.rolling.force import BELOW, KNOWN, BallNumbers, ball_bearing_force, rings
 
 SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help
 STEPS = 80

@@ -16,8 +16,8 @@ import math
 
 import numpy as np
 
-from frbcli.rolling.bearing import BallBearing
-from frbcli.rolling.rest import Balls
+from frbcli.elements.rolling.bearing import BallBearing
+from frbcli.elements.rolling.rest import Balls
 
 STANDING, TURNING, WEIBULL = 10.0 / 3.0, 3.0, 0.9
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.rolling.force import BELOW, BallNumbers
+from frbcli.elements.rolling.force import BELOW, BallNumbers
 
 MICROMETRE = 1e-6
 

@@ -12,8 +12,8 @@ import numpy as np
 from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
+from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.materials.solids import ROLLING, Elastic
-from frbcli.rolling.bearing import BallBearing
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
