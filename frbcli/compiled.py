@@ -17,6 +17,7 @@ from functools import cache, partial, update_wrapper
 from glob import escape
 from inspect import signature
 from pathlib import Path
+from types import FunctionType
 from typing import Any, TypeVar, cast
 
 import numpy as np
@@ -218,6 +219,28 @@ def call_of(numbers: int) -> Callable[..., Any]:
         return context.get_dummy_value()
 
     return generate
+
+
+def jitted(function: Any, force_inline: bool = False) -> Any:
+    """A plain function as numba takes it, with every plain function of its module that it calls; others as they are.
+
+    force_inline: put into the machine code of its callers, so that a loop over it can run on the vector units.
+    """
+    if not _is_plain(function):
+        return function
+    known = function.__globals__
+    called = {
+        name: jitted(known[name], force_inline)
+        for name in function.__code__.co_names
+        if _is_plain(known.get(name)) and known[name] is not function
+    }
+    names = {**known, **called}
+    made = FunctionType(function.__code__, names, function.__name__, function.__defaults__, function.__closure__)
+    return njit(error_model="numpy", forceinline=force_inline)(made)
+
+
+def _is_plain(value: Any) -> bool:
+    return isinstance(value, FunctionType)
 
 
 def folder_of(kernel: Callable[..., object]) -> Path | None:

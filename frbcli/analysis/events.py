@@ -1,5 +1,5 @@
 """Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
-contact, touch and lift-off of rough surfaces and of pins; and when a clearance changed.
+contact, touch and lift-off of rough surfaces, pins and stops; and when a clearance changed.
 
 The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -54,6 +54,7 @@ SUSTAINED_REVOLUTIONS = 20.0  # ten periods of a half-frequency whirl: what dies
 CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact begins
 COLLAR_FILM, COLLAR_TOUCHES = "thrust_film_thickness_m", 1e-6 * (1.0 + 1e-9)  # m: the roughness of surfaces
 PIN, PIN_UNIT, PUSHES = "pin_torque", "_N_m", 1e-300  # N m: a pin that has any torque touches its ring
+STOP, ALONG_X = "stop_force", "_x_N"
 CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
 TOUCHES, LIFTED = 0.01, 0.001  # share of the force from which asperities count as touching, and below which as apart
 
@@ -148,6 +149,9 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     for signal in [name for name in run.signals if name.startswith(PIN)]:
         ring = joined("ring", signal.removeprefix(PIN).removesuffix(PIN_UNIT).strip("_"))
         events += _touches(run, signal, None, ring, (PUSHES, PUSHES))
+    for signal in [name for name in run.signals if name.startswith(STOP) and name.endswith(ALONG_X)]:
+        stop = joined("stop", signal.removeprefix(STOP).removesuffix(ALONG_X).strip("_"))
+        events += _touches(run, signal, None, stop, (PUSHES, PUSHES))
     changes = _clearance_steps(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events, *on_pads], key=lambda event: event.t_s))
 

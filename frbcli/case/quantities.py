@@ -53,7 +53,7 @@ class Quantity:
     def read(self, given: object) -> float:
         """The SI value of `given`. Raises ValueFault if it is no such quantity or out of bounds."""
         value = quantity(given, self.unit, self.example)
-        if value and not SMALLEST <= abs(value) <= LARGEST:
+        if value and not SMALLEST <= abs(value) <= max(LARGEST, self.most or 0.0):
             raise ValueFault(f"is {display(value, self.unit)}, which is out of range.", self.as_remedy())
         for bad, words, bound in (
             (self.above is not None and value <= self.above, "greater than", self.above),

@@ -34,6 +34,7 @@ from frbcli.case.surroundings.force import AppliedForce
 from frbcli.case.surroundings.housing import Housing
 from frbcli.case.surroundings.magnetic_pull import MagneticPull
 from frbcli.case.surroundings.over_time import largest
+from frbcli.case.surroundings.spring import Spring
 from frbcli.case.thermal import AnyThermal, Thermal
 from frbcli.errors import Fault, InputError
 from frbcli.html import html_table
@@ -64,6 +65,9 @@ class Case(Model):
     )
     magnetic_pulls: tuple[MagneticPull, ...] = Field(
         default=(), alias="magnetic_pull", description="of electrical machines on places of the rotor"
+    )
+    springs: tuple[Spring, ...] = Field(
+        default=(), alias="spring", description="springs, dampers and stops between places of the machine"
     )
     bases: Bases = Field(default=(), alias="base", description="motion of the ground that the machine stands on")
     given_bearings: Bearings = Field(

@@ -9,7 +9,7 @@ from typing import ClassVar, Self
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import GROUND, Link, NodeForce
+from frbcli.rotor.assembly import GROUND, Link, NodeForce, PortLink
 from frbcli.rotor.body import Body
 from frbcli.rotor.loads import LinearPart, Load
 
@@ -33,13 +33,15 @@ class Site:
 
 @dataclass(frozen=True)
 class Parts:
-    """What elements add to a machine: bodies with nodes, linear parts between nodes, constant forces on nodes, and
-    loads on the x and y of nodes that change with the angle of the rotor or with time."""
+    """What elements add to a machine: bodies with nodes, linear parts between nodes, constant forces on nodes, loads
+    on the x and y of nodes that change with the angle of the rotor or with time, and forces between nodes that are not
+    linear, by the names of their signals."""
 
     bodies: tuple[Body, ...] = ()
     links: tuple[tuple[Link, LinearPart], ...] = ()
     forces: tuple[NodeForce, ...] = ()
     loads: tuple[tuple[str, Load], ...] = ()
+    ports: tuple[PortLink, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -18,6 +18,7 @@ from frbcli.equilibrium.coefficients import FilmsAtRest
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.ring_speed import SUM, memoryless, ring_torques, rubbed_rings, turned_by
 from frbcli.rotor.linear import LinearRotor, with_precession
+from frbcli.rotor.port import tangent
 from frbcli.scene.machine.system import System
 
 
@@ -31,7 +32,7 @@ def rotor_at_rest(
 
     oil: stiffness and damping (c + 1, c + 1) of the films without their summits, see LinearFilm.turning, by which they
     turn the rings and follow them; by default as films without memory have them."""
-    rotor = with_precession(system.rotor, ring_speeds)
+    rotor = with_precession(tangent(system.rotor, omega, at_rest.position.displacements), ring_speeds)
     if not system.ring_count:
         return rotor
     places, bodies = at_rest.position.journals, np.append(omega, at_rest.position.ring_speeds)

@@ -30,6 +30,7 @@ from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import EQUAL
+from frbcli.rotor.port import tangent
 from frbcli.scene.films import full_films, rings
 
 SPEEDS = 20  # between which natural frequencies are nearly straight
@@ -331,7 +332,8 @@ def _modes(machines: StaticMachines, speeds_Hz: Sequence[float]) -> Iterator[tup
         except NotConverged:
             continue
         stiffness, damping = coefficients_of(machine.films)
-        values = eigenvalues(machine.system.rotor, omega, stiffness, damping)
+        rotor = tangent(machine.system.rotor, omega, machine.at_rest.position.displacements)
+        values = eigenvalues(rotor, omega, stiffness, damping)
         excited = values[(values.imag > 0.0) & (-values.real < DAMPED * np.abs(values))]
         yield speed, np.abs(excited) / (2.0 * math.pi)
 

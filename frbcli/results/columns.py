@@ -8,8 +8,11 @@ from typing import Any
 from frbcli.columns import Column, Shown, uncertain_speed
 from frbcli.units import with_uncertainty
 
-# by the kind of an event: what a ring does with its pin, and what the asperities of a film do
-TOUCHING = {"touch": ("touches its pin", "asperities touch"), "lift-off": ("leaves its pin", "asperities part")}
+# by the kind of an event: what a ring does with its pin, what the asperities of a film do, and what happens to a stop
+TOUCHING = {
+    "touch": ("touches its pin", "asperities touch", "is touched"),
+    "lift-off": ("leaves its pin", "asperities part", "is left"),
+}
 
 
 def touching_name(event: Mapping[str, Any]) -> str:
@@ -21,8 +24,10 @@ def touching_name(event: Mapping[str, Any]) -> str:
         return "collar touches pads"
     if event["kind"] not in TOUCHING:
         return ""
-    of_pin, of_asperities = TOUCHING[event["kind"]]
-    return f"{point} {of_pin}" if body == "ring" else ", ".join(word for word in (of_asperities, film) if word)
+    of_pin, of_asperities, of_stop = TOUCHING[event["kind"]]
+    if body in ("ring", "stop"):
+        return f"{point} {of_pin if body == 'ring' else of_stop}"
+    return ", ".join(word for word in (of_asperities, film) if word)
 
 
 def event_name(event: Mapping[str, Any]) -> str:
@@ -57,7 +62,7 @@ EVENTS = (
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
            "`lift-off`, `clearance-step`, `forced`",
            more="forced is a line of a measurement that keeps its frequency at all rotor speeds; touch and lift-off "
-                "of asperities, or of a ring and its pin where `point` is a ring"),
+                "of asperities, or of a ring and its pin where `point` is a ring, or of a stop"),
     Column("film", "", "film, none where there is but one"),
     Column("t", "s", "time", shown=(Shown("time, s", ".3f"),)),
     Column("speed", "Hz", "rotor speed"),
@@ -101,6 +106,8 @@ PART_SIGNALS = (
     Column("ring", "m", "displacement of a ring", shape=(2,)),
     Column("ring_speed", "Hz", "speed of a ring"),
     Column("pin_angle", "rad", "angle by which a ring with a pin has turned from the middle of its play"),
+    Column("spring_force", "N", "force of a spring that is not linear on its first place", shape=(2,)),
+    Column("stop_force", "N", "force of a stop on its first place", shape=(2,)),
     Column("pin_torque", "N m", "torque of a pin on its ring"),
     Column("temperature", "K", "temperature of a film, a ring or a wall"),
     Column("viscosity", "Pa*s", "viscosity of the oil of a film"),

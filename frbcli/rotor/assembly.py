@@ -22,6 +22,7 @@ from frbcli.errors import NotConverged
 from frbcli.rotor.body import COORDINATES, PLANE, Body
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import LinearPart, Load
+from frbcli.rotor.port import ForceLaw, Port
 
 GROUND = ""
 
@@ -35,6 +36,9 @@ class Link:
     outside: str = GROUND
     count: float = 1.0
     sees: tuple[str, ...] = PLANE
+
+
+PortLink = tuple[str, Link, ForceLaw]  # name of its signal, between which nodes it acts, and how
 
 
 @dataclass(frozen=True)
@@ -51,11 +55,12 @@ def assembled(
     parts: Sequence[tuple[Link, LinearPart]] = (),
     forces: Sequence[NodeForce] = (),
     loads: Sequence[tuple[str, Load]] = (),
+    ports: Sequence[PortLink] = (),
 ) -> LinearRotor:
     """The machine of bodies, whose degrees of freedom follow each other in their order, with films between nodes,
-    linear parts on the relative motion of nodes, constant forces on nodes, and loads on the (x, y) of nodes; a load on
-    the GROUND is its acceleration, in m/s^2. Raises KeyError for a node that no body has, and for the GROUND under
-    bodies of unknown inertia."""
+    linear parts and ports on the relative motion of nodes, constant forces on nodes, and loads on the (x, y) of nodes;
+    a load on the GROUND is its acceleration, in m/s^2. Raises KeyError for a node that no body has, and for the GROUND
+    under bodies of unknown inertia."""
     size = sum(body.size for body in bodies)
     nodes = _nodes(bodies, size)
 
@@ -86,7 +91,8 @@ def assembled(
     if all(body.inertia is not None for body in bodies):
         nodes[GROUND] = -np.concatenate([body.inertia for body in bodies if body.inertia is not None], axis=1)
     varying = tuple(load.seen_by(nodes[node][: len(PLANE)]) for node, load in loads)
-    return replace(machine, static_load=sum(constant, machine.static_load), loads=varying)
+    laws = tuple(Port(name, relative(link), link.count, law) for name, link, law in ports)
+    return replace(machine, static_load=sum(constant, machine.static_load), loads=varying, ports=laws)
 
 
 def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart]:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.rotor.loads import LinearPart, Load, summed
+from frbcli.rotor.port import Port
 
 
 @dataclass(frozen=True)
@@ -35,6 +36,7 @@ class LinearRotor:
     cones: of bodies that turn by themselves and tilt, cartridges: each with the degree of freedom of its angle, and (2,
     n) its slopes in x and y times the root of its polar inertia: its gyroscopic moments pull with -(C^T J C) q' times
     its speed, J = [[0, 1], [-1, 0]].
+    ports: forces that are not linear; only `tangent` puts them into the matrices.
     turning: degrees of freedom of rings that turn while it moves in small: on their angles nothing depends, on their
     speeds the films.
     """
@@ -53,6 +55,7 @@ class LinearRotor:
     loads: tuple[Load, ...] = ()
     cones: tuple[tuple[int, Array], ...] = ()
     turning: tuple[int, ...] = ()
+    ports: tuple[Port, ...] = ()
 
     @property
     def size(self) -> int:
@@ -136,4 +139,5 @@ def without_spins(rotor: LinearRotor, speeds: Array) -> LinearRotor:
         points=tuple((name, place[:, kept]) for name, place in rotor.points),
         over_speed=None if rotor.over_speed is None else rotor.over_speed.cut(kept),
         loads=tuple(load.cut(kept) for load in rotor.loads),
+        ports=tuple(replace(port, place=port.place[:, kept]) for port in rotor.ports),
     )

@@ -21,7 +21,7 @@ from frbcli.runs.heat import RunHeat
 from frbcli.runs.inputs import RunInputs, films_change
 from frbcli.runs.record.film_numbers import FilmNumbers, supplied
 from frbcli.runs.record.film_signals import OF_THE_STEPS, Samples, fillings, film_signals, tilt_signals
-from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_names
+from frbcli.runs.record.header import FLOW, named, pin_signals, port_signals, recorded, ring_names
 from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
 from frbcli.runs.record.wear import RunWear
@@ -263,7 +263,7 @@ class March:
                 signals[named("oil_fraction", name)] = self._oil[: len(times), i].copy()
         for name, spin in ring_names(system).items():
             signals[name] = v[:, spin] / (2 * math.pi)
-        signals |= pin_signals(system, q, v)
+        signals |= pin_signals(system, q, v) | port_signals(system, self._profile, times, q, v)
         samples = Samples(times, q, v, self._out_noted[: len(times)])
         kinds, warm = recorded(self._case), self._numbers(times)
         self._wear.add(system, warm, self._profile, samples)

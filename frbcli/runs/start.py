@@ -20,6 +20,7 @@ from frbcli.rotor.assembly import held_rotor
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.linear import unbalance_shares
 from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
+from frbcli.rotor.port import port_forces
 from frbcli.scene.costs.course import longest_step, steps_of_a_turn
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.machine.system import System
@@ -30,6 +31,7 @@ from frbcli.solve.inputs import Inputs
 from frbcli.solve.ring_spin import RADIUS, STIFFNESS
 from frbcli.solve.stage.contact import RoughContact, make_cones
 from frbcli.solve.stage.loads import varying_loads
+from frbcli.solve.stage.ports import make_ports
 from frbcli.solve.state import (
     ERROR_SPANS,
     HISTORY,
@@ -58,6 +60,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
     if stations > 1:
         observed += _half_tilts(system)
     observed += list(_turns_at_pins(system))
+    observed += [port.place / port.law.length for port in rotor.ports]
     standing = system.films.seen(system.films.standing)
     return RotorData(
         mass=rotor.mass,
@@ -68,7 +71,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         unbalance_cos=rotor.unbalance_cos,
         unbalance_sin=rotor.unbalance_sin,
         journals=system.films.seen(rotor.journals),
-        multiplicity=np.repeat(rotor.multiplicity, stations),
+        multiplicity=np.concatenate([np.repeat(rotor.multiplicity, stations), [port.count for port in rotor.ports]]),
         clearances=np.repeat(system.clearances, stations),
         observed=np.concatenate(observed),
         has_gyroscopic=bool(np.any(rotor.gyroscopic)),
@@ -90,6 +93,7 @@ def rotor_data(system: System, profile: SpeedProfile, inputs: Inputs | tuple[()]
         inputs=inputs,
         standing=standing if stations > 1 else (),
         cones=make_cones(rotor.cones, rotor.size - system.ring_count),
+        ports=make_ports(rotor.ports),
     )
 
 
@@ -141,7 +145,9 @@ def state_at(system: System, profile: SpeedProfile, q: Array, v: Array) -> State
     numbers = np.zeros(NUMBERS)
     numbers[STEP] = numbers[STEP_DONE] = FIRST_STEP
     numbers[RUN_END] = profile.end
-    velocities = (system.films.seen(system.rotor.journals) @ v).ravel()
+    rotor = system.rotor
+    places = [system.films.seen(rotor.journals).reshape(-1, rotor.size), *(port.place for port in rotor.ports)]
+    velocities = np.concatenate(places) @ v
     past = np.zeros((HISTORY, 1 + len(velocities)))
     past[:, 0] = FIRST_STEP * np.arange(1 - HISTORY, 1)
     past[:, 1:] = velocities
@@ -178,6 +184,7 @@ def accelerations(
         forces = forces + loads_at(rotor.loads, rotor.size, np.array([t]), np.array([angle]))[0]
     for selection, count, force in zip(rotor.journals, rotor.multiplicity, film_forces, strict=True):
         forces = forces + count * selection.T @ force
+    forces = forces + port_forces(rotor, q, v, omega, angle)
     return np.asarray(np.linalg.solve(rotor.mass, forces), dtype=np.float64)
 
 

@@ -24,7 +24,7 @@ from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 
 class Scratch(NamedTuple):
-    """selection (m, n): the journals' displacements from the rotor's; products, loads, spread, compliance, elimination:
+    """selection (m, n): see selected; products, loads, spread, compliance, elimination:
     see prepare of inverse.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of equations.py; stage_v, stage_a
     (n, stages)."""
 
@@ -40,11 +40,19 @@ class Scratch(NamedTuple):
     stage_a: Array
 
 
+def selected(rotor: RotorData) -> Array:
+    """(m, n) what Newton's method sees of the displacements of a rotor: its journals, then its ports."""
+    n = rotor.mass.shape[0]
+    seen = rotor.journals.reshape(-1, n)
+    return np.concatenate([seen, rotor.ports.places.reshape(-1, n)]) if len(rotor.ports) else np.ascontiguousarray(seen)
+
+
 def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
     """Scratch for a rotor; its inverse is the one noted in the numbers, if any."""
-    n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
+    n, selection = rotor.mass.shape[0], selected(rotor)
+    m = len(selection)
     scratch = Scratch(
-        np.ascontiguousarray(rotor.journals.reshape(m, n)),
+        selection,
         np.zeros((3, n, n)),
         np.zeros((3, n)),
         np.zeros((n, m)),
@@ -56,7 +64,7 @@ def make_scratch(rotor: RotorData, numbers: Array, stages: int) -> Scratch:
         np.zeros((n, stages)),
     )
     if len(rotor.standing):
-        scratch.journal[STANDING] = rotor.standing.ravel()
+        scratch.journal[STANDING, : rotor.standing.size] = rotor.standing.ravel()
     if numbers[INVERSE_G] > 0.0:
         prepare(rotor, scratch.selection, numbers, numbers[INVERSE_G], numbers[INVERSE_SPEED], *scratch[1:6])
         prepare_loads(rotor.loads, rotor, numbers[INVERSE_G], numbers[INVERSE_SPEED])

@@ -46,7 +46,8 @@ class RotorData(NamedTuple):
     loads: Any = ()  # that change with the angle of the rotor or with time, see stage/loads.py
     inputs: Any = ()  # that change with time, see inputs.py
     standing: Any = ()  # (journals, 2) m, where these are in their shells when the rotor has not moved; empty: centred
-    cones: Any = ()  # of rings that turn and tilt, see stage/cones.py
+    cones: Any = ()  # of rings that turn and tilt, see stage/contact.py
+    ports: Any = ()  # forces that are not linear, see stage/ports.py
 
 
 class Control(NamedTuple):
@@ -75,8 +76,8 @@ HISTORY = 3  # points of the step before that help to predict the stages of the 
 
 class State(NamedTuple):
     """Everything that changes. numbers: (NUMBERS,); q, v, a: (n,) displacement, velocity, acceleration;
-    past: (HISTORY, 1 + 2 films) time and journals' velocities at the start, the first stage and the end of the last
-    step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films/; errors:
+    past: (HISTORY, 1 + m) time and velocities of journals and ports at the start, the first stage and the end of the
+    last step; wet: (WET, films, m, k) of films with cells, flows: (2, films, FLOWS) of their oil, see films/; errors:
     (2, ERROR_SPANS) largest fading sum and plain sum of the local errors of the steps that end in each span."""
 
     numbers: Array

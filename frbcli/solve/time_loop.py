@@ -19,12 +19,13 @@ from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make
 from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, have_heat, warm_stage, write_heat
 from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
-from frbcli.solve.scratch import Scratch, make_scratch, rotation
+from frbcli.solve.scratch import Scratch, make_scratch, rotation, selected
 from frbcli.solve.stage.contact import prepare_cones, set_sliding, turn_cones
 from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
 from frbcli.solve.stage.inverse import outdated, prepare
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
+from frbcli.solve.stage.ports import left_at_ports, push_ports, shortest, turn_ports
 from frbcli.solve.state import (
     HISTORY,
     OUTPUTS,
@@ -80,7 +81,7 @@ class Space(NamedTuple):
 
 def make_space(rotor: RotorData, films: Any, state: State, stages: int, heat: Any) -> Space:
     """Scratch for a machine in a state, which its heat has changed."""
-    n, m = rotor.mass.shape[0], 2 * rotor.clearances.shape[0]
+    n, m = rotor.mass.shape[0], len(selected(rotor))
     begin_heat(heat, films, rotor, state.wet)
     own = Own(
         np.zeros((m, m)), np.zeros((HISTORY + stages - 1, 1 + m)), np.zeros(n), make_rings(rotor.spins.shape[0])
@@ -109,8 +110,8 @@ def _largest_eccentricity(clearances: Array, selection: Array, journal: Array, q
 
 
 @compiled(inline=True)
-def _smallest(clearances: Array) -> float:
-    least = math.inf
+def _smallest(clearances: Array, ports: Any) -> float:
+    least = shortest(ports)
     for f in range(clearances.shape[0]):
         least = min(least, clearances[f])
     return least
@@ -157,7 +158,7 @@ def _solve_stage(
     numbers, q, v, wet, flows = state.numbers, state.q, state.v, state.wet, state.flows
     clearances, turning, spins, grids = rotor.clearances, rotor.turning, rotor.spins, work.grids
     weights, moments = tableau.stage, tableau.times
-    g, m, allowed = weights[1, 1] * step, 2 * clearances.shape[0], NEWTON_SHARE * control.tolerance
+    g, m, allowed = weights[1, 1] * step, scratch.selection.shape[0], NEWTON_SHARE * control.tolerance
     selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     newton, past, rings = own.newton, own.past, own.rings
     t_s = t + moments[s] * step
@@ -171,6 +172,7 @@ def _solve_stage(
     predict(weights, s, step, q, v, stage_v, stage_a, at)
     start_stage(acceleration, speed, angle, g, rotor.has_gyroscopic, products, loads, selection, at, journal)
     add_loads(rotor.loads, t_s, angle, g, selection, at, journal)
+    turn_ports(rotor.ports, speed, angle)
     guess_speeds(spins, s, g, speed, angle, at, stage_a, rings.bodies, rings.angles)
     _warm(space, rotor, films, wet, rings.bodies, moments[s] * step)
     guess(past, tableau.guess, s, selection, q, clearances, g, t_s, limit_of(control.contact_stiffness), journal)
@@ -182,20 +184,22 @@ def _solve_stage(
     lag = begin_lag(numbers, g, speed, at) if rotor.has_gyroscopic else 0.0
     for iteration in range(most_iterations(films)):
         forces(films, work, clearances, control, g, s, iteration, journal)
-        numbers[SOLVES] += solved(films, m // 2)
+        push_ports(rotor.ports, clearances.shape[0], g, journal)
+        numbers[SOLVES] += solved(films, clearances.shape[0])
         share, left, moved = correct(films, work, compliance, clearances, control, g, journal, newton)
         if left == math.inf:
             return False, speed
         left = left_over(films, work, left, moved)
+        left = max(left, left_at_ports(rotor.ports, clearances, compliance, g, journal))
         if share == 1.0:
             late = accelerate(s, g, lag, products, spread, selection, at, journal, stage_v, stage_a)
-            left = max(left, g * late / _smallest(clearances))
+            left = max(left, g * late / _smallest(clearances, rotor.ports))
             if spins.shape[0] > 0:
                 left = max(left, spin_up(films, work, rotor, s, g, control, scratch, rings))
                 set_speeds(turning, rings.bodies, rings.angles, journal, grids)
                 set_sliding(control.rough, turning, rings.bodies)
                 turned = turn_cones(rotor.cones, rings.bodies, s, s, g, selection, at, stage_a, journal)
-                left = max(left, g * turned / _smallest(clearances))
+                left = max(left, g * turned / _smallest(clearances, rotor.ports))
             if control.linearised or left < allowed:
                 past[HISTORY + s - 1, 0] = t_s
                 for i in range(m):

@@ -142,6 +142,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "rigid housing": ("jeffcott", (HOUSING,)),
     "flow-limited supply": ("jeffcott", (ELROD, FLOW)),
     "sealed ends": ("jeffcott", ("bearing.ends={sealed=0.3}",)),
+    "stop": ("jeffcott", ('spring=[{at="disk", stiffness="1e6 N/m", gap="30 um"}]',)),
     "magnetic pull": ("jeffcott", ('magnetic_pull=[{at="disk", pull="1e5 N/m"}]',)),
     "constant forces": ("jeffcott", ('force=[{at="disk", force=["10 N", "0 N"]}]',)),
     "harmonic forces": ("jeffcott", (HARMONIC,)),

@@ -66,6 +66,7 @@ TABLES = {
     "masses = [{ ... }]": "MassAt",
     "[[force]]": "AppliedForce",
     "[[magnetic_pull]]": "MagneticPull",
+    "[[spring]]": "Spring",
     "[base]": "Base",
     "over_time = { ... }": "OverTime",
     "[bearing.ring]": "Ring",

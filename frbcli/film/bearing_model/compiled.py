@@ -18,10 +18,9 @@ from numba.core.errors import NumbaError
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
-from frbcli.compiled import c_function
+from frbcli.compiled import c_function, jitted
 from frbcli.film.bearing_model.film import MOTION, NUMBERS
 from frbcli.film.bearing_model.model import BearingModel, wrong
-from frbcli.film.jitted import jitted
 
 # Steps of differences. A one-sided one over h leaves h F'' / 2, a central one h^2 F''' / 6, and both lose round-off / h
 # of F: the least is near the square and the cube root of the precision, 2.2e-16. Displacements count over the gap that

@@ -22,11 +22,10 @@ from numba.extending import intrinsic
 from numba.np.numpy_support import carray
 from numba.np.unsafe import ndarray
 
-from frbcli.compiled import address_of, c_function, call_of, compiled
+from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
 from frbcli.film.cavitation import penalty
 from frbcli.film.cavitation.law import CellState, Law, Scales
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS, SHIPPED
-from frbcli.film.jitted import jitted
 
 # What a film keeps of its law while its journal moves: the parameters, and w below which a cell is empty.
 EMPTY = LARGEST_PARAMETERS

@@ -147,6 +147,8 @@ def film_forces(rotor: LinearRotor, profile: SpeedProfile, samples: Samples) -> 
     left = left - across[:, None] * rotor.unbalance_sin
     if rotor.loads:
         left = left - loads_at(rotor.loads, rotor.size, np.asarray(samples.times), angle)
+    for port in rotor.ports:
+        left = left - port.count * port.along(samples.q, samples.v, omega, angle) @ port.place
     rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 

@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
+import numpy as np
+
 from frbcli.analysis.orders.forced import ForcedLine, forced_references, lines_of_table
 from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
@@ -17,7 +19,7 @@ from frbcli.elements.pin import pin_torque
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, Header
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.loads import Harmonic, Tabulated
+from frbcli.rotor.loads import Harmonic, SpeedProfile, Tabulated
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.machine.elements import element_parts
@@ -112,6 +114,21 @@ def pin_signals(system: System, q: Array, v: Array) -> dict[str, Array]:
     return found
 
 
+def port_units(system: System) -> dict[str, str]:
+    """Names and units of the signals of forces that are not linear."""
+    return {f"{port.name}_{axis}_N": "N" for port in system.rotor.ports for axis in "xy"}
+
+
+def port_signals(system: System, profile: SpeedProfile, times: Array, q: Array, v: Array) -> dict[str, Array]:
+    """The signals (k,) of forces that are not linear, of displacements q and velocities v (k, n)."""
+    found: dict[str, Array] = {}
+    for port in system.rotor.ports:
+        angle = np.array([profile.angle(float(t)) for t in times]) if port.law.turns else np.zeros(len(times))
+        forces = port.along(q, v, profile.speed(times), angle)
+        found |= {f"{port.name}_x_N": forces[:, 0], f"{port.name}_y_N": forces[:, 1]}
+    return found
+
+
 def header(
     command: str, case: Case, segments: Sequence[Segment], critical_speeds: Sequence[float] | None = None
 ) -> Header:
@@ -127,7 +144,7 @@ def header(
     remembering = [name for name, keeps in zip(system.names, system.remembering, strict=True) if keeps]
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
-    units |= pin_units(system)
+    units |= pin_units(system) | port_units(system)
     units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))

@@ -109,6 +109,8 @@ RULES = (
     Rule(static.held_film_faults, (BEARING, LOADED, STABILITY)),
     Rule(static.held_cycle_faults, EVERY_CYCLE),
     Rule(static.pin_cycle_faults, EVERY_CYCLE),
+    Rule(static.port_cycle_faults, EVERY_CYCLE),
+    Rule(static.port_coupling_faults, (RUN,)),
     Rule(dampers.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
     Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),

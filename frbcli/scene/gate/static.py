@@ -12,8 +12,10 @@ from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 from frbcli.scene.channels import coupling_faults
+from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, film_places, is_plain
 from frbcli.scene.keys import cavitation_keys
+from frbcli.scene.machine.elements import port_faults
 from frbcli.scene.speeds import default_speeds, keeps_oil
 from frbcli.scene.tilt import as_text
 
@@ -137,6 +139,21 @@ def pin_cycle_faults(case: Case) -> Iterator[Fault]:
     for each in PinElement.of(case):
         problem = "pushes at its ring to one side alone: where the ring leaves it, the motion of a cycle has corners."
         yield Fault(each.key, "", None, problem, 'Take a run; or remove it and write ring.spin = "blocked".')
+
+
+def port_cycle_faults(case: Case) -> Iterator[Fault]:
+    """Limit cycles know forces of films alone."""
+    yield from port_faults(case, "is not linear: limit cycles have nonlinear forces of films alone.", "Take a run.")
+
+
+def port_coupling_faults(case: Case) -> Iterator[Fault]:
+    """Forces that are not linear are solved with the rotor, until nothing is left over."""
+    coupling = coupling_of(case)
+    if coupling.in_turn or coupling.once:
+        yield from port_faults(
+            case, f'is not linear, and film.coupling = "{case.film.coupling}" solves no such force.',
+            'Write film.coupling = "auto".',
+        )  # fmt: skip
 
 
 def loaded_heat_faults(case: Case) -> Iterator[Fault]:

@@ -54,6 +54,7 @@ def element_parts(case: Case) -> Parts:
         links=tuple(link for parts in found for link in parts.links),
         forces=tuple(force for parts in found for force in parts.forces),
         loads=tuple(load for parts in found for load in parts.loads),
+        ports=tuple(port for parts in found for port in parts.ports),
     )
 
 
@@ -70,6 +71,12 @@ def stray_load_faults(case: Case) -> Iterator[Fault]:
             if load.strays:
                 value = node.replace("_", " ") or load.name
                 yield Fault(element.key, value, None, f"{load.strays}.", "Remove it, or take a run-up.")
+
+
+def port_faults(case: Case, problem: str, remedy: str) -> Iterator[Fault]:
+    """The faults of forces that are not linear, where an analysis does not have them."""
+    site = site_of(case)
+    yield from (Fault(each.key, "", None, problem, remedy) for each in elements_of(case) if each.parts(site).ports)
 
 
 def table_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:

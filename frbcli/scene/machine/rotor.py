@@ -27,8 +27,12 @@ def make_rotor(case: Case, sees: tuple[str, ...] = PLANE) -> LinearRotor:
     Raises InputError if its shaft has no modes.
     """
     bodies, films, elements, centred = _bodies_and_links(case, sees)
-    rotor = preset(assembled(bodies, films, elements.links, elements.forces, elements.loads), centred)
+    rotor = preset(_assembled(bodies, films, elements), centred)
     return replace(rotor, cones=tuple(_cones(case, bodies)))
+
+
+def _assembled(bodies: Sequence[Body], films: Sequence[Link], elements: Parts) -> LinearRotor:
+    return assembled(bodies, films, elements.links, elements.forces, elements.loads, elements.ports)
 
 
 def collar_tilt(case: Case) -> Array | None:

@@ -119,7 +119,7 @@ def correct(
             x = j - j % 2
             slope = BY_X + j % 2
             newton[i, j] = -(compliance[i, x] * journal[slope, x] + compliance[i, x + 1] * journal[slope, x + 1])
-            for a in range(crossed):
+            for a in range(crossed if j < crossed else 0):  # ports follow the films
                 newton[i, j] -= compliance[i, a] * work.cross[a, j]
         newton[i, i] += 1.0
         journal[CORRECTION, i] = total
@@ -148,7 +148,7 @@ def correct(
         x = i - i % 2
         by_itself = journal[BY_X, i] * journal[CORRECTION, x] + journal[BY_Y, i] * journal[CORRECTION, x + 1]
         journal[FORCE, i] += share * by_itself
-        for j in range(crossed):
+        for j in range(crossed if i < crossed else 0):
             journal[FORCE, i] += share * work.cross[i, j] * journal[CORRECTION, j]
     follow_channels(films, work, journal[CORRECTION], share)
     for f in range(clearances.shape[0]):

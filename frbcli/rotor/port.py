@@ -1,0 +1,104 @@
+"""Forces at ports: what acts between two nodes of a machine and is not linear, such as a stop or a ball bearing.
+
+The force on the first node is F(d, v, Omega, alpha) with the displacement d and velocity v of this node against the
+second, or the ground, and the speed and angle of the rotor. Rest, small motions, time steps and limit cycles ask for it
+and for its derivatives alone: they know no kinds of forces.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+
+import numpy as np
+
+from frbcli.arrays import Array
+
+if TYPE_CHECKING:
+    from frbcli.rotor.linear import LinearRotor
+
+D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
+F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
+
+
+class PortForce(NamedTuple):
+    """A force (2,) in N on the first node, its derivatives (2, 2) by displacement in N/m and by velocity in N s/m."""
+
+    force: Array
+    by_displacement: Array
+    by_velocity: Array
+
+
+class ForceLaw(ABC):
+    """How a force at a port follows the motion: a class for each kind. `force` is a plain function, compiled with the
+    plain functions of its module that it calls, which see floats, arrays and `math`."""
+
+    turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
+
+    @property
+    @abstractmethod
+    def numbers(self) -> Array:
+        """(p,) its parameters, in SI, as `force` takes them."""
+
+    @property
+    @abstractmethod
+    def length(self) -> float:
+        """A displacement in m over which the force changes: errors of motions are measured by it."""
+
+    @property
+    def memory(self) -> Array:
+        """(w,) what an evaluation may leave for the next one to begin with, at first. No result depends on it."""
+        return np.zeros(0)
+
+    @staticmethod
+    @abstractmethod
+    def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
+        """Fill answer (ANSWER,) with force and derivatives at a motion (MOTION,), see D_X and F_X. numbers (p,), memory
+        (w,): see the properties."""
+
+
+@dataclass(frozen=True)
+class Port:
+    """A force of a machine. name: of its signal; place: (2, n) the displacement it sees; count: of equal elements that
+    it stands for."""
+
+    name: str
+    place: Array
+    count: float
+    law: ForceLaw
+
+    def at(self, q: Array, v: Array, omega: float, angle: float = 0.0) -> PortForce:
+        """The force of one element, with displacements q and velocities v (n,) of the machine."""
+        from frbcli.rotor.port_function import evaluate  # numba takes long to load
+
+        motion = np.concatenate([self.place @ q, self.place @ v, [omega, angle]])
+        answer = evaluate(self.law, motion)
+        return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
+
+    def along(self, q: Array, v: Array, omega: Array, angle: Array) -> Array:
+        """(k, 2) N on the first node by one element, at displacements q and velocities v (k, n)."""
+        from frbcli.rotor.port_function import evaluate_along  # as above
+
+        return evaluate_along(self.law, np.column_stack([q @ self.place.T, v @ self.place.T, omega, angle]))
+
+
+def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: float = 0.0) -> Array:
+    """(n,) N on all degrees of freedom by the ports of a machine, at displacements q and velocities v (n,)."""
+    found = np.zeros(rotor.size)
+    for port in rotor.ports:
+        found += port.count * port.place.T @ port.at(q, v, omega, angle).force
+    return found
+
+
+def tangent(rotor: LinearRotor, omega: float, q: Array) -> LinearRotor:
+    """The machine with its ports in small motions about displacements q (n,), at which it does not move: their
+    stiffness and damping join its matrices, and its static load has their force there."""
+    stiffness, damping, load = rotor.stiffness, rotor.damping, rotor.static_load
+    for port in rotor.ports:
+        here = port.at(q, np.zeros_like(q), omega)
+        pull = port.count * port.place.T
+        stiffness = stiffness - pull @ here.by_displacement @ port.place
+        damping = damping - pull @ here.by_velocity @ port.place
+        load = load + pull @ (here.force - here.by_displacement @ port.place @ q)
+    return replace(rotor, stiffness=stiffness, damping=damping, static_load=load, ports=())

@@ -1,0 +1,74 @@
+"""Forces at ports compiled: each law by itself, called by its address, so that no loop is compiled anew for a law."""
+
+from __future__ import annotations
+
+import ctypes
+import inspect
+from functools import cache
+from pathlib import Path
+from types import FunctionType
+from typing import Any
+
+import numpy as np
+from numba import types
+from numba.extending import intrinsic
+from numba.np.numpy_support import carray
+
+from frbcli.arrays import Array
+from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
+from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw
+
+_POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
+_SIGNATURE = types.void(types.intp, types.intp, *[_POINTER] * 4)
+_DOUBLES = ctypes.POINTER(ctypes.c_double)
+_SHIPPED = "frbcli."
+force: Any = ForceLaw.force  # stands in the template below for that of one law
+
+
+@cache
+def compiled_force(law: type[ForceLaw]) -> Any:
+    """The C function of a law: of a shipped one kept on disk until its file changes."""
+    shipped, file = law.__module__.startswith(_SHIPPED), inspect.getfile(law)
+    code = _force.__code__.replace(co_filename=file if shipped else __file__)
+    function = FunctionType(code, {**globals(), "force": jitted(law.force)})
+    function.__module__ = law.__module__ if shipped else __name__
+    function.__qualname__ = f"{law.__qualname__}.{_force.__name__}"
+    return c_function(function, _SIGNATURE, *((Path(file), Path(__file__)) if shipped else ()))
+
+
+def evaluate(law: ForceLaw, motion: Array) -> Array:
+    """(ANSWER,) the force of a law at a motion (MOTION,), see port.py."""
+    answer, numbers, memory = np.zeros(ANSWER), law.numbers, law.memory.copy()
+    arrays = (each.ctypes.data_as(_DOUBLES) for each in (numbers, memory, np.ascontiguousarray(motion), answer))
+    compiled_force(type(law)).ctypes(len(numbers), len(memory), *arrays)
+    return answer
+
+
+def evaluate_along(law: ForceLaw, motions: Array) -> Array:
+    """(k, 2) N: the force of a law at motions (k, MOTION) that follow each other."""
+    forces = np.empty((len(motions), 2))
+    address, memory = address_of(compiled_force(type(law))), law.memory.copy()
+    _forces(address, law.numbers, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces)
+    return forces
+
+
+def _call_force(typingctx, address, parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
+    """The C function of a law at an address, with arrays in one piece of so many parameters and numbers that it
+    keeps."""
+    given = (types.intp, types.intp, types.intp, numbers, memory, motion, answer)
+    return types.void(*given), call_of(2)
+
+
+call_force: Any = intrinsic(_call_force)
+
+
+@compiled()
+def _forces(address: int, numbers: Array, memory: Array, motions: Array, answer: Array, forces: Array) -> None:
+    for k in range(len(motions)):
+        call_force(address, len(numbers), len(memory), numbers, memory, motions[k], answer)
+        forces[k, 0], forces[k, 1] = answer[F_X], answer[F_Y]
+
+
+def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
+    """A law, whose function stands for force."""
+    force(carray(numbers, (parameters,)), carray(memory, (kept,)), carray(motion, (MOTION,)), carray(answer, (ANSWER,)))

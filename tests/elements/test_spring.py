@@ -1,0 +1,275 @@
+"""Springs and stops: closed forms of free and forced vibrations, rest, rub, and what their law says of itself."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from marches import Result, control, march, start
+from scipy.integrate import quad
+from scipy.optimize import brentq
+
+import frbcli
+from frbcli.arrays import Array
+from frbcli.case.reading.load import case_from_dict
+from frbcli.case.surroundings.spring import Spring
+from frbcli.elements.spring import SpringForce
+from frbcli.errors import InputError
+from frbcli.linear.response import response
+from frbcli.linear.stability import stability
+from frbcli.rotor.loads import speed_profile
+from frbcli.rotor.port import ANSWER, F_X, MOTION, XX, ForceLaw, Port
+from frbcli.rotor.port_function import evaluate
+from frbcli.runs.run import runup
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import CYCLES, RUN
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+
+M, K, CUBIC, GAP, U = 2.0, 1e6, 1e15, 20e-6, 2e-4  # kg, N/m of both bearings, N/m^3, m, kg m
+STOP = 5e6  # N/m
+TURN = 2.0 * math.pi
+
+
+def sprung(
+    spring: dict[str, Any], gravity: float = 0.0, damping: float = 0.0, unbalance: float = 0.0, **rotor: Any
+) -> frbcli.Case:
+    """A rigid rotor in two linear bearings, with one spring at each of its journals."""
+    given = {"kind": "rigid", "mass": f"{M} kg", "unbalance": f"{unbalance!r} kg*m", "gravity": f"{gravity} m/s^2"}
+    data = {
+        "rotor": given | rotor,
+        "bearing": {
+            "kind": "coefficients", "stiffness": f"{0.5 * K!r} N/m", "damping": f"{0.5 * damping!r} N*s/m",
+        },
+        "spring": [{"at": "journal", **spring}],
+        "speed": {"from": "100 Hz", "to": "100 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    return case_from_dict(data, "sprung")
+
+
+def cubic(**more: Any) -> dict[str, Any]:
+    return {"cubic": f"{0.5 * CUBIC!r} N/m^3", **more}
+
+
+def stop(**more: Any) -> dict[str, Any]:
+    return {"stiffness": f"{0.5 * STOP!r} N/m", "gap": f"{GAP!r} m", **more}
+
+
+def made(case: frbcli.Case) -> System:
+    return make_system(case, make_plan(case))
+
+
+def run_from(case: frbcli.Case, time: float, q: tuple[float, float], v: tuple[float, float], tolerance: float,
+             output: float, omega: float = 0.0) -> tuple[System, Result]:  # fmt: skip
+    system, profile = made(case), speed_profile([0.0, time], [omega, omega])
+    limits = control(tolerance=tolerance, longest=time / 200.0, output=output)
+    return system, march(system, profile, limits, start(system, profile, np.array(q), np.array(v)))
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        cubic(stiffness="3e6 N/m", damping="40 N*s/m"),
+        stop(damping="300 N*s/m"),
+        stop(cubic="1e16 N/m^3", damping="300 N*s/m", friction=0.2),
+        stop(damping="300 N*s/m", friction=0.2, radius="4 um"),
+    ],
+)
+def test_the_derivatives_of_the_force_are_those_of_its_differences(given: dict[str, Any]) -> None:
+    law = SpringForce(Spring.model_validate({"at": "journal", **given}))
+    random = np.random.default_rng(4)
+    for _ in range(20):
+        angle, r = random.uniform(0.0, TURN), random.uniform(1.1, 2.0) * GAP
+        motion = np.array([r * math.cos(angle), r * math.sin(angle), *random.uniform(-2e-3, 2e-3, 2), 300.0, 0.0])
+        answer = evaluate(law, motion)
+        for column, size in enumerate((1e-10, 1e-10, 1e-8, 1e-8)):
+            step = size * np.eye(MOTION)[column]
+            rise = (evaluate(law, motion + step) - evaluate(law, motion - step))[:XX] / (2.0 * size)
+            told = answer[XX + 4 * (column // 2) + column % 2 :: 2][:2]
+            np.testing.assert_allclose(told, rise, rtol=2e-5, atol=1e-6 * np.abs(answer[XX:]).max())
+
+
+def test_the_compiled_force_is_the_plain_one() -> None:
+    law = SpringForce(Spring.model_validate({"at": "journal", **stop(friction=0.2, damping="300 N*s/m")}))
+    motion, plain = np.array([25e-6, -12e-6, 1e-3, 2e-3, -300.0, 0.0]), np.zeros(ANSWER)
+    law.force(law.numbers, law.memory, motion, plain)
+    np.testing.assert_allclose(evaluate(law, motion), plain, rtol=1e-13)
+
+
+def test_a_cubic_spring_has_the_frequency_of_its_amplitude() -> None:
+    """m x'' + k x + c x^3 = 0 from x = A at rest: a quarter period is the integral of dx / v over the energy."""
+    amplitude = 40e-6
+
+    def quarter(angle: float) -> float:  # x = A sin(angle)
+        x = amplitude * math.sin(angle)
+        return 1.0 / math.sqrt((K + 0.5 * CUBIC * (amplitude**2 + x**2)) / M)
+
+    period = 4.0 * quad(quarter, 0.0, 0.5 * math.pi, epsabs=0.0, epsrel=1e-12)[0]
+    assert period < 0.8 * TURN * math.sqrt(M / K)  # far from linear
+    system, result = run_from(sprung(cubic()), 10.0 * period, (amplitude, 0.0), (0.0, 0.0), 1e-10, period)
+    np.testing.assert_allclose(result.q[:, 0], amplitude, rtol=1e-6)
+    energy = 0.5 * M * result.v[:, 0] ** 2 + 0.5 * K * result.q[:, 0] ** 2 + 0.25 * CUBIC * result.q[:, 0] ** 4
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-8)
+    assert not result.q[:, 1].any()
+    assert len(system.rotor.ports) == 1
+
+
+def test_a_rotor_leaves_a_stop_with_the_energy_that_it_came_with() -> None:
+    """Free flight within the gap: half a period of the spring in the stop, then back."""
+    case = sprung(stop())
+    speed = 0.3
+    _, result = run_from(case, 4e-3, (0.0, 0.0), (speed, 0.0), 1e-10, 1e-5)
+    q, v = result.q[:, 0], result.v[:, 0]
+    depth = np.maximum(np.abs(q) - GAP, 0.0)
+    energy = 0.5 * M * v**2 + 0.5 * K * q**2 + 0.5 * STOP * depth**2
+    assert depth.max() > 0.5 * GAP
+    np.testing.assert_allclose(energy, 0.5 * M * speed**2, rtol=1e-7)
+
+
+def test_a_rotor_rests_in_its_stop() -> None:
+    """k d + s (d - gap) = m g, and small motions about it have k + s across the gap, and s (d - gap) / d along it."""
+    gravity = 100.0
+    case = sprung(stop(), gravity)
+    rest = (M * gravity + STOP * GAP) / (K + STOP)
+    assert rest > GAP
+    (point,) = stability(case, [100.0]).points
+    expected = np.sqrt(np.array([K + STOP * (rest - GAP) / rest, K + STOP]) / M)
+    found = np.sort(point.eigenvalues.imag[point.eigenvalues.imag > 0.0])
+    np.testing.assert_allclose(found, expected, rtol=1e-8)
+    np.testing.assert_allclose(point.eigenvalues.real, 0.0, atol=1e-6)
+
+
+def test_small_motions_about_rest_follow_the_slope_of_a_cubic_spring() -> None:
+    gravity, omega = 100.0, TURN * 100.0
+    case = sprung(cubic(), gravity, unbalance=1e-9)
+    rest = brentq(lambda d: K * d + CUBIC * d**3 - M * gravity, 0.0, 1e-3, xtol=1e-18)
+    across, along = K + CUBIC * rest**2, K + 3.0 * CUBIC * rest**2
+    answer = response(case, [100.0])
+    expected = 1e-9 * omega**2 / (np.array([across, along]) - M * omega**2)
+    np.testing.assert_allclose(np.abs(answer.motion[0, 0]), np.abs(expected), rtol=1e-8)
+
+
+def test_a_run_begins_at_rest_in_a_stop(tmp_path: Path) -> None:
+    data = sprung(stop(), 100.0, damping=20.0).model_dump(by_alias=True, exclude_unset=True)
+    case = case_from_dict(data | {"start": {"position": "resting"}}, "resting")
+    run = runup(case, tmp_path / "run.h5", force=True)
+    y = run["journal_y_m"]
+    rest = -(M * 100.0 + STOP * GAP) / (K + STOP)
+    np.testing.assert_allclose(y, rest, rtol=1e-7)
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.1])
+def test_a_rotor_rubs_all_around_its_stop(friction: float) -> None:
+    """(k - m w^2 + i c w) r + s (r - gap) (1 + i mu) = m e w^2 exp(i phase): the synchronous motion of annular rub."""
+    omega, damping = TURN * 100.0, 900.0
+    case = sprung(stop(friction=friction), damping=damping, unbalance=U)
+
+    def surplus(r: float) -> float:
+        spring = (K - M * omega**2 + 1j * damping * omega) * r + STOP * (r - GAP) * (1.0 + 1j * friction)
+        return abs(spring) - U * omega**2
+
+    radius = brentq(surplus, GAP, 1e-3, xtol=1e-16)
+    _, result = run_from(case, 0.5, (0.0, -radius), (omega * radius, 0.0), 1e-8, 1e-3, omega)
+    found = np.hypot(*result.q[-100:].T)
+    np.testing.assert_allclose(found, radius, rtol=1e-6)
+
+
+def test_a_run_says_when_a_stop_is_touched_and_left(tmp_path: Path) -> None:
+    """An orbit of the size of the gap: r = |U w^2 / (k - m w^2 + i c w)|, below the critical speed and beyond it."""
+    data = sprung(stop(), damping=300.0, unbalance=2e-5).model_dump(by_alias=True, exclude_unset=True)
+    data["speed"] = {"from": "60 Hz", "to": "300 Hz", "duration": "4 s"}
+    run = runup(case_from_dict(data, "passing"), tmp_path / "run.h5", force=True)
+    touched, left = ([each for each in run.events if each["kind"] == kind] for kind in ("touch", "lift-off"))
+
+    def beyond(speed: float) -> float:
+        w = TURN * speed
+        return 2e-5 * w**2 / abs(K - M * w**2 + 300j * w) - GAP
+
+    known = brentq(beyond, 60.0, math.sqrt(K / M) / TURN)
+    assert touched[0]["point"] == "stop_1"
+    assert touched[0]["speed_Hz"] == pytest.approx(known, abs=2.0)
+    assert left[-1]["speed_Hz"] > math.sqrt(K / M) / TURN
+    force, x = run["stop_force_1_x_N"], run["journal_x_m"]
+    assert np.all((force == 0.0) | (force * x < 0.0))
+
+
+def test_friction_against_the_motion_of_the_centre_loses_the_work_that_it_does() -> None:
+    """With a radius of nearly nothing, a shaft at rest slides as its centre moves: the energy never rises."""
+    case = sprung(stop(friction=0.3, radius="1 nm"))
+    _, result = run_from(case, 4e-3, (0.0, 10e-6), (0.3, 0.1), 1e-9, 1e-5)
+    depth = np.maximum(np.hypot(*result.q.T) - GAP, 0.0)
+    energy = 0.5 * M * (result.v**2).sum(axis=1) + 0.5 * K * (result.q**2).sum(axis=1) + 0.5 * STOP * depth**2
+    assert np.diff(energy).max() < 1e-8 * energy[0]
+    assert energy[-1] < 0.99 * energy[0]
+
+
+def test_a_spring_between_two_places_acts_on_both() -> None:
+    data = {
+        "rotor": {"kind": "jeffcott", "mass": "2 kg", "journal_mass": "1 kg", "shaft_stiffness": "1e6 N/m",
+                  "unbalance": "0 kg*m", "gravity": "0 m/s^2"},
+        "bearing": {"kind": "coefficients", "stiffness": "4e5 N/m"},
+        "spring": [{"between": ["disk", "journal"], "stiffness": "5e5 N/m"}],
+        "speed": {"from": "100 Hz", "to": "100 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    both = stability(case_from_dict(data, "between"), [100.0]).points[0].eigenvalues
+    data["rotor"]["shaft_stiffness"] = "1.5e6 N/m"  # type: ignore[index]
+    del data["spring"]
+    stiffer = stability(case_from_dict(data, "stiffer"), [100.0]).points[0].eigenvalues
+    np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
+
+
+def test_a_force_of_ones_own_moves_a_machine() -> None:
+    """F = -p d^5 of a law that no file of the program knows: a quarter period from its energy."""
+
+    class Fifth(ForceLaw):
+        length = 1e-5
+
+        @property
+        def numbers(self) -> Array:
+            return np.array([1e25])
+
+        @staticmethod
+        def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:  # noqa: ARG004
+            answer[F_X], answer[XX] = -numbers[0] * motion[0] ** 5, -5.0 * numbers[0] * motion[0] ** 4
+
+    amplitude = 3e-5
+
+    def quarter(angle: float) -> float:
+        x = amplitude * math.sin(angle)
+        rest = (amplitude**4 + amplitude**2 * x**2 + x**4) * 1e25 / 3.0
+        return 1.0 / math.sqrt((K + rest) / M)
+
+    period = 4.0 * quad(quarter, 0.0, 0.5 * math.pi, epsabs=0.0, epsrel=1e-12)[0]
+    system = made(sprung({"stiffness": "1e-3 N/m"}))
+    port = Port("own", dict(system.rotor.points)["journal"], 1.0, Fifth())
+    system = replace(system, rotor=replace(system.rotor, ports=(port,)))
+    profile = speed_profile([0.0, 5.0 * period], [0.0, 0.0])
+    begin = start(system, profile, np.array([amplitude, 0.0]))
+    result = march(system, profile, control(tolerance=1e-10, longest=1e-4, output=period), begin)
+    np.testing.assert_allclose(result.q[:, 0], amplitude, rtol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("given", "key"),
+    [
+        ({"stiffness": "1e6 N/m", "between": ["journal", "disk"]}, "between"),
+        ({"at": "nowhere", "stiffness": "1e6 N/m"}, "at"),
+        ({"gap": "20 um"}, "stiffness"),
+        ({"stiffness": "1e6 N/m", "friction": 0.1}, "friction"),
+        ({"stiffness": "1e6 N/m", "gap": "20 um", "radius": "10 mm"}, "radius"),
+    ],
+)
+def test_springs_that_make_no_sense_are_refused(given: dict[str, Any], key: str) -> None:
+    with pytest.raises(InputError) as caught:
+        sprung(given)
+    assert [fault.key for fault in caught.value.faults] == [f"spring.0.{key}"]
+
+
+def test_analyses_without_nonlinear_forces_say_so() -> None:
+    case = sprung(stop())
+    assert "spring.0" in {fault.key for fault in faults(case, CYCLES)}
+    assert not faults(case, RUN)
