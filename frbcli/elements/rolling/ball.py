@@ -5,20 +5,57 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import ClassVar, Self
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.rolling.bearing import BallBearing
+from frbcli.elements.rolling.force import ball_bearing_force, ball_numbers
+from frbcli.elements.rolling.rest import at_displacement
 from frbcli.materials.solids import ROLLING, Elastic
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
+from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, SPEED, XX, XY, YX, YY, ForceLaw
 from frbcli.units import display
 
 LEFT_OUT = "friction, the gyroscopic moment of the balls and moments of the rings are left out"
+
+
+@dataclass(frozen=True)
+class BallForce(ForceLaw):
+    """The force of a ball bearing on the shaft. Its cage turns with the shaft, from where a ball is below."""
+
+    rings: BallBearing
+
+    turns: ClassVar[bool] = True
+
+    @property
+    def numbers(self) -> Array:
+        return np.array(self.rings.numbers, dtype=np.float64)
+
+    @property
+    def length(self) -> float:
+        """What a ball gives way under a preload, or half of the clearance of rings that are held apart."""
+        return self.rings.approach
+
+    @property
+    def memory(self) -> Array:
+        return self.rings.memory
+
+    @staticmethod
+    def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
+        of = ball_numbers(numbers)
+        f_x, f_y, xx, xy, yx, yy = ball_bearing_force(
+            of, motion[D_X], motion[D_Y], motion[SPEED], of.cage * motion[ANGLE], memory
+        )
+        for i in range(len(answer)):
+            answer[i] = 0.0
+        answer[F_X], answer[F_Y] = f_x, f_y
+        answer[XX], answer[XY], answer[YX], answer[YY] = -xx, -xy, -yx, -yy
 
 
 @dataclass(frozen=True)
@@ -60,10 +97,23 @@ class BallBearingElement(MachineElement):
         """Where its force acts."""
         return Link(site.journal(self.given.name), site.shell(self.given.name), site.count)
 
+    @property
+    def signal(self) -> str:
+        """Name of the signal of its force."""
+        return f"{self.given.name}_ball_force".lstrip("_")
+
+    @property
+    def linear(self) -> LinearPart:
+        """Usual stiffness and damping, for estimates: without speed, a little beyond the clearance."""
+        way = self.rings.approach + self.rings.free
+        stiffness = at_displacement(self.rings, np.array([0.0, -way]), 0.0).stiffness
+        return LinearPart.of(0.5 * float(np.trace(stiffness)) * np.eye(2), self.given.damping * np.eye(2))
+
     def parts(self, site: Site) -> Parts:
-        if not self.given.damping:
-            return Parts()
-        return Parts(links=((self.link(site), LinearPart.of(np.zeros((2, 2)), self.given.damping * np.eye(2))),))
+        link = self.link(site)
+        damping = LinearPart.of(np.zeros((2, 2)), self.given.damping * np.eye(2))
+        links = ((link, damping),) if self.given.damping else ()
+        return Parts(links=links, ports=((self.signal, link, BallForce(self.rings)),))
 
     def told(self, site: Site) -> Line:
         return self.line

@@ -18,6 +18,7 @@ from frbcli.elements.rolling.force import KNOWN, BallNumbers
 from frbcli.elements.rolling.hertz import HertzContact, contact
 from frbcli.materials.solids import Elastic
 
+SMALL_APPROACH = 1e-6  # m
 MEAN_POINTS = 24  # at which balls that are spread evenly are summed, at least; twice as many balls are as good
 
 
@@ -87,6 +88,24 @@ class BallBearing:
         """Centrifugal force of a ball over the square of the speed of the shaft, N s^2."""
         mass = self.ball.density * math.pi / 6.0 * self.ball_diameter**3
         return 0.5 * mass * self.pitch_diameter * self.cage_ratio**2
+
+    @property
+    def free(self) -> float:
+        """Radial way in m of the inner ring from the middle until it meets a ball, without preload."""
+        if self.preload is not None:
+            return 0.0
+        radial, axial = (self.grooves * each for each in (math.cos(self.contact_angle), math.sin(self.contact_angle)))
+        gap = self.grooves**2 - (axial + self.offset) ** 2
+        return max(math.sqrt(max(gap, 0.0)) - radial, 0.0)
+
+    @property
+    def approach(self) -> float:
+        """Of rings and balls under the preload, a length over which forces change, m; at least SMALL_APPROACH."""
+        inner, outer = (each.stiffness ** (-2.0 / 3.0) for each in self.contacts)
+        along = max(math.sin(self.contact_angle), 0.1)
+        load = (self.preload or 0.0) / (self.balls * along)
+        pressed = max(self.offset, 0.0) * along if self.preload is None else (inner + outer) * load ** (2.0 / 3.0)
+        return max(pressed, SMALL_APPROACH)
 
     @property
     def points(self) -> int:
