@@ -187,7 +187,7 @@ def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:
     for q in (np.zeros(rotor.size), pushed(rotor)):
         for iteration in range(HELD_ITERATIONS):
             try:
-                held = held_rotor(tangent(rotor, omega, q), omega)
+                held = held_rotor(tangent(rotor, omega, q, compiled=False), omega)
             except NotConverged as error:
                 reason = reason or error
                 break

@@ -39,8 +39,8 @@ class BallForce(ForceLaw):
 
     @property
     def length(self) -> float:
-        """What a ball gives way under a preload, or half of the clearance of rings that are held apart."""
-        return self.rings.approach
+        """What a ball gives way under a preload, beyond the clearance."""
+        return self.rings.approach + self.rings.free
 
     @property
     def memory(self) -> Array:
@@ -105,8 +105,7 @@ class BallBearingElement(MachineElement):
     @property
     def linear(self) -> LinearPart:
         """Usual stiffness and damping, for estimates: without speed, a little beyond the clearance."""
-        way = self.rings.approach + self.rings.free
-        stiffness = at_displacement(self.rings, np.array([0.0, -way]), 0.0).stiffness
+        stiffness = at_displacement(self.rings, np.array([0.0, -BallForce(self.rings).length]), 0.0).stiffness
         return LinearPart.of(0.5 * float(np.trace(stiffness)) * np.eye(2), self.given.damping * np.eye(2))
 
     def parts(self, site: Site) -> Parts:

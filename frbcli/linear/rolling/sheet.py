@@ -15,9 +15,12 @@ from frbcli.columns import Table, table_of
 from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.rolling.life import rating_life
 from frbcli.elements.rolling.rest import RestingRings, under_load
+from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
 from frbcli.linear.rolling.columns import BALL_SHEET
+from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import FILMS
 
 Observer = Callable[[int, int], None]
 SPEEDS = 10
@@ -118,23 +121,43 @@ def ball_bearing_sheet(
         problem = "is missing: the case has no ball bearing."
         raise InputError(case.name or "case", (Fault("bearing", "", None, problem, 'Add one of kind = "ball".'),))
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
+    carried = None if loads else _Carried(case)
     points: list[BallState] = []
     for number, speed in enumerate(speeds):
-        for element, load in _loaded(case, elements, 2.0 * math.pi * speed, loads):
-            points.append(_state(element, load, speed))
+        if carried is None:
+            given = [(element, np.array([0.0, -load])) for load in loads for element in elements]
+            points += [_state(element, load, speed) for element, load in given]
+        else:
+            points += carried.states(elements, speed)
         if observe is not None:
             observe(number + 1, len(speeds))
     return BallSheet(case, tuple(element.given.name for element in elements), tuple(points))
 
 
-def _loaded(
-    case: Case, elements: Sequence[BallBearingElement], omega: float, loads: Sequence[float]
-) -> Iterator[tuple[BallBearingElement, Array]]:
-    """Each bearing with each load (2,) in N on it."""
-    if loads:
-        yield from ((element, np.array([0.0, -load])) for load in loads for element in elements)
-        return
-    raise NotImplementedError(case, omega)
+class _Carried:
+    """The loads that a machine at rest puts on its ball bearings. Raises InputError for one that has no rest."""
+
+    def __init__(self, case: Case) -> None:
+        if case.given_rotor is None:
+            problem = "is missing: the load on the bearing is not known."
+            raise InputError(case.name or "case", (Fault("--load", "", None, problem, 'Give e.g. --load "60 N".'),))
+        require(case, FILMS)
+        self._machines = StaticMachines(case)
+        self._near: MachineAtRest | None = None
+
+    def states(self, elements: Sequence[BallBearingElement], speed: float) -> Iterator[BallState]:
+        """Those of all bearings at a speed in Hz."""
+        omega = 2.0 * math.pi * speed
+        try:
+            self._near = at_rest = self._machines.at(omega, self._near, with_error=False)
+        except NotConverged as error:
+            yield from (BallState(element.given.name, speed, np.full(2, math.nan), str(error)) for element in elements)
+            return
+        q = at_rest.at_rest.position.displacements
+        ports = {port.name: port for port in at_rest.system.rotor.ports}
+        for element in elements:
+            force = ports[element.signal].at(q, np.zeros_like(q), omega).force
+            yield _state(element, -force, speed)
 
 
 def _state(element: BallBearingElement, load: Array, speed: float) -> BallState:
