@@ -162,7 +162,11 @@ def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer
             writer = RunWriter.resume(path)
         else:
             writer = RunWriter(path, header(command, case, segments, _critical_speeds(segments)))
-        march.compile()
+        try:
+            march.compile()
+        except KeyboardInterrupt:  # the file is there, as of any run that is interrupted
+            writer.checkpoint(march.snapshot(), march.cost(), march.error_so_far(), march.time)
+            return writer.so_far()
         run = _go(march, writer, observe, second_run_s(case, plan, profile))
         if run.status == "interrupted":
             return run
