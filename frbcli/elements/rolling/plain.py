@@ -19,12 +19,14 @@ MICROMETRE = 1e-6
 @dataclass(frozen=True)
 class PlainRings:
     """The bearing at rest. displacement: (3,) of the inner ring, m; places: (n, 2) u and v of the balls, m; force:
-    (2,) on the inner ring, N; stiffness: (2, 2) -dF/dd under the preload, N/m."""
+    (2,) on the inner ring, N; stiffness: (2, 2) -dF/dd under the preload, N/m; energy: of contacts, preload and
+    centrifugal forces, J."""
 
     displacement: Array
     places: Array
     force: Array
     stiffness: Array
+    energy: float
 
 
 def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float = 0.0) -> PlainRings:
@@ -51,11 +53,11 @@ def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float 
     for _ in range(3):  # beyond what differences of energies tell
         _, gradient, matrix = at(found)
         found = found - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free])[0] / MICROMETRE
-    _, gradient, matrix = at(found)
+    energy, gradient, matrix = at(found)
     inner, coupled = matrix[np.ix_(free, free)], matrix[free, :2]
     stiffness = matrix[:2, :2] - coupled.T @ np.linalg.lstsq(inner, coupled)[0]
     start[free] += MICROMETRE * found
-    return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness)
+    return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness, energy)
 
 
 def _energy(of: BallNumbers, psi: Array, q: Array, centrifugal: float) -> tuple[float, Array, Array]:
