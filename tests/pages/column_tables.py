@@ -43,6 +43,7 @@ from frbcli.linear.columns import (
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
+from frbcli.linear.rolling.columns import BALL_SHEET
 from frbcli.linear.thrust.columns import AXIAL, THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS
@@ -73,6 +74,7 @@ def without(columns: Columns, *beginnings: str) -> Columns:
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "mixed friction": MIXED_FRICTION,
+    "ball bearings": BALL_SHEET,
     "thrust sheet": THRUST,
     "collar": tuple(column for column in AXIAL if column.quantity.startswith("axial")),
     "stability": (*POINT[:2], *FILM, *POINT[2:]),
