@@ -22,6 +22,7 @@ from frbcli.case.quantities import (
     Length,
     Position,
     Preload,
+    Quantity,
     Ratio,
     Temperature,
     Viscosity,
@@ -29,7 +30,7 @@ from frbcli.case.quantities import (
 from frbcli.case.supplies.none import NoSupply
 from frbcli.case.supplies.table import Supply
 from frbcli.case.thermal import ROOM_TEMPERATURE
-from frbcli.film.gap import NO_BATH
+from frbcli.film.gap import NO_BATH, LobedShell, ShellProfile, TabledShell
 
 
 class ColdClearance(Model):
@@ -75,6 +76,10 @@ class Lobes(Model):
     )
 
 
+Gap = Annotated[float, Quantity("m", "35 um", above=0)]
+Profile = Annotated[tuple[tuple[Angle, Gap], ...], Field(min_length=2, max_length=3600)]
+
+
 class SealedEnds(Model):
     """Ends with a seal, such as a piston ring, beyond which lies the air."""
 
@@ -117,6 +122,11 @@ class FilmGeometry(Model):
     )
     supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
     lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
+    profile: Profile | None = Field(
+        default=None,
+        description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal, over one turn, linear between them; "
+        "no gap is less than the clearance",
+    )
     viscosity: Viscosity | None = Field(default=None, description="of this film, if not oil.viscosity")
     temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
     side_flow_factor: Ratio | None = Field(
@@ -150,6 +160,15 @@ class FilmGeometry(Model):
             return None
         reason = "let out that share of the flow of open ends where a constant gap is fed in the middle or by a groove"
         return f"sealed, {self.sealed:g}", f"{reason}; air beyond"
+
+    @property
+    def shell(self) -> ShellProfile | None:
+        """The shape of the shell, None of a cylinder."""
+        if self.profile is not None:
+            angles, gaps = zip(*self.profile, strict=True)
+            return TabledShell(angles, tuple(gap / self.clearance - 1.0 for gap in gaps))
+        given = self.lobes
+        return None if given is None else LobedShell(given.count, given.preload, given.position, given.offset)
 
     @property
     def clearance(self) -> float:

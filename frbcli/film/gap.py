@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import itertools
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field, replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -17,6 +19,7 @@ CLOSED = 1e-7  # share of the flow of an open end that stands for none: the limi
 NO_BATH = -1.0
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
+MOST_CORNERS = 24  # of a profile whose points are corners
 LEAST = 2  # cells between two edges
 LARGEST_ECCENTRICITY = 0.9999  # end of the tables
 
@@ -49,8 +52,38 @@ class Hole:
     round: bool
 
 
+class ShellProfile(ABC):
+    """The inner surface of a shell that is no cylinder. Section.clearance is the gap of the centred journal where it is
+    narrowest, or nearly."""
+
+    key: ClassVar[str]  # of a film in a case file
+
+    @property
+    @abstractmethod
+    def words(self) -> str:
+        """What it is, as `3 lobes`."""
+
+    @abstractmethod
+    def told(self, clearance: float) -> tuple[str, str]:
+        """Its value and reason in a plan, of a film with a clearance in m."""
+
+    @property
+    def fault(self) -> tuple[str, str]:
+        """What is wrong with it, and the remedy."""
+        return "", ""
+
+    @property
+    @abstractmethod
+    def edges(self) -> tuple[float, ...]:
+        """phi in rad of its corners, where faces of cells have to lie."""
+
+    @abstractmethod
+    def depth(self, phi: Array) -> Array:
+        """H of the centred journal at the angles phi (n,) without the 1 of a cylinder."""
+
+
 @dataclass(frozen=True)
-class LobedShell:
+class LobedShell(ShellProfile):
     """Equal arcs of the shell, each bored with a larger radius than the journal needs, around a centre of its own.
 
     With the clearance c_b of the centred journal at the narrowest place of a lobe and the machined clearance c_p of its
@@ -63,6 +96,24 @@ class LobedShell:
     position: float
     offset: float = 0.5
 
+    key: ClassVar[str] = "lobes"
+
+    @property
+    def words(self) -> str:
+        return f"{self.count} lobes"
+
+    def told(self, clearance: float) -> tuple[str, str]:
+        machined = 1e6 * clearance / (1.0 - self.preload)
+        reason = f"clearance {1e6 * clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
+        return f"{self.words}, preload {self.preload:g}", reason
+
+    @property
+    def fault(self) -> tuple[str, str]:
+        if self.count >= 1 and 0.0 <= self.preload < 1.0:
+            return "", ""
+        problem = f"{self.count:g} lobes with a preload of {self.preload:g}"
+        return problem, "The preload must be at least 0 and less than 1."
+
     @property
     def arc(self) -> float:
         """Angle of one lobe in rad."""
@@ -72,6 +123,43 @@ class LobedShell:
     def start(self) -> float:
         """phi at which the first lobe begins."""
         return self.position - 0.5 * self.arc
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        return tuple(self.start + i * self.arc for i in range(self.count))
+
+    def depth(self, phi: Array) -> Array:
+        """m / (1 - m) (1 - cos(phi - phi_l)), phi_l being where the lobe is narrowest. An edge between two lobes
+        belongs to the one that begins there."""
+        within = np.mod(phi - self.start + ON_EDGE, self.arc) - ON_EDGE
+        return np.asarray(self.preload / (1.0 - self.preload) * (1.0 - np.cos(within - self.offset * self.arc)))
+
+
+@dataclass(frozen=True)
+class TabledShell(ShellProfile):
+    """A shell as a table over the angle, linear in between: angles, phi in rad, rising over one turn; depths: H of the
+    centred journal there without 1."""
+
+    angles: tuple[float, ...]
+    depths: tuple[float, ...]
+
+    key: ClassVar[str] = "profile"
+
+    @property
+    def words(self) -> str:
+        return f"a profile of {len(self.angles)} points"
+
+    def told(self, clearance: float) -> tuple[str, str]:
+        least, most = (1e6 * clearance * (1.0 + f(self.depths)) for f in (min, max))
+        return self.words, f"gaps of {least:.4g} to {most:.4g} um around the centred journal"
+
+    @property
+    def edges(self) -> tuple[float, ...]:
+        """The corners of a drawn profile. Points of a measured one are many, and lie closer than cells."""
+        return self.angles if len(self.angles) <= MOST_CORNERS else ()
+
+    def depth(self, phi: Array) -> Array:
+        return np.asarray(np.interp(phi, self.angles, self.depths, period=2.0 * math.pi))
 
 
 @dataclass(frozen=True)
@@ -108,7 +196,7 @@ class Section:
     far_pressure: float = 0.0
     grooves: tuple[AxialGroove, ...] = ()
     holes: tuple[Hole, ...] = field(default=())
-    lobes: LobedShell | None = None
+    profile: ShellProfile | None = None
     sealed: float = 1.0
     largest_flow: float = math.inf
     flow_roughness: float = 0.0
@@ -159,12 +247,12 @@ def ends_at_ambient(section: Section) -> Section:
 
 
 def gap_height(section: Section, d: Displacement, phi: Array) -> Array:
-    """H at the angles phi (n,) for the displacement d over the clearance: (4.4), between lobes and journal
+    """H at the angles phi (n,) for the displacement d over the clearance: (4.4), with the depth of a profile
 
-    H = 1 + m / (1 - m) (1 - cos(phi - phi_l)) + d_x sin(phi) - d_y cos(phi), phi_l being where the lobe is narrowest.
+    H = 1 + depth(phi) + d_x sin(phi) - d_y cos(phi).
     """
     plain: Array = 1.0 + d[0] * np.sin(phi) - d[1] * np.cos(phi)
-    return plain if section.lobes is None else plain + lobe_depth(section.lobes, phi)
+    return plain if section.profile is None else plain + section.profile.depth(phi)
 
 
 def gap_rate(v: Displacement, phi: Array) -> Array:
@@ -172,20 +260,9 @@ def gap_rate(v: Displacement, phi: Array) -> Array:
     return np.asarray(v[0] * np.sin(phi) - v[1] * np.cos(phi), dtype=np.float64)
 
 
-def lobe_depth(lobes: LobedShell, phi: Array) -> Array:
-    """H of the centred journal at the angles phi (n,) without the 1 that it is at the narrowest places.
-
-    An edge between two lobes belongs to the one that begins there.
-    """
-    within = np.mod(phi - lobes.start + ON_EDGE, lobes.arc) - ON_EDGE
-    return np.asarray(
-        lobes.preload / (1.0 - lobes.preload) * (1.0 - np.cos(within - lobes.offset * lobes.arc)), dtype=np.float64
-    )
-
-
 def smallest_gap(section: Section, d: tuple[float, float]) -> float:
     """The least H over the turn."""
-    if section.lobes is None:
+    if section.profile is None:
         return 1.0 - math.hypot(*d)
     return float(gap_height(section, d, np.linspace(-np.pi, np.pi, SAMPLES)).min())
 

@@ -53,7 +53,7 @@ def is_unfed(section: Section, law: type[Law]) -> bool:
 
 def section_faults(section: Section) -> list[SectionFault]:
     """Everything that is wrong with a section, each with its remedy."""
-    return [*_size_faults(section), *_lobe_faults(section), *_inlet_faults(section), *_overlaps(section)]
+    return [*_size_faults(section), *_profile_faults(section), *_inlet_faults(section), *_overlaps(section)]
 
 
 def _size_faults(section: Section) -> list[SectionFault]:
@@ -72,12 +72,9 @@ def _size_faults(section: Section) -> list[SectionFault]:
     return faults
 
 
-def _lobe_faults(section: Section) -> list[SectionFault]:
-    lobes = section.lobes
-    if lobes is not None and not (lobes.count >= 1 and 0.0 <= lobes.preload < 1.0):
-        problem = f"{lobes.count:g} lobes with a preload of {lobes.preload:g}"
-        return [SectionFault(problem, "The preload must be at least 0 and less than 1.")]
-    return []
+def _profile_faults(section: Section) -> list[SectionFault]:
+    problem, remedy = ("", "") if section.profile is None else section.profile.fault
+    return [SectionFault(problem, remedy)] if problem else []
 
 
 def _inlet_faults(section: Section) -> list[SectionFault]:

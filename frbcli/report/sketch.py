@@ -12,6 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
+import numpy as np
+
 from frbcli.case.bearing import FilmBearing, GivenBearing
 from frbcli.case.elements import Element
 from frbcli.case.film_geometry import FilmGeometry
@@ -388,10 +390,5 @@ def _arrow(shaft: list[tuple[float, float]]) -> list[str]:
 
 
 def _gap(film: FilmGeometry, phi: float) -> float:
-    """The gap of the centred journal over the clearance, see frbcli/film/gap.py."""
-    lobes = film.lobes
-    if lobes is None:
-        return 1.0
-    arc = 2.0 * math.pi / lobes.count
-    along = (phi - lobes.position + 0.5 * arc) % arc - lobes.offset * arc
-    return min(1.0 + lobes.preload / (1.0 - lobes.preload) * (1.0 - math.cos(along)), 2.4)
+    """The gap of the centred journal over the clearance, as far as it can be drawn."""
+    return 1.0 if film.shell is None else min(1.0 + float(film.shell.depth(np.array([phi]))[0]), 2.4)

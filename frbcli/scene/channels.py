@@ -114,6 +114,7 @@ def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
     if bearing.ring.spin == "free" and not outer.supply.plain:
         problem = f"asks for {outer.supply.kind} in the housing, which the feed holes of a turning ring pass."
         return problem, f"Give it {INLETS}, or a ring that does not turn."
-    if bearing.ring.spin == "free" and outer.lobes is not None:
-        return "asks for lobes in the housing, which the feed holes of a turning ring pass.", "Remove outer.lobes."
+    if bearing.ring.spin == "free" and outer.shell is not None:
+        problem = f"asks for {outer.shell.words} in the housing, which the feed holes of a turning ring pass."
+        return problem, f"Remove outer.{outer.shell.key}."
     return "", ""

@@ -122,7 +122,7 @@ def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:
 
 def is_plain(film: FilmGeometry) -> bool:
     """Whether a gap looks the same from every angle: its cells may turn as they like."""
-    return film.lobes is None and film.supply.plain and film.bath <= NO_BATH
+    return film.shell is None and film.supply.plain and film.bath <= NO_BATH
 
 
 def turns_with_oil(case: Case, place: FilmPlace) -> bool:

@@ -10,7 +10,7 @@ from frbcli.case.schema import Case
 from frbcli.case.supplies.bores import Bores
 from frbcli.case.supplies.supply import MIDDLE
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.gap import Diffusion, LobedShell, Section, whole_width
+from frbcli.film.gap import Diffusion, Section, whole_width
 
 ELEMENT = 2.0 * math.pi / 20.0  # L of (4.42) in rad: of the elements of figure 6.2
 
@@ -43,7 +43,7 @@ def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = N
         far_pressure=opened.far_pressure,
         grooves=opened.grooves,
         holes=holes,
-        lobes=_lobes(bearing),
+        profile=bearing.shell,
         sealed=bearing.sealed,
         bath=bearing.bath,
         largest_flow=bearing.supply.largest_flow / copies,
@@ -66,11 +66,6 @@ def is_published(case: Case) -> bool:
     return any(diffusion_of(case, film) is not None for film in case.films)
 
 
-def _lobes(bearing: FilmGeometry) -> LobedShell | None:
-    given = bearing.lobes
-    return None if given is None else LobedShell(given.count, given.preload, given.position, given.offset)
-
-
 def film_rectangle(section: Section) -> Section | None:
-    """The section over the whole width, as the modal film is solved on it; None if openings or lobes interrupt it."""
-    return None if section.grooves or section.holes or section.lobes else whole_width(section)
+    """The section over the whole width, as the modal film is solved on it; None if it has openings or a profile."""
+    return None if section.grooves or section.holes or section.profile else whole_width(section)

@@ -19,7 +19,7 @@ from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
 from frbcli.film.cells.motion import Motion, path_seen_from, seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section, gap_height, graded_ring, smallest_gap
+from frbcli.film.gap import AxialGroove, Hole, LobedShell, Section, TabledShell, gap_height, graded_ring, smallest_gap
 
 TURN = 2.0 * math.pi
 PLAIN = section_of("none")
@@ -39,15 +39,33 @@ def steady_loads(film: VolumeFilm, motion: Motion) -> FilmLoads:
 
 def test_lobes_without_preload_are_a_plain_bearing() -> None:
     phi = np.linspace(0.0, TURN, 40)
-    assert np.array_equal(gap_height(replace(PLAIN, lobes=LobedShell(3, 0.0, 0.4)), (0.3, 0.2), phi),
+    assert np.array_equal(gap_height(replace(PLAIN, profile=LobedShell(3, 0.0, 0.4)), (0.3, 0.2), phi),
                           gap_height(PLAIN, (0.3, 0.2), phi))  # fmt: skip
+
+
+def test_a_table_of_the_gap_of_lobes_has_their_forces() -> None:
+    """Linear between 720 points: within the square of half a degree."""
+    lobes = LobedShell(3, 0.5, 0.7)
+    angles = np.linspace(0.0, TURN, 720, endpoint=False)
+    table = TabledShell(tuple(angles.tolist()), tuple(lobes.depth(angles).tolist()))
+    own, tabled = (
+        steady_loads(film_on(replace(PLAIN, profile=each), RING, 12), ROTATION).force
+        for each in (lobes, table)
+    )
+    np.testing.assert_allclose(tabled, own, rtol=2e-4)
+
+
+def test_a_profile_is_one_turn_that_closes() -> None:
+    table = TabledShell((0.1, 1.0, 3.0, 6.0), (0.0, 0.5, 0.25, 0.4))
+    phi = np.array([0.1, 2.0, 6.0 + 0.5 * (TURN - 5.9), 0.1 + TURN, 1.0 - TURN])
+    np.testing.assert_allclose(table.depth(phi), [0.0, 0.375, 0.2, 0.0, 0.5], atol=1e-14)
 
 
 @pytest.mark.parametrize("offset", [0.3, 0.5, 1.0])
 def test_gap_of_lobes_is_between_assembled_and_machined_clearance(offset: float) -> None:
     """Smallest, 1, at the offset of each lobe; the centre of a lobe's bore is c_p - c_b away from the bearing's."""
     lobes = LobedShell(3, 0.5, 0.7, offset)
-    section = replace(PLAIN, lobes=lobes)
+    section = replace(PLAIN, profile=lobes)
     narrowest = lobes.start + (np.arange(3) + offset) * lobes.arc - (1e-6 if offset == 1.0 else 0.0)
     assert gap_height(section, (0.0, 0.0), narrowest) == pytest.approx(1.0, abs=1e-11)
     assert smallest_gap(section, (0.0, 0.0)) == pytest.approx(1.0, abs=1e-6)
@@ -62,7 +80,7 @@ def test_one_lobe_is_a_plain_bearing_of_the_machined_clearance() -> None:
     """Its bore is a whole circle, only placed elsewhere: the same film in two descriptions."""
     preload, position = 0.4, 0.7
     machined = replace(PLAIN, clearance=PLAIN.clearance / (1.0 - preload))
-    lobed = replace(PLAIN, lobes=LobedShell(1, preload, position))
+    lobed = replace(PLAIN, profile=LobedShell(1, preload, position))
     motion = Motion((0.2, -0.3), (3.0, 4.0), 300.0)
     shift = (-preload * math.sin(position), preload * math.cos(position))
     share = 1.0 - preload
@@ -79,8 +97,8 @@ def test_one_lobe_is_a_plain_bearing_of_the_machined_clearance() -> None:
 @pytest.mark.parametrize("count", [3, 4])
 def test_symmetric_lobes_carry_nothing_at_the_centre_and_are_isotropic(count: int) -> None:
     """A matrix of a count-fold symmetry, count at least 3, is a multiple of a rotation: K = [[a, b], [-b, a]]."""
-    section = replace(PLAIN, lobes=LobedShell(count, 0.5, 0.2))
-    ring = section.lobes.start + np.linspace(0.0, TURN, 24 * count + 1) if section.lobes else RING
+    section = replace(PLAIN, profile=LobedShell(count, 0.5, 0.2))
+    ring = section.profile.start + np.linspace(0.0, TURN, 24 * count + 1) if section.profile else RING
     film = film_on(section, ring)
 
     def force(d: tuple[float, float], omega: float = 600.0) -> np.ndarray:
@@ -100,7 +118,7 @@ def test_preload_makes_direct_stiffness_which_a_plain_bearing_has_not() -> None:
     step = 1e-4
     ratios = []
     for preload in (0.0, 0.3, 0.6):
-        film = film_on(replace(PLAIN, lobes=LobedShell(3, preload, 0.0)), RING)
+        film = film_on(replace(PLAIN, profile=LobedShell(3, preload, 0.0)), RING)
         force = np.array(steady_loads(film, Motion((step, 0.0), (0.0, 0.0), 600.0)).force)
         force -= np.array(steady_loads(film, Motion((-step, 0.0), (0.0, 0.0), 600.0)).force)
         ratios.append(-force[0] / np.linalg.norm(force))
@@ -110,8 +128,8 @@ def test_preload_makes_direct_stiffness_which_a_plain_bearing_has_not() -> None:
 
 def test_long_lobed_bearing_is_the_integral_of_the_reynolds_equation() -> None:
     """No flow along, full film: H^3 p' = omega / 2 (H - H_m) with the H_m that closes the turn."""
-    section = replace(PLAIN, near="symmetry", far="symmetry", lobes=LobedShell(2, 0.4, 0.3))
-    bath = Hole(section.lobes.start if section.lobes else 0.0, 0.5e-2, 1e-2, 10.0, 0.0, round=False)
+    section = replace(PLAIN, near="symmetry", far="symmetry", profile=LobedShell(2, 0.4, 0.3))
+    bath = Hole(section.profile.start if section.profile else 0.0, 0.5e-2, 1e-2, 10.0, 0.0, round=False)
     motion = Motion((0.25, -0.1), (0.0, 0.0), 400.0)
     phi = bath.position + bath.half_angle + np.linspace(0.0, TURN, 20_001)
     phi = phi[phi <= bath.position - bath.half_angle + TURN]
@@ -134,7 +152,7 @@ def test_long_lobed_bearing_is_the_integral_of_the_reynolds_equation() -> None:
 def test_grid_has_faces_at_the_edges_of_lobes_and_meets_edges_that_fall_together() -> None:
     lobes = LobedShell(2, 0.5, 0.0)
     groove = AxialGroove(lobes.start + 0.15, 0.3, 1e5)  # begins where the lobe does
-    section = replace(PLAIN, lobes=lobes, grooves=(groove,))
+    section = replace(PLAIN, profile=lobes, grooves=(groove,))
     grid = fitted_grid(section, (0.0, 0.3), 64, 8)
     assert np.diff(grid.phi).min() > 1e-3
     assert grid.phi[-1] - grid.phi[0] == pytest.approx(TURN, rel=1e-12)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from pydantic import ValidationError
+from pydantic import TypeAdapter, ValidationError
 
-from frbcli.case.film_geometry import ColdClearance
+from frbcli.case.film_geometry import ColdClearance, Profile
 from frbcli.case.oil import ATMOSPHERE, Grade, Oil, Vogel
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
@@ -16,6 +18,8 @@ from frbcli.materials.oils import OILS
 from frbcli.materials.viscosity import VogelLaw
 from frbcli.units import NUMBER, display
 
+PROFILE: TypeAdapter[tuple[tuple[float, float], ...]] = TypeAdapter(Profile)
+TURN, SAME = 2.0 * math.pi, 1e-9  # rad; share of the clearance
 THICKEST_MACHINED = 0.05  # clearance of a lobe over the radius
 VISCOSITY_RANGE = (1e-6, 1e4)
 LONGEST = 1e5  # width over the diameter
@@ -44,9 +48,12 @@ def film_breaches(path: Path, film: Mapping[str, Any], data: Mapping[str, Any]) 
     ambient = number(oil, "ambient_pressure", "Pa", ATMOSPHERE)
     supply = table(film, "supply")
     yield from supply_named(supply.get("kind")).breaches((*path, "supply"), supply, diameter, width, ambient)
-    if supply.get("on") == "journal" and "lobes" in film:
-        problem = "are in the shell, and the feed holes in the journal: no frame has both at rest."
-        yield Breach((*path, "lobes"), problem, 'Remove them, or write supply.on = "shell".')
+    for key in ("lobes", "profile"):
+        if supply.get("on") == "journal" and key in film:
+            problem = "belongs to the shell, and the feed holes to the journal: no frame has both at rest."
+            yield Breach((*path, key), problem, 'Remove it, or write supply.on = "shell".')
+    if "profile" in film:
+        yield from _profile((*path, "profile"), film, clearance, diameter)
 
 
 def _too_thick(path: Path, clearance: float, diameter: float) -> Breach:
@@ -80,6 +87,25 @@ def _lobes(path: Path, lobes: Mapping[str, Any], clearance: float, diameter: flo
     if machined >= THICKEST_MACHINED * diameter / 2:
         problem = f"makes a machined clearance of {display(machined, 'm')}, too large for a thin film."
         yield Breach((*path, "preload"), problem, "It is 1 - c_b / c_p, with the assembled clearance c_b.")
+
+
+def _profile(
+    path: Path, film: Mapping[str, Any], clearance: float | None, diameter: float | None
+) -> Iterator[Breach]:
+    """A table of gaps over one turn, none of which is less than the clearance."""
+    if "lobes" in film:
+        yield Breach(path, "is given beside lobes.", "Keep one of the two.")
+    try:
+        angles, gaps = zip(*PROFILE.validate_python(film["profile"]), strict=True)
+    except ValidationError:
+        return
+    if any(after <= before for before, after in itertools.pairwise(angles)) or angles[-1] - angles[0] >= TURN:
+        yield Breach(path, "has angles that do not rise within one turn.", "Order its points by phi.")
+    if clearance is not None and min(gaps) < clearance * (1.0 - SAME):
+        problem = f"has a gap of {display(min(gaps), 'm')}, less than the clearance of {display(clearance, 'm')}."
+        yield Breach(path, problem, "Give the least gap as clearance.")
+    if diameter and max(gaps) >= THICKEST_MACHINED * diameter / 2:
+        yield Breach(path, f"has a gap of {display(max(gaps), 'm')}, too large for a thin film.", "Check its unit.")
 
 
 def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) -> Iterator[Breach]:

@@ -38,7 +38,7 @@ from frbcli.film.state import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 NARROWEST = 1e-3  # over the clearance: of the gap in which oil is sheared
-AROUND = 360  # angles at which the gap of lobes is looked at
+AROUND = 360  # angles at which the gap of a profile is looked at
 
 
 @dataclass(frozen=True)
@@ -342,7 +342,7 @@ def passed_oil(size: Sequence[float], flows: Array) -> dict[str, float]:
 
 def least_gaps(section: Section, d: Array) -> Array:
     """(k,) least H of a section at displacements d (k, 2) over the clearance."""
-    if section.lobes is None:
+    if section.profile is None:
         return np.asarray(1.0 - np.hypot(d[:, 0], d[:, 1]))
     phi = np.linspace(0.0, 2.0 * math.pi, AROUND, endpoint=False)
     height = gap_height(section, (0.0, 0.0), phi) + d[:, :1] * np.sin(phi) - d[:, 1:] * np.cos(phi)

@@ -98,10 +98,9 @@ def _parts_faults(key: str, film: FilmGeometry) -> Iterator[Fault]:
     elif supply.rise_time > 0.0:
         problem = "is a ramp of the pressure, which a bearing model cannot represent."
         yield Fault(f"{key}.supply.ramp", f"{supply.rise_time:g} s", None, problem, "Write 0 s.")
-    if film.lobes is not None:
-        value = f"{film.lobes.count} lobes"
+    if film.shell is not None:
         problem = "is a shape of the shell that a bearing model cannot represent."
-        yield Fault(f"{key}.lobes", value, None, problem, remedy)
+        yield Fault(f"{key}.{film.shell.key}", film.shell.words, None, problem, remedy)
 
 
 def _force_faults(case: Case, omega: float) -> Iterator[Fault]:

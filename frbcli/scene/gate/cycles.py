@@ -125,7 +125,7 @@ def turning_openings(case: Case) -> bool:
     if form_of(case).inclines or not all_clipped(case) or any(coupled_rings(case)):
         return False
     return all(
-        is_plain(place.geometry) or (place.geometry.lobes is None and place.grid_body != HOUSING)
+        is_plain(place.geometry) or (place.geometry.shell is None and place.grid_body != HOUSING)
         for place in film_places(case)
     )
 

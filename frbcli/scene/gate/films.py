@@ -209,9 +209,9 @@ def rough_faults(case: Case) -> Iterator[Fault]:
 
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film = place.geometry
-        if film.lobes is not None:
+        if film.shell is not None:
             problem = "is not modelled with asperities, whose gap is that of a plain cylinder."
-            yield Fault(f"{key}.lobes", f"{film.lobes.count}", None, problem, f"{SMOOTH}, or leave them out.")
+            yield Fault(f"{key}.{film.shell.key}", film.shell.words, None, problem, f"{SMOOTH}, or leave it out.")
         problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
         if LAST * contact.roughness >= film.clearance:
             remedy = f"Give less than {display(film.clearance / LAST, 'm')}."

@@ -158,7 +158,7 @@ def _on_volumes(case: Case) -> bool:
         return table_obstacle(case) != ""
     films = [place.geometry for place in film_places(case)]
     chained = len(films) > 1 and any(film.supply.divides for film in films)
-    return chained or any(film.lobes is not None or not film.supply.rectangular for film in films)
+    return chained or any(film.shell is not None or not film.supply.rectangular for film in films)
 
 
 def film_form(case: Case, film: FilmGeometry, theory: str) -> FilmForm:

@@ -177,7 +177,7 @@ def _decisions(
     law, bearing = law_named(case.film.cavitation), case.bearings[0].films[0]
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
-    yield from _lobe_decision(section)
+    yield from _profile_decision(section)
     yield Decision("film", *form.told_in_tests(case, law))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
@@ -220,10 +220,6 @@ def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
     return [Decision("tilt", f"{1e3 * x:.4g}, {1e3 * y:.4g} mrad", reason)]
 
 
-def _lobe_decision(section: Section) -> list[Decision]:
-    lobes = section.lobes
-    if lobes is None:
-        return []
-    machined = 1e6 * section.clearance / (1.0 - lobes.preload)
-    reason = f"clearance {1e6 * section.clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
-    return [Decision("lobes", f"{lobes.count}, preload {lobes.preload:g}", reason)]
+def _profile_decision(section: Section) -> list[Decision]:
+    shell = section.profile
+    return [] if shell is None else [Decision(shell.key, *shell.told(section.clearance))]

@@ -323,6 +323,6 @@ def _time_integration(case: Case, films: FilmChoice, target: float, decide: Deci
 
 def _gap(film: FilmGeometry) -> tuple[str, str]:
     supply = film.supply
-    if film.lobes is not None:
-        return "developed gap", f"with {film.lobes.count} lobes, supply {supply.kind}"
+    if film.shell is not None:
+        return "developed gap", f"with {film.shell.words}, supply {supply.kind}"
     return supply.gap

@@ -93,8 +93,8 @@ def fitted_grid(
     spans = [(groove.position, 0.5 * groove.opening) for groove in section.grooves]
     spans += [(hole.position, hole.half_angle) for hole in section.holes if not hole.round]
     edges = [middle + side * half for middle, half in spans for side in (-1.0, 1.0)]
-    if section.lobes is not None:
-        edges += [section.lobes.start + i * section.lobes.arc for i in range(section.lobes.count)]
+    if section.profile is not None:
+        edges += section.profile.edges
     ring = graded_ring(around, narrowest, contraction, np.array(edges))
     return volume_grid(section, ring, tilted_ends(along) if tilted else np.linspace(0.0, 1.0, along + 1))
 
