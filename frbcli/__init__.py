@@ -40,6 +40,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
+    from frbcli.linear.rolling.sheet import ball_bearing_sheet as ball_bearing_sheet
     from frbcli.linear.stability import stability as stability
     from frbcli.linear.standards.balance_quality import balance_quality as balance_quality
     from frbcli.linear.standards.vibration import vibration_limits as vibration_limits
@@ -90,6 +91,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
     "balance_quality": "frbcli.linear.standards.balance_quality",
+    "ball_bearing_sheet": "frbcli.linear.rolling.sheet",
     "bearing_sheet": "frbcli.linear.bearing_sheet",
     "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",

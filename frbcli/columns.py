@@ -26,7 +26,9 @@ ZERO_CELSIUS = 273.15
 MINUS_ZERO = re.compile(r"^-(?=0(?:\.0*)?[^\d.]*$)")  # of round-off below zero, such as -0.0 or -0°
 LARGEST_PLAIN = 1e6  # below it, numbers with a number of digits have no powers of ten
 NOTHING = 1e-12  # of the largest entry of a matrix: an entry that is zero but for round-off
-SCALES = {"um": 1e6, "bar": 1e-5, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6}  # over SI
+SCALES = {  # over SI
+    "um": 1e6, "bar": 1e-5, "MPa": 1e-6, "mm^3/s": 1e9, "mPa s": 1e3, "N/um": 1e-6, "N s/mm": 1e-3, "ml/s": 1e6,
+}  # fmt: skip
 
 
 @dataclass(frozen=True)

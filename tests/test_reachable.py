@@ -22,6 +22,7 @@ PACKAGE = Path(frbcli.__file__).parent
 PLAIN = {
     ("frbcli.film.rectangles.plain", "solve_plain"): "frbcli.film.rectangles.modal",
     ("frbcli.film.rectangles.short", "short_pressure"): "frbcli.film.rectangles.short",
+    ("frbcli.elements.rolling.plain", "solve_plain"): "frbcli.rotor.port_function",  # which compiles the law
     ("frbcli.film.roughness.plain", "plain_touch"): "frbcli.film.roughness.asperities",
 }
 Name = tuple[str, str]  # module, name of what it defines

@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.elements import CoefficientsBearing
+from frbcli.case.elements import WITHOUT_FILM, BallBearingKeys, CoefficientsBearing, Element
 from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import AlsoAs, Model, altered
 from frbcli.case.quantities import (
@@ -272,7 +272,7 @@ class CartridgeBearing(BearingWalls):
 
 
 FilmBearing = SingleFilmBearing | FloatingRingBearing
-GivenBearing = SingleFilmBearing | FloatingRingBearing | CartridgeBearing | CoefficientsBearing
+GivenBearing = SingleFilmBearing | FloatingRingBearing | CartridgeBearing | CoefficientsBearing | BallBearingKeys
 Bearing = Annotated[GivenBearing, Field(discriminator="kind")]
 ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
 
@@ -298,8 +298,8 @@ def _position(bearing: object) -> object:
 
 def _without_film(bearing: object) -> bool:
     if isinstance(bearing, dict):
-        return bearing.get("kind") == "coefficients"
-    return isinstance(bearing, CoefficientsBearing)
+        return bearing.get("kind") in WITHOUT_FILM
+    return isinstance(bearing, Element)
 
 
 def _named(bearing: object, name: str) -> object:

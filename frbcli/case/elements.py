@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
@@ -14,18 +14,28 @@ from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.model import AlsoAs, Model
 from frbcli.case.quantities import (
     Clearance,
+    ContactAngle,
     Count,
+    Damping,
+    Density,
+    Force,
+    GrooveCurvature,
     Identifier,
     Label,
     Length,
+    Modulus,
     OpeningAngle,
+    Play,
+    PoissonRatio,
     Position,
+    PreloadForce,
     Quantity,
     SignedSpeed,
     TopSpeed,
 )
 from frbcli.case.surroundings.over_time import Input, OverTime, is_over_time
 from frbcli.case.surroundings.support import Damper, Support
+from frbcli.materials.solids import ROLLING, Elastic
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]
@@ -116,7 +126,105 @@ class CoefficientsBearing(Model):
         return (self,)
 
 
-Element = CoefficientsBearing
+class RollingMaterial(Model):
+    """A material of balls or rings that is not known by name."""
+
+    modulus: Modulus = Field(description="of elasticity")
+    poisson: PoissonRatio = Field(description="Poisson's ratio")
+    density: Density = Field(description="for the centrifugal force of balls")
+
+    @property
+    def solid(self) -> Elastic:
+        """The material."""
+        return Elastic(self.modulus, self.poisson, self.density)
+
+
+class AxialOffset(Model):
+    """A preload by rings that are held along the axis."""
+
+    offset: Play = Field(description="axial displacement of the inner ring of each row from its first contact")
+
+
+def _material_form(given: object) -> str:
+    return "(figures)" if isinstance(given, dict | RollingMaterial) else "(name)"
+
+
+def _preload_form(given: object) -> str:
+    return "(offset)" if isinstance(given, dict | AxialOffset) else "(force)"
+
+
+_RollingName: Any = Literal[tuple(ROLLING)]
+AnyRollingMaterial = Annotated[
+    Annotated[_RollingName, Tag("(name)")] | Annotated[RollingMaterial, Tag("(figures)")],
+    Discriminator(_material_form),
+]
+AnyPreload = Annotated[
+    Annotated[PreloadForce, Tag("(force)")] | Annotated[AxialOffset, Tag("(offset)")], Discriminator(_preload_form)
+]
+
+
+class BallBearingKeys(Model):
+    """One or two rows of balls between two rings: angular contact, or deep groove."""
+
+    kind: Literal["ball"] = Field(description="balls between two rings")
+    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
+    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    balls: Annotated[int, Count(3, 100, 8)] = Field(description="number of balls of a row")
+    ball_diameter: Length = Field(description="of the balls")
+    pitch_diameter: Length = Field(description="of the circle of their centres")
+    contact_angle: ContactAngle | None = Field(default=None, description="without load")
+    radial_clearance: Play | None = Field(
+        default=None, description="in place of the contact angle: way of a ring from side to side, of a deep groove"
+    )
+    inner_curvature: GrooveCurvature = Field(default=0.52, description="groove radius over ball diameter, inner ring")
+    outer_curvature: GrooveCurvature = Field(default=0.53, description="groove radius over ball diameter, outer ring")
+    ball_material: AnyRollingMaterial = Field(
+        default="steel", description="a name, or `{ modulus, poisson, density }`"
+    )
+    ring_material: AnyRollingMaterial = Field(default="steel", description="the same")
+    arrangement: Literal["single", "face-to-face", "back-to-back", "tandem"] = Field(
+        default="single", description="one row, or two; they differ in tilt alone, which is left out"
+    )
+    preload: AnyPreload = Field(
+        default=0.0, description="axial, on each row: constant, by a spring, or `{ offset }` of rings that are held"
+    )
+    damping: Damping = Field(
+        default=0.0, description="between the rings, radial; usual: 0.25e-5 to 2.5e-5 s times the stiffness"
+    )
+    cage: Literal["turning", "mean"] = Field(
+        default="turning",
+        description="the balls pass in runs, at rest one is below the shaft; or they act as if spread evenly",
+    )
+    dynamic_rating: Force | None = Field(
+        default=None, description="basic dynamic load rating C of its catalogue, for the rating life"
+    )
+    damper: Damper | None = Field(default=None, description="squeeze film damper around its outer ring")
+    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
+    pin: ClassVar[None] = None
+
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """None, without that of a damper."""
+        return ()
+
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table."""
+        return ()
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing itself."""
+        assert not films
+        return self
+
+    @property
+    def parts(self) -> tuple[Self, ...]:
+        """The bearing at each of its places along the shaft: itself."""
+        return (self,)
+
+
+Element = CoefficientsBearing | BallBearingKeys
+WITHOUT_FILM = ("coefficients", "ball")  # kinds of bearings
 EMPTY_MATRIX = ((0.0, 0.0), (0.0, 0.0))
 
 

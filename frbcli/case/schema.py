@@ -252,6 +252,9 @@ class Case(Model):
         if not self.given_bearings:
             problem = "is missing: the case is of thrust bearings alone."
             remedy = "Call `frb thrust`, or add [rotor], [speed] and [bearing]."
+        elif not self.bearings:
+            problem = "is missing: the case is of ball bearings alone."
+            remedy = "Call `frb bearing` with --load and --speed, or add [rotor] and [speed]."
         return InputError(self.name or "case", (Fault(key, "", None, problem, remedy),))
 
     @property

@@ -14,12 +14,13 @@ from frbcli.elements.force import ForceElement
 from frbcli.elements.housing import HousingElement
 from frbcli.elements.magnetic_pull import MagneticPullElement
 from frbcli.elements.pin import PinElement
+from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.spring import SpringElement
 from frbcli.elements.support import SupportElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
-    GivenCoefficients, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement, ForceElement,
-    MagneticPullElement, SpringElement, BaseElement,
+    GivenCoefficients, BallBearingElement, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement,
+    ForceElement, MagneticPullElement, SpringElement, BaseElement,
 )  # fmt: skip
 
 

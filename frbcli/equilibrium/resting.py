@@ -33,7 +33,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.rotor.assembly import HeldRotor, held_rotor, whole_rotor
-from frbcli.rotor.port import Port, tangent
+from frbcli.rotor.port import pushed, tangent
 from frbcli.scene.machine.system import System
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
@@ -129,7 +129,7 @@ def _at_ports(
     pushes each port over its length: a stop that nothing touches holds nothing."""
     ports, q = system.rotor.ports, np.zeros(system.rotor.size)
     starts = [] if start is None else [start]
-    starts += [q, sum((_pushed(system.rotor.static_load, port) for port in ports), q)]
+    starts += [q, pushed(system.rotor)]
     reason: NotConverged | None = None
     for q in starts:
         share = 1.0
@@ -149,13 +149,6 @@ def _at_ports(
         f"No resting position at {omega / (2 * np.pi):.4g} Hz: the forces of {ports[0].name} do not settle. "
         "Start a run in the centre."
     )
-
-
-def _pushed(load: Array, port: Port) -> Array:
-    """(n,) displacements by which a static load (n,) pushes a port over its length."""
-    along = port.place @ load
-    size = float(np.linalg.norm(along))
-    return port.law.length / size * np.linalg.pinv(port.place) @ along if size else np.zeros_like(load)
 
 
 def _remedy(system: System, omega: float) -> str:

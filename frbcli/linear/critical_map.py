@@ -20,14 +20,13 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Table, spread_table
-from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.errors import Fault, InputError
 from frbcli.html import Tabular
 from frbcli.linear.modes import direct_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import support_faults
+from frbcli.scene.machine.elements import first_without_film, support_faults
 from frbcli.scene.machine.findings import findings
 from frbcli.scene.shafts.table import shaft_of
 
@@ -100,9 +99,9 @@ def critical_map(
     require(case)
     if case.elements:
         problem = "has coefficients of its own, and the map is of a rotor on springs of one stiffness."
-        first = next(GivenCoefficients.of(case))
+        key, kind = first_without_film(case)
         remedy = "Leave --map out: the response has its own peaks."
-        fault = Fault(f"{first.key}.kind", first.given.kind, None, problem, remedy)
+        fault = Fault(key, kind, None, problem, remedy)
         raise InputError(case.name or "case", (fault,))
     on_ground = "the map is of a rotor on springs to the ground"
     if faults := support_faults(case, on_ground, "Leave --map out: the response has its own peaks."):

@@ -234,10 +234,13 @@ def _check_held(case: Case) -> None:
 def _check_own(case: Case) -> None:
     """Raises InputError where the bearings of a case are no springs that are the same in all directions."""
     remedy = "Take the damped modes, frb stability --shapes SPEED, or give a stiffness."
-    if case.bearings:
-        problem = "has films, whose stiffness follows from the resting position."
-        fault = Fault(f"{case.bearing_keys[0]}.kind", case.placed_bearings[0].kind, None, problem, remedy)
-        raise InputError(case.name or "case", (fault,))
+    resting = [*case.bearings, *(bearing for bearing in case.elements if bearing.kind == "ball")]
+    if resting:
+        keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
+        key, kind = next((key, bearing.kind) for key, bearing in keyed if bearing in resting)
+        what = "films" if case.bearings else "balls"
+        problem = f"has {what}, whose stiffness follows from the resting position."
+        raise InputError(case.name or "case", (Fault(f"{key}.kind", kind, None, problem, remedy),))
     for element in GivenCoefficients.of(case):
         k = element.linear.stiffness
         if not np.allclose(k, 0.5 * np.trace(k, axis1=1, axis2=2)[:, None, None] * np.eye(2), rtol=1e-9):

@@ -1,4 +1,4 @@
-"""Materials of shafts, rings and housings by name, each figure with its origin, near room temperature."""
+"""Materials by name, of shafts, rings, housings and rolling bearings, each with its origin, near room temperature."""
 
 from __future__ import annotations
 
@@ -17,6 +17,21 @@ class Solid:
     conductivity: float
     heat_capacity: float
     source: str
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """An elastic body: modulus in Pa, Poisson's ratio, density in kg/m^3."""
+
+    modulus: float
+    poisson: float
+    density: float
+    source: str = ""
+
+    @property
+    def compliance(self) -> float:
+        """(1 - nu^2) / E in 1/Pa."""
+        return (1.0 - self.poisson**2) / self.modulus
 
 
 _A2 = "modulus, Poisson's ratio, density, expansion: table A.2"
@@ -49,3 +64,9 @@ SOLIDS: dict[str, Solid] = {
         "expansion: Callister, table B.6, 2024",
     ),
 }  # fmt: skip
+
+# Of balls and rings of rolling bearings
+ROLLING: dict[str, Elastic] = {
+    "steel": Elastic(207e9, 0.3, 7800.0, "Harris, Rolling Bearing Analysis, chapter 6; density: typical, AISI 52100"),
+    "silicon nitride": Elastic(310e9, 0.27, 3200.0, "typical, hot isostatically pressed, as in hybrid bearings"),
+}

@@ -23,6 +23,7 @@ from frbcli.plot.style import Picture
 PICTURES = {  # class of a result: module in this room, and its function
     "AccuracyLadder": "studies.accuracy:accuracy_figure",
     "AgainstMeasured": "spectra.ridges:against_figure",
+    "BallSheet": "machine.ball:ball_figure",
     "BearingSheet": "machine.bearing:bearing_figure",
     "Comparison": "studies.compare:comparison_figure",
     "CriticalMap": "machine.response:critical_map_figure",
@@ -46,9 +47,9 @@ def picture(result: object) -> Picture:
     Parameters
     ----------
     result : object
-        A run, or what a function of `frbcli` returned: `stability`, `response`, `bearing_sheet`, `critical_map`,
-        `natural_modes`, `damped_modes`, `limit_cycles`, `stability_map`, `rotation`, `squeeze`, `whirl`, `compare`,
-        `against_measured`, `accuracy`, `fit`, `sweep`.
+        A run, or what a function of `frbcli` returned: `stability`, `response`, `bearing_sheet`, `ball_bearing_sheet`,
+        `critical_map`, `natural_modes`, `damped_modes`, `limit_cycles`, `stability_map`, `rotation`, `squeeze`,
+        `whirl`, `compare`, `against_measured`, `accuracy`, `fit`, `sweep`.
 
     Returns
     -------

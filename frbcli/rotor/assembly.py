@@ -22,9 +22,10 @@ from frbcli.errors import NotConverged
 from frbcli.rotor.body import COORDINATES, PLANE, Body
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import LinearPart, Load, bow_load
-from frbcli.rotor.port import ForceLaw, Port
+from frbcli.rotor.port import ForceLaw, Port, pushed, tangent
 
 GROUND = ""
+HELD, HELD_ITERATIONS = 1e-10, 60  # over the length of a port: where it rests
 
 
 @dataclass(frozen=True)
@@ -167,7 +168,10 @@ def whole_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
 def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
     """The rotor at omega rad/s under its static load as its journals see it; what neither spring nor film holds, the
     angle of a ring, stays at zero. The speed counts where stiffnesses depend on it. Raises NotConverged if the bearings
-    do not hold the rotor."""
+    do not hold the rotor. Ports count as in small motions about where the rotor rests with its journals held in the
+    middle."""
+    if rotor.ports:
+        return _held_at_ports(rotor, omega)
     rotor = rotor.at(omega)
     n, p = rotor.size, rotor.journals.reshape(-1, rotor.size)
     count = len(p)
@@ -185,6 +189,23 @@ def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
             "The bearings do not hold the rotor: it can turn about them. Give them different positions."
         ) from None
     return HeldRotor(solution[n:, 0], -solution[n:, 1:], solution[:n, 0], solution[:n, 1:])
+
+
+def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:
+    """held_rotor by Newton's method for the ports, from the middle and from where the load pushes them."""
+    places, reason = np.concatenate([port.place for port in rotor.ports]), None
+    for q in (np.zeros(rotor.size), pushed(rotor)):
+        for iteration in range(HELD_ITERATIONS):
+            try:
+                held = held_rotor(tangent(rotor, omega, q, compiled=False), omega)
+            except NotConverged as error:
+                reason = reason or error
+                break
+            step = held.shape - q
+            q = q + (step if iteration < HELD_ITERATIONS // 2 else 0.5 * step)
+            if np.abs(places @ step).max() < HELD * min(port.law.length for port in rotor.ports):
+                return held
+    raise reason or NotConverged(f"No resting position: the forces of {rotor.ports[0].name} do not settle.")
 
 
 def preset(rotor: LinearRotor, films: Sequence[int]) -> LinearRotor:

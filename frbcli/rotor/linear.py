@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.rotor.loads import BOW, Harmonic, LinearPart, Load, summed
-from frbcli.rotor.port import Port
+from frbcli.rotor.port import Port, Slope
 
 
 @dataclass(frozen=True)
@@ -36,7 +36,7 @@ class LinearRotor:
     cones: of bodies that turn by themselves and tilt, cartridges: each with the degree of freedom of its angle, and (2,
     n) its slopes in x and y times the root of its polar inertia: its gyroscopic moments pull with -(C^T J C) q' times
     its speed, J = [[0, 1], [-1, 0]].
-    ports: forces that are not linear; only `tangent` puts them into the matrices.
+    ports: forces that are not linear; only `tangent` puts them into the matrices, and notes them as slopes.
     turning: degrees of freedom of rings that turn while it moves in small: on their angles nothing depends, on their
     speeds the films.
     """
@@ -56,6 +56,7 @@ class LinearRotor:
     cones: tuple[tuple[int, Array], ...] = ()
     turning: tuple[int, ...] = ()
     ports: tuple[Port, ...] = ()
+    slopes: tuple[Slope, ...] = ()
 
     @property
     def size(self) -> int:

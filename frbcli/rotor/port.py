@@ -58,6 +58,14 @@ class ForceLaw(ABC):
         (w,): see the properties."""
 
 
+class Slope(NamedTuple):
+    """A port in small motions. name: of its signal; by_displacement, by_velocity: (2, 2) see PortForce."""
+
+    name: str
+    by_displacement: Array
+    by_velocity: Array
+
+
 @dataclass(frozen=True)
 class Port:
     """A force of a machine. name: of its signal; place: (2, n) the displacement it sees; count: of equal elements that
@@ -68,12 +76,17 @@ class Port:
     count: float
     law: ForceLaw
 
-    def at(self, q: Array, v: Array, omega: float, angle: float = 0.0) -> PortForce:
-        """The force of one element, with displacements q and velocities v (n,) of the machine."""
-        from frbcli.rotor.port_function import evaluate  # numba takes long to load
-
+    def at(self, q: Array, v: Array, omega: float, angle: float = 0.0, compiled: bool = True) -> PortForce:
+        """The force of one element, with displacements q and velocities v (n,) of the machine. compiled: or as plain
+        Python, which needs no compiler, for plans."""
         motion = np.concatenate([self.place @ q, self.place @ v, [omega, angle]])
-        answer = evaluate(self.law, motion)
+        if compiled:
+            from frbcli.rotor.port_function import evaluate  # numba takes long to load
+
+            answer = evaluate(self.law, motion)
+        else:
+            answer = np.zeros(ANSWER)
+            self.law.force(self.law.numbers, self.law.memory.copy(), motion, answer)
         return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
 
     def along(self, q: Array, v: Array, omega: Array, angle: Array) -> Array:
@@ -91,14 +104,27 @@ def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: flo
     return found
 
 
-def tangent(rotor: LinearRotor, omega: float, q: Array) -> LinearRotor:
-    """The machine with its ports in small motions about displacements q (n,), at which it does not move: their
-    stiffness and damping join its matrices, and its static load has their force there."""
-    stiffness, damping, load = rotor.stiffness, rotor.damping, rotor.static_load
+def pushed(rotor: LinearRotor) -> Array:
+    """(n,) displacements by which its static load pushes each port of a machine over its length."""
+    found = np.zeros(rotor.size)
     for port in rotor.ports:
-        here = port.at(q, np.zeros_like(q), omega)
+        along = port.place @ rotor.static_load
+        if size := float(np.linalg.norm(along)):
+            found += port.law.length / size * np.linalg.pinv(port.place) @ along
+    return found
+
+
+def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -> LinearRotor:
+    """The machine with its ports in small motions about displacements q (n,), at which it does not move: their
+    stiffness and damping join its matrices, and its static load has their force there. compiled: see Port.at."""
+    stiffness, damping, load, slopes = rotor.stiffness, rotor.damping, rotor.static_load, list[Slope]()
+    for port in rotor.ports:
+        here = port.at(q, np.zeros_like(q), omega, compiled=compiled)
         pull = port.count * port.place.T
         stiffness = stiffness - pull @ here.by_displacement @ port.place
         damping = damping - pull @ here.by_velocity @ port.place
         load = load + pull @ (here.force - here.by_displacement @ port.place @ q)
-    return replace(rotor, stiffness=stiffness, damping=damping, static_load=load, ports=())
+        slopes.append(Slope(port.name, here.by_displacement, here.by_velocity))
+    return replace(
+        rotor, stiffness=stiffness, damping=damping, static_load=load, ports=(), slopes=(*rotor.slopes, *slopes)
+    )

@@ -102,7 +102,7 @@ def test_shipped_cases_load_and_have_titles(name: str) -> None:
 def test_shipped_cases_are_what_their_names_say() -> None:
     cases = {name: load_case(name) for name in shipped_names()}
     films = {name: case.bearings[0] for name, case in cases.items() if case.bearings}
-    assert set(cases) - set(films) == {"seal", "squeeze-film-damper", "thrust"}
+    assert set(cases) - set(films) == {"ball-bearing", "seal", "squeeze-film-damper", "thrust", "turbocharger-ball"}
     reference = films["jeffcott"]
     assert isinstance(reference, SingleFilmBearing)
     # table A.1 in place of table 4.1 stiffens the film by 1.57, which chapter 6's eccentricities need

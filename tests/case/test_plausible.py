@@ -135,7 +135,7 @@ def test_check_tells_which_numbers_had_no_unit(capsys: pytest.CaptureFixture[str
 def test_every_number_of_a_shipped_case_is_listed_with_its_unit(name: str) -> None:
     plain = {"poisson_ratio", "modal_damping", "axial_position", "eccentricity", "periods", "target", "bunsen",
              "preload", "entrained", "steepness", "whirl_steepness", "offset", "tolerance", "shear_factor", "mixing",
-             "nusselt", "order", "0", "1"}  # fmt: skip
+             "nusselt", "order", "inner_curvature", "outer_curvature", "0", "1"}  # fmt: skip
     for value in values(load_case(name)):
         assert not value.bare
         ratio = value.key.startswith("housing.modes.") and value.key.endswith(".damping")

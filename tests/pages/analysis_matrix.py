@@ -98,6 +98,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "Elrod": ("jeffcott", (ELROD,)),
     "two-phase": ("jeffcott", (TWO_PHASE,)),
     "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),
+    "ball bearings in squeeze film dampers": ("turbocharger-ball", ()),
     "bearing model from Python": ("jeffcott", (f"film.theory={MODEL}",)),
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),

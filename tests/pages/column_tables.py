@@ -44,6 +44,7 @@ from frbcli.linear.columns import (
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
+from frbcli.linear.rolling.columns import BALL_SHEET
 from frbcli.linear.standards.balance_quality import COLUMNS as BALANCE_QUALITY
 from frbcli.linear.standards.vibration import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.linear.thrust.columns import AXIAL, THRUST
@@ -76,6 +77,7 @@ def without(columns: Columns, *beginnings: str) -> Columns:
 TABLES: dict[str, Columns] = {
     "bearing sheet": SHEET,
     "mixed friction": MIXED_FRICTION,
+    "ball bearings": BALL_SHEET,
     "thrust sheet": THRUST,
     "collar": tuple(column for column in AXIAL if column.quantity.startswith("axial")),
     "stability": (*POINT[:2], *FILM, *POINT[2:]),

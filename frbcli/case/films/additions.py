@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.elements import CoefficientsBearing
+from frbcli.case.elements import BallBearingKeys, CoefficientsBearing
 from frbcli.case.film_geometry import RingFilm
 from frbcli.case.film_tables import adopt
 from frbcli.case.films.film_model import FilmModel
@@ -109,5 +109,6 @@ def remove_bearing(name: str) -> None:
 
 def _adopt() -> None:
     adopt(FilmModel, (RingFilm, Damper))
-    for holder in (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, Case):
+    bearings = (SingleFilmBearing, FloatingRingBearing, CartridgeBearing, CoefficientsBearing, BallBearingKeys)
+    for holder in (*bearings, Case):
         holder.model_rebuild(force=True)

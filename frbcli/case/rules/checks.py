@@ -18,7 +18,7 @@ from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
 from frbcli.case.rules.cartridge_checks import cartridge_breaches, pin_breaches, positions, tilt_breaches
 from frbcli.case.rules.contact_checks import contact_breaches
-from frbcli.case.rules.element_checks import element_breaches, has_films
+from frbcli.case.rules.element_checks import balls_alone, element_breaches, has_films
 from frbcli.case.rules.film_checks import film_breaches, law_breaches
 from frbcli.case.rules.plausible import implausible
 from frbcli.case.rules.thermal_checks import thermal_breaches
@@ -57,7 +57,7 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     yield from _run(data)
     yield from _motion(table(data, "motion"))
     yield from thrust_breaches(data)
-    for key in () if thrust_alone(data) else ("rotor", "speed"):
+    for key in () if thrust_alone(data) or balls_alone(data) else ("rotor", "speed"):
         if key not in data and "motion" not in data and not (key == "speed" and "drive" in data):
             yield Breach((key,), "is missing.", f"Add the table [{key}].")
     if {"speed", "drive"} <= data.keys():

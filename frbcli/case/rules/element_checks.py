@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from frbcli.case.elements import EMPTY_MATRIX
+from frbcli.case.elements import EMPTY_MATRIX, WITHOUT_FILM, BallBearingKeys
 from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.units import NUMBER, display
 
+CURVATURES = tuple((key, BallBearingKeys.model_fields[key].default) for key in ("inner_curvature", "outer_curvature"))
 GIVEN = ("stiffness", "damping", "mass")
 REMEDY = "Remove it, or add a bearing with a film."
 # Keys that say how films are computed, recorded or touched.
@@ -21,7 +24,13 @@ OF_FILMS = (
 def has_films(data: Mapping[str, Any]) -> bool:
     """Whether a bearing of the tables may have a film: true for tables that cannot be read."""
     found = tables(data, "bearing")
-    return not found or any(bearing.get("kind") != "coefficients" or "damper" in bearing for _, bearing in found)
+    return not found or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in found)
+
+
+def balls_alone(data: Mapping[str, Any]) -> bool:
+    """Whether a case is of ball bearings alone, for their sheet."""
+    kinds = {bearing.get("kind") for _, bearing in tables(data, "bearing")}
+    return kinds == {"ball"} and not {"rotor", "speed"} & data.keys()
 
 
 def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -29,6 +38,8 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
             yield from _coefficients(path, bearing)
+        if bearing.get("kind") == "ball":
+            yield from _balls(path, bearing)
         for body in ("damper", "support"):
             yield from _body((*path, body), bearing.get(body), data)
     if has_films(data):
@@ -70,6 +81,36 @@ def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     if mass is not None and is_negative(mass):
         problem = "is negative in some direction: no body has such a kinetic energy."
         yield Breach((*path, "mass"), problem, "Give a symmetric matrix with positive entries on its diagonal.")
+
+
+def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    angle, clearance = "contact_angle" in bearing, "radial_clearance" in bearing
+    if angle == clearance:
+        problem = "is given beside radial_clearance, from which it follows." if angle else "is missing."
+        yield Breach((*path, "contact_angle"), problem, 'Keep one: contact_angle = "15 deg", or radial_clearance.')
+    yield from _preload(path, bearing, angle)
+    ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))
+    balls = bearing.get("balls")
+    if ball is None or pitch is None or not isinstance(balls, int) or balls < 3:
+        return
+    if pitch * math.sin(math.pi / balls) <= ball:
+        least = ball / math.sin(math.pi / balls)
+        problem = f"leaves no room: {balls} balls of {display(ball, 'm')} need a circle of {display(least, 'm')}."
+        yield Breach((*path, "pitch_diameter"), problem, "Correct it, or take fewer or smaller balls.")
+    grooves = [number(bearing, key, NUMBER) if key in bearing else default for key, default in CURVATURES]
+    way, (inner, outer) = number(bearing, "radial_clearance", "m"), grooves
+    if way is not None and inner is not None and outer is not None and way >= 2.0 * (inner + outer - 1.0) * ball:
+        problem = f"is {display(way, 'm')}: the balls leave grooves of these curvatures."
+        yield Breach((*path, "radial_clearance"), problem, 'Write e.g. radial_clearance = "10 um".')
+
+
+def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Breach]:
+    """Rings with a contact angle hold together under a preload alone."""
+    given = bearing.get("preload")
+    none = given is None or (not isinstance(given, dict) and number(bearing, "preload", "N") == 0.0)
+    if none and angle:
+        problem = "is missing: without it the rings of an angular contact bearing part under a radial load."
+        yield Breach((*path, "preload"), problem, 'Write e.g. preload = "50 N", or { offset = "5 um" }.')
 
 
 def _matrix(given: object) -> tuple[float, ...] | None:

@@ -38,7 +38,7 @@ KINDS_ELSEWHERE = {
     "semi": 'A ring that may not turn is kind = "floating-ring" with [bearing.pin], or with ring.spin = "blocked"; '
             'one ring over both journals is kind = "cartridge".',
     **dict.fromkeys(
-        ("pad", "foil", "ball", "roll", "magnet"),
+        ("pad", "foil", "roller", "needle", "magnet"),
         'It is not modelled: kind = "coefficients" takes its stiffness and damping.',
     ),
 }  # fmt: skip

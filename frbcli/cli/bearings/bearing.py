@@ -9,7 +9,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import OUTPUT, forced, here
-from frbcli.cli.options import LOAD_OPTION, speeds_option
+from frbcli.cli.options import LOAD_OPTION, REST_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing
 
@@ -38,8 +38,9 @@ PRESSED = (
 @case_argument
 @click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
               help="Number that is varied; over the eccentricity the load is computed.")  # fmt: skip
-@speeds_option("20 over the range; with --over eccentricity the highest")
-@click.option("--load", type=LOAD_OPTION, metavar="LOAD", help='Load along -y on a single film, e.g. "30 N". '
+@speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
+@click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
+              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
               "[that of the rotor]")  # fmt: skip
 @click.option("--ross", metavar="FILE", type=OUTPUT,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
@@ -51,7 +52,7 @@ def command(
     case: Case,
     over: str,
     speeds: tuple[float, ...],
-    load: float | None,
+    loads: tuple[float, ...],
     ross: Path | None,
     film: str | None,
     everything: bool,
@@ -64,6 +65,17 @@ def command(
     from frbcli.linear.film_state import heat_capacity
     from frbcli.results.files.kinds import ROSS
 
+    if not case.bearings and any(bearing.kind == "ball" for bearing in case.elements):
+        from frbcli.cli.bearings.ball import ball_sheet
+
+        if over == "eccentricity" or film is not None:
+            raise click.UsageError("A ball bearing has no film: --over eccentricity and --film are of films.")
+        return ball_sheet(case, speeds, loads, ross, outputs, terminal)
+    if len(loads) > 1:
+        raise click.UsageError("A film has one --load; several are of ball bearings.")
+    if speeds and min(speeds) == 0.0:
+        raise click.UsageError("--speed is 0: a film carries nothing there.")
+    load = loads[0] if loads else None
     _check_options(over, speeds, load, ross)
     _check_film(case, film)
     elements = _ross_files(case, ross)

@@ -52,6 +52,9 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     if not case.given_bearings:
         _check_thrust(case, listed, everything, terminal)
         return
+    if case.given_rotor is None and not case.bearings:
+        _check_balls(case, listed, everything, terminal)
+        return
     found = findings(case)
     _show_findings(case, found, terminal)
     doubts = remarks(case)
@@ -110,6 +113,19 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
     bare = _tell_bare(listed, terminal)
     require_sheet(case)
     plan = thrust_plan(case)
+    terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
+    terminal.emit(_document(case, listed, bare, plan))
+
+
+def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
+    """What `frb bearing` models of a case of ball bearings alone."""
+    from frbcli.elements.rolling.ball import BallBearingElement
+    from frbcli.scene.planning.planned import Decision
+
+    if everything:
+        terminal.table("values", ("key", "SI", "reads"), _values(listed))
+    bare = _tell_bare(listed, terminal)
+    plan = [Decision(*element.line) for element in BallBearingElement.of(case)]
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
     terminal.emit(_document(case, listed, bare, plan))
 

@@ -9,8 +9,6 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
-import numpy as np
-
 from frbcli.analysis.orders.forced import ForcedLine, forced_references, lines_of_table
 from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES

@@ -86,7 +86,7 @@ RULES = (
     Rule(films.enclosed_faults, KINEMATIC),
     *(Rule(partial(kinematic.motion_faults, test=test), (test,)) for test in KINEMATIC),
     Rule(kinematic.no_film_faults, KINEMATIC),
-    Rule(_without_film("a bearing sheet describes films"), SHEETS),
+    Rule(_without_film("a bearing sheet describes films; ball bearings have `ball_bearing_sheet`"), SHEETS),
     Rule(_without_film("a comparison is one of models of films"), (COMPARISON,)),
     Rule(_without_film("the ladder compares theories and meshes of films"), (LADDER,)),
     Rule(_without_film("a linear machine has no limit cycles"), EVERY_CYCLE),

@@ -13,10 +13,11 @@ from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.housing import HousingElement
+from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.support import SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import GROUND
+from frbcli.rotor.assembly import GROUND, Link
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.scene.shafts.table import shaft_of
@@ -109,13 +110,29 @@ def element_forces(
 ) -> NDArray[np.complex128]:
     """(e, 2) complex amplitudes in N of the forces of the bearings without a film on the shaft, of one each. rotor: of
     the case, at omega rad/s; q: (n,) complex amplitudes of its motion with a frequency in rad/s."""
-    site, nodes, forces = site_of(case), dict(rotor.points), np.zeros((len(case.elements), 2), dtype=np.complex128)
-    for force, element in zip(forces, GivenCoefficients.of(case), strict=True):
-        for link, part in element.parts(site).links:
+    site, nodes = site_of(case), dict(rotor.points)
+    slopes = {slope.name: slope for slope in rotor.slopes}
+
+    def motion(link: Link) -> NDArray[np.complex128]:
+        outside = 0.0 if link.outside == GROUND else nodes[link.outside] @ q
+        return np.asarray(nodes[link.inside] @ q - outside)
+
+    def force(parts: Parts) -> NDArray[np.complex128]:
+        found = np.zeros(2, dtype=np.complex128)
+        for link, part in parts.links:
             stiffness, damping, mass = part.at(omega)
-            motion = nodes[link.inside] @ q - (0.0 if link.outside == GROUND else nodes[link.outside] @ q)
-            force[:] = -(stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion
-    return forces
+            found -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
+        for name, link, _ in parts.ports:
+            found += (slopes[name].by_displacement + 1j * frequency * slopes[name].by_velocity) @ motion(link)
+        return found
+
+    return np.array([force(element.parts(site)) for element in _bearing_elements(case)]).reshape(-1, 2)
+
+
+def _bearing_elements(case: Case) -> list[MachineElement]:
+    """The bearings without a film, in the order of the case."""
+    own = {each.key: each for kind in (GivenCoefficients, BallBearingElement) for each in kind.of(case)}
+    return [own[key] for key in case.bearing_keys if key in own]
 
 
 def changes_with_speed(case: Case) -> bool:
@@ -156,8 +173,14 @@ def without_film(case: Case, what: str) -> list[Fault]:
     if case.films or not case.given_bearings:
         return []
     problem = f"has no film, and {what}."
-    first = next(GivenCoefficients.of(case))
-    return [Fault(f"{first.key}.kind", first.given.kind, None, problem, "Add a bearing with a film.")]
+    key, kind = first_without_film(case)
+    return [Fault(key, kind, None, problem, "Add a bearing with a film.")]
+
+
+def first_without_film(case: Case) -> tuple[str, str]:
+    """Key and value of the kind of the first bearing without a film, of a case that has one."""
+    keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
+    return next((f"{key}.kind", bearing.kind) for key, bearing in keyed if bearing in case.elements)
 
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:

@@ -1,0 +1,74 @@
+"""`frb bearing` of a case whose bearings have balls and no film: its text, and its JSON document."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal
+from frbcli.cli.files import forced, here
+from frbcli.cli.outputs import OutputOptions
+from frbcli.cli.progress import display
+from frbcli.errors import NotConverged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+    from frbcli.case.schema import Case
+    from frbcli.linear.rolling.sheet import BallSheet
+
+
+def ball_sheet(
+    case: Case, speeds: Sequence[float], loads: Sequence[float], ross: Path | None, outputs: OutputOptions,
+    terminal: Terminal,
+) -> int | None:  # fmt: skip
+    """Compute, show and write the sheet; the exit code."""
+    from frbcli.linear.rolling.sheet import ball_bearing_sheet
+    from frbcli.results.export import ross_files
+    from frbcli.results.files.kinds import ROSS
+
+    if ross is not None and len(loads) > 1:
+        raise click.UsageError("--ross is a table over speed, at one load.")
+    names = [bearing.name for bearing in case.elements if bearing.kind == "ball"]
+    elements = ross_files(ross, names) if ross is not None else {}
+    places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
+    with display(terminal) as shown:
+        found = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
+    _tell(terminal, found)
+    _write_ross(terminal, found, elements)
+    terminal.emit(
+        {
+            "command": "bearing",
+            "case": case.name,
+            "points": found.table().documents(),
+            **places.write(terminal, found),
+            "ross": list(elements.values()) or None,
+        }
+    )
+    return None if any(not point.problem for point in found.points) else NotConverged.exit_code
+
+
+def _tell(terminal: Terminal, found: BallSheet) -> None:
+    from frbcli.columns import legend, table_of
+    from frbcli.linear.rolling.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
+
+    for bearing in found.bearings:
+        name, states = " ".join(filter(None, (found.case.heading, bearing))), found.of(bearing)
+        titles = {BALLS: f"{name}, balls", STIFFNESSES: "rings, um and N/um", FREQUENCIES: "frequencies, Hz"}
+        for table, title in titles.items():
+            terminal.show(title, table_of(BALL_SHEET, states), table)
+    terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
+    problems = [point for point in found.points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
+
+
+def _write_ross(terminal: Terminal, found: BallSheet, elements: dict[str, Path]) -> None:
+    from frbcli.results.export import write_ross
+
+    table = found.to_pandas().rename(columns={"bearing": "film"})
+    for name, path in elements.items():
+        write_ross(table[table["film"] == name], path, forced())
+        terminal.result(f"ROSS: {path}")

@@ -1,0 +1,178 @@
+"""Rotors on ball bearings: rest, small motions, free vibrations, balls that pass, and cases that make no sense."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from marches import Result, control, march, start
+from scipy.integrate import quad
+
+import frbcli
+from frbcli.case.reading.load import case_from_dict
+from frbcli.elements.rolling.ball import BallBearingElement, BallForce
+from frbcli.elements.rolling.plain import solve_plain
+from frbcli.errors import InputError
+from frbcli.linear.response import response
+from frbcli.linear.rolling.sheet import ball_bearing_sheet
+from frbcli.linear.stability import stability
+from frbcli.rotor.loads import speed_profile
+from frbcli.rotor.port import ANSWER
+from frbcli.rotor.port_function import evaluate
+from frbcli.runs.run import runup
+from frbcli.scene.gate.gate import faults
+from frbcli.scene.gate.rule import CYCLES, RUN
+from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.planning.plan import make_plan
+
+TURN, GRAVITY = 2.0 * math.pi, 9.81
+A = {  # of tests/data/ball-bearing.csv
+    "balls": 8, "ball_diameter": "3.175 mm", "pitch_diameter": "14 mm", "contact_angle": "15 deg",
+    "inner_curvature": 0.53, "outer_curvature": 0.53, "preload": "60 N",
+}  # fmt: skip
+RADIAL = {  # without clearance
+    "balls": 60, "ball_diameter": "2 mm", "pitch_diameter": "50 mm", "radial_clearance": "0 m", "cage": "mean",
+}  # fmt: skip
+LOAD, KXX, KYY = 60.0, 3.929573e7, 3.404362e7  # N and N/m of A at 1000 Hz there
+
+
+def on_balls(bearing: dict[str, Any], load: float = 0.0, mass: float = 2.0, unbalance: float = 0.0) -> frbcli.Case:
+    """A rigid rotor with a load in N on each of its two bearings."""
+    data = {
+        "rotor": {"kind": "rigid", "mass": f"{mass!r} kg", "unbalance": f"{unbalance!r} kg*m",
+                  "gravity": f"{2.0 * load / mass!r} m/s^2"},
+        "bearing": {"kind": "ball", **bearing},
+        "speed": {"from": "100 Hz", "to": "100 Hz", "duration": "0.2 s"},
+    }  # fmt: skip
+    return case_from_dict(data, "balls")
+
+
+def run_from(
+    case: frbcli.Case, time: float, y: float, tolerance: float, output: float, omega: float
+) -> tuple[System, Result]:
+    system, profile = make_system(case, make_plan(case)), speed_profile([0.0, time], [omega, omega])
+    limits = control(tolerance=tolerance, longest=time / 200.0, output=output)
+    return system, march(system, profile, limits, start(system, profile, np.array([0.0, y])))
+
+
+def test_the_compiled_force_is_the_plain_one() -> None:
+    (element,) = BallBearingElement.of(on_balls(A))
+    law, motion, plain = BallForce(element.rings), np.array([2e-6, -1e-6, 0.1, 0.2, 6000.0, 0.7]), np.zeros(ANSWER)
+    law.force(law.numbers, law.memory, motion, plain)
+    np.testing.assert_allclose(evaluate(law, motion), plain, rtol=1e-9)
+
+
+def test_small_motions_have_the_stiffness_at_rest() -> None:
+    """Both natural frequencies are sqrt(2 k / m) of the independent program's stiffness, at any mass under its load."""
+    (point,) = stability(on_balls(A, LOAD), [1000.0]).points
+    found = np.sort(point.eigenvalues.imag[point.eigenvalues.imag > 0.0])
+    np.testing.assert_allclose(found, np.sqrt(np.array([KYY, KXX])), rtol=1e-6)  # of 2 kg
+
+
+def test_the_response_is_that_of_two_springs() -> None:
+    omega, unbalance, mass = TURN * 1000.0, 1e-8, 6.0
+    answer = response(on_balls(A, LOAD, mass, unbalance), [1000.0])
+    expected = unbalance * omega**2 / (2.0 * np.array([KXX, KYY]) - mass * omega**2)
+    np.testing.assert_allclose(np.abs(answer.motion[0, 0]), np.abs(expected), rtol=1e-5)
+    np.testing.assert_allclose(np.abs(answer.forces[0, 0]), np.abs([KXX, KYY] * expected), rtol=1e-5)
+
+
+def test_bearings_of_a_shaft_carry_its_weight() -> None:
+    sheet = ball_bearing_sheet(frbcli.load_case("turbocharger-ball"), [1000.0])
+    loads = np.array([point.load for point in sheet.points])
+    np.testing.assert_allclose(loads.sum(axis=0), [0.0, -0.1001 * GRAVITY], rtol=2e-3, atol=1e-6)
+    assert [point.bearing for point in sheet.points] == ["compressor", "turbine"]
+
+
+def test_a_machine_rests_where_its_sheet_says() -> None:
+    (state,) = ball_bearing_sheet(on_balls(A, LOAD), [1000.0]).points
+    (given,) = ball_bearing_sheet(on_balls(A), [1000.0], [LOAD]).points
+    np.testing.assert_allclose(state.displacement, given.displacement, rtol=1e-7, atol=1e-14)
+    np.testing.assert_allclose(np.diag(given.stiffness), [KXX, KYY], rtol=1e-6)
+    assert (state.cage_frequency, state.ball_pass_outer) == pytest.approx((390.4709, 3123.767), rel=1e-6)
+    assert state.life_h is None
+
+
+def test_a_free_vibration_keeps_its_energy() -> None:
+    """At a constant speed the mean over the cage has a potential, that of contacts and centrifugal forces."""
+    omega, mass = TURN * 1000.0, 2.0
+    case = on_balls({**A, "cage": "mean"})
+    (element,) = BallBearingElement.of(case)
+    _, result = run_from(case, 6e-3, 3e-6, 1e-10, 1e-4, omega)
+    potential = [solve_plain(element.rings.numbers, place, omega).energy for place in result.q]
+    energy = 0.5 * mass * (result.v**2).sum(axis=1) + 2.0 * np.array(potential)
+    kinetic = 0.5 * mass * (result.v**2).sum(axis=1).max()
+    assert kinetic > 1e-5
+    assert np.abs(energy - energy[0]).max() < 1e-8 * kinetic
+
+
+@pytest.mark.parametrize("amplitude", [2e-6, 8e-6])
+def test_a_bearing_without_clearance_has_the_frequency_of_its_amplitude(amplitude: float) -> None:
+    """m x'' = -2 Z K J x^1.5: a quarter period is the integral of dx / v, T in proportion to A^(-1/4)."""
+    mass, case = 2.0, on_balls(RADIAL)
+    (element,) = BallBearingElement.of(case)
+    inner, outer = (each.stiffness for each in element.rings.contacts)
+    both = (inner ** (-2.0 / 3.0) + outer ** (-2.0 / 3.0)) ** -1.5
+    share = quad(lambda psi: math.cos(psi) ** 2.5, -0.5 * math.pi, 0.5 * math.pi)[0] / TURN  # Stribeck's J
+    push = 2.0 * RADIAL["balls"] * both * share
+    quarter = quad(lambda u: 2.0 * u / math.sqrt(1.0 - (1.0 - u * u) ** 2.5), 0.0, 1.0)[0]  # x = A (1 - u^2)
+    period = 4.0 * quarter * math.sqrt(2.5 * mass / (2.0 * push)) * amplitude**-0.25
+    _, result = run_from(case, 5.0 * period, amplitude, 1e-10, period, 0.0)
+    np.testing.assert_allclose(result.q[:, 1], amplitude, rtol=1e-5)
+
+
+def test_balls_pass_in_the_spectrum(tmp_path: Path) -> None:
+    bearing = {**A, "preload": "10 N", "damping": "500 N*s/m"}
+    data = on_balls(bearing, LOAD).model_dump(by_alias=True, exclude_unset=True)
+    speed = {**data["speed"], "duration": "0.5 s"}
+    case = case_from_dict(data | {"start": {"position": "resting"}, "speed": speed}, "passing")
+    (element,) = BallBearingElement.of(case)
+    run = runup(case, tmp_path / "run.h5", force=True)
+    t, y = np.asarray(run.signal("time_s")), np.asarray(run.signal("journal_y_m"))
+    late = np.linspace(0.1, 0.5, 8192, endpoint=False)
+    spectrum = np.abs(np.fft.rfft((np.interp(late, t, y) - y.mean()) * np.hanning(len(late))))
+    spectrum[:3] = 0.0
+    strongest = np.argmax(spectrum) / 0.4
+    assert strongest == pytest.approx(100.0 * element.rings.pass_outer, abs=2.5)
+
+
+@pytest.mark.parametrize(
+    ("changed", "key"),
+    [
+        ({"radial_clearance": "10 um"}, "contact_angle"),
+        ({"contact_angle": None}, "contact_angle"),
+        ({"preload": "0 N"}, "preload"),
+        ({"pitch_diameter": "8 mm"}, "pitch_diameter"),
+        ({"contact_angle": None, "radial_clearance": "1 mm"}, "radial_clearance"),
+        ({"ball_material": "cheese"}, "ball_material"),
+        ({"inner_curvature": 0.5}, "inner_curvature"),
+    ],
+)
+def test_bearings_that_make_no_sense_are_refused(changed: dict[str, Any], key: str) -> None:
+    given = {name: value for name, value in {**A, **changed}.items() if value is not None}
+    with pytest.raises(InputError) as caught:
+        on_balls(given)
+    assert f"bearing.{key}" in {fault.key for fault in caught.value.faults}
+
+
+def test_keys_have_their_meaning() -> None:
+    figures = {"modulus": "310 GPa", "poisson": 0.27, "density": "3200 kg/m^3"}
+    (named,) = BallBearingElement.of(on_balls({**A, "ball_material": "silicon nitride"}))
+    (told,) = BallBearingElement.of(on_balls({**A, "ball_material": figures, "arrangement": "back-to-back"}))
+    assert told.rings.contacts == named.rings.contacts
+    assert (named.rings.rows, told.rings.rows) == (1, 2)
+    (held,) = BallBearingElement.of(on_balls({**A, "preload": {"offset": "4 um"}}))
+    assert (held.rings.preload, held.rings.offset) == (None, 4e-6)
+    (deep,) = BallBearingElement.of(on_balls({**RADIAL, "radial_clearance": "8 um"}))
+    assert deep.rings.free == pytest.approx(4e-6, rel=1e-9)
+
+
+def test_analyses_without_ball_bearings_say_so() -> None:
+    case = on_balls(A, LOAD)
+    assert "bearing" in {fault.key for fault in faults(case, CYCLES)}
+    assert not faults(case, RUN)
+    with pytest.raises(InputError, match="has balls"):
+        frbcli.natural_modes(case, "bearings")
