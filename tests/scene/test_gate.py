@@ -68,7 +68,7 @@ WORDS: dict[str, tuple[str, ...]] = {
     "sweep": ("--set", "speed.to=200 Hz,210 Hz"),
 }  # fmt: skip
 NO_CASE = {"balance", "waterfall", "report", "export", "schema"}  # of runs and measurements
-THRUST = {"thrust", "thrust_sheet"}  # of thrust bearings, which have no film of these cases
+THRUST = {"thrust", "thrust_sheet", "ball_bearing_sheet"}  # of bearings that have no film of these cases
 TEXTS = {"cases"}  # copies texts, computes nothing
 
 

@@ -113,7 +113,7 @@ def ball_bearing_sheet(
     >>> import frbcli
     >>> case = frbcli.load_case("ball-bearing")
     >>> sheet = frbcli.ball_bearing_sheet(case, [1000.0], [60.0])
-    >>> round(1e-6 * sheet.points[0].stiffness[0, 0], 1)
+    >>> round(1e-6 * float(sheet.points[0].stiffness[0, 0]), 1)
     39.3
     """
     elements = list(BallBearingElement.of(case))
