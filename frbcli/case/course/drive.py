@@ -155,7 +155,8 @@ class Drive(MachineTable):
         default=None, description="replaces torque: speeds or times with torques, linear between them"
     )
     load: Annotated[BrakingLoad, _Loads()] = Field(
-        default=BrakingLoad(), description="brakes: constant, with the speed or with its square, by the unit; or a table"
+        default=BrakingLoad(),
+        description="brakes: constant, with the speed or with its square, by the unit; or a table",
     )
     start: Speed = Field(default=0.0, description="speed at the start of a run")
     end: TopSpeed | None = Field(
