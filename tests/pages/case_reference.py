@@ -89,6 +89,7 @@ TABLES = {
     "[film]": "FilmModel",
     **{f"[film.{law.name}]": law.__name__ for law in SHIPPED if law.keys},
     "[speed]": "SpeedRamp",
+    "[drive]": "Drive",
     "[motion]": "KinematicMotion",
     "[start]": "Start",
     "[contact]": "Contact",

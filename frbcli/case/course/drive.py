@@ -155,7 +155,8 @@ class Drive(MachineTable):
         default=None, description="replaces torque: speeds or times with torques, linear between them"
     )
     load: Annotated[BrakingLoad, _Loads()] = Field(
-        default=BrakingLoad(), description="brakes: constant, with the speed or its square, by the unit; or a table"
+        default=BrakingLoad(),
+        description="brakes: constant, with the speed or with its square, by the unit; or a table",
     )
     start: Speed = Field(default=0.0, description="speed at the start of a run")
     end: TopSpeed | None = Field(
@@ -171,8 +172,12 @@ class Drive(MachineTable):
 
     @model_validator(mode="before")
     @classmethod
-    def _down_as_long_as_up(cls, data: object) -> object:
-        return with_default(data, "down_duration", "duration")
+    def _completed(cls, data: object) -> object:
+        """A run-down as long as the run-up, and a torque as a list as points."""
+        data = with_default(data, "down_duration", "duration")
+        if isinstance(data, dict) and isinstance(data.get("torque"), list | tuple) and "points" not in data:
+            return {**{key: value for key, value in data.items() if key != "torque"}, "points": data["torque"]}
+        return data
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
         if not case.polar_inertia:

@@ -128,6 +128,8 @@ RULES = (
     Rule(runs.kept_film_faults, (RUN,), moving=True),
     Rule(runs.axial_heat_faults, (RUN,), moving=True),
     Rule(runs.axial_faults, (RUN, *EVERY_CYCLE), moving=True, last=True),
+    Rule(runs.drive_faults, (RUN,)),
+    Rule(runs.given_speed_faults, (*KINEMATIC, *EVERY_CYCLE, LADDER)),
     Rule(runs.number_faults, (RUN,), last=True),
     Rule(runs.speed_faults, (RUN,), last=True),
     *(Rule(partial(kinematic.end_faults, test=test), (test,), last=True) for test in KINEMATIC),

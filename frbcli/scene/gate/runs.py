@@ -102,6 +102,28 @@ def axial_heat_faults(case: Case) -> Iterator[Fault]:
             yield Fault(f"thermal.{key}", value.told, None, problem, remedy)
 
 
+def drive_faults(case: Case) -> Iterator[Fault]:
+    """A speed that is free is solved in the stages of the time loop, and the axial motion goes by given speeds."""
+    if case.drive is None:
+        return
+    if coupling_of(case).in_turn:
+        problem = "takes the rotor's speed as given, and [drive] leaves it free."
+        yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] in place of [drive].")
+    if case.axial is not None:
+        problem = "goes by a speed that is known beforehand, and [drive] leaves it free."
+        yield Fault("axial", "", None, problem, "Leave it out, or write [speed] in place of [drive].")
+    if case.drive.reaction and case.bases:
+        problem = "acts on a rotor whose ground is at rest, and [base] moves it."
+        yield Fault("drive.reaction", "true", None, problem, "Leave one of the two out.")
+
+
+def given_speed_faults(case: Case) -> Iterator[Fault]:
+    """Limit cycles, kinematic tests and the ladder are at given speeds."""
+    if case.drive is not None:
+        problem = "leaves the speed free, and this analysis needs a given one."
+        yield Fault("drive", "", None, problem, "Write [speed] in place of [drive].")
+
+
 def speed_faults(case: Case) -> Iterable[Fault]:
     """A run has speeds. Raises InputError for a case of kinematic tests, which has none."""
     run_omega(case)
