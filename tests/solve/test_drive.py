@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.integrate import cumulative_simpson, solve_ivp
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
@@ -14,6 +15,7 @@ from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
 
+TURN = 2.0 * math.pi
 INERTIA, TORQUE, BRAKES = 2e-4, 0.05, 1e-4
 MACHINE = {
     "rotor": {"kind": "rigid", "mass": "6 kg", "gravity": 0.0, "polar_inertia": f"{INERTIA} kg*m^2"},
@@ -37,3 +39,85 @@ def test_analyses_at_given_speeds_refuse_a_free_one() -> None:
     case = case_from_dict(MACHINE, "drive")
     assert not faults(case, RUN)
     assert all("drive" in [fault.key for fault in faults(case, analysis)] for analysis in (CYCLES, LADDER))
+
+
+# A Jeffcott rotor of stiff bearings whose disk is one mass on one spring, with an unbalance that acts on its rotation
+M, K, D, U, J = 6.0, 5e6, 120.0, 2.4e-3, 0.02  # kg, N/m, N s/m, kg m, kg m^2
+CRITICAL = math.sqrt(K / M)
+
+
+def driven(torque: float, time: float, **drive: object) -> dict[str, object]:
+    return {
+        "rotor": {"kind": "rigid", "mass": f"{M} kg", "gravity": 0.0, "unbalance": f"{U!r} kg*m",
+                  "polar_inertia": f"{J!r} kg*m^2"},
+        "bearing": {"kind": "coefficients", "stiffness": f"{0.5 * K!r} N/m", "damping": f"{0.5 * D!r} N*s/m"},
+        "drive": {"torque": f"{torque!r} N*m", "duration": f"{time} s", "reaction": True, **drive},
+        "accuracy": {"target": 1e-5},
+    }  # fmt: skip
+
+
+def integrated(torque: float, load: float, time: float, omega: float = 0.0) -> np.ndarray:
+    """(x, y, angle, their rates) at the end, by an integration of all three equations at once: the centre of mass lies
+    e = U / M off the centre, and J is that about the centre."""
+
+    def rate(_: float, state: np.ndarray) -> np.ndarray:
+        x, y, angle, v_x, v_y, speed = state
+        s, c = math.sin(angle), math.cos(angle)
+        # the unbalance pulls at the centre with U (a'' (c, s) + a'^2 (-s, c)), see (2.3), and is pulled at in turn
+        matrix = np.array([[M, 0.0, -U * c], [0.0, M, -U * s], [-U * c, -U * s, J]])
+        right = [-K * x - D * v_x - U * speed**2 * s, -K * y - D * v_y + U * speed**2 * c, torque - load * speed]
+        return np.concatenate([state[3:], np.linalg.solve(matrix, right)])
+
+    end = solve_ivp(rate, (0.0, time), np.array([0, 0, 0, 0, 0, omega]), "DOP853", rtol=1e-10, atol=1e-14)
+    return np.asarray(end.y[:, -1])
+
+
+@pytest.mark.parametrize(("torque", "passes"), [(16.0, False), (24.0, True)])
+def test_too_little_torque_sticks_at_the_critical_speed(torque: float, passes: bool, tmp_path: Path) -> None:
+    """Sommerfeld's effect: at the resonance the torque is spent on the whirl."""
+    time = 2.0
+    run = frbcli.runup(case_from_dict(driven(torque, time, load="1e-3 N*m*s"), "sommerfeld"), tmp_path / "run.h5")
+    speed = TURN * run["speed_Hz"]
+    exact = integrated(torque, 1e-3, time)
+    assert (exact[5] > 1.2 * CRITICAL) == passes
+    if not passes:
+        assert exact[5] > 0.8 * CRITICAL
+    assert speed[-1] == pytest.approx(exact[5], rel=1e-4)
+
+
+def test_work_of_the_drive_is_kept_or_damped(tmp_path: Path) -> None:
+    """Kinetic and elastic energy and what the bearings damp, over the work of the torque."""
+    case = case_from_dict(driven(16.0, 1.5) | {"output": {"step": "20 us"}}, "energy")
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    time, omega = run["time_s"], TURN * run["speed_Hz"]
+    x, y = run["journal_x_m"], run["journal_y_m"]
+    v_x, v_y = (np.gradient(each, time, edge_order=2) for each in (x, y))
+    angle = cumulative_simpson(omega, x=time, initial=0.0)
+    work = 16.0 * angle
+    kinetic = 0.5 * M * (v_x**2 + v_y**2) + 0.5 * J * omega**2
+    kinetic -= U * omega * (v_x * np.cos(angle) + v_y * np.sin(angle))
+    damped = cumulative_simpson(D * (v_x**2 + v_y**2), x=time, initial=0.0)
+    total = kinetic + 0.5 * K * (x**2 + y**2) + damped
+    late = time > 0.2
+    np.testing.assert_allclose(total[late], work[late], rtol=1e-3)
+
+
+def test_a_rotor_stops_under_a_constant_load(tmp_path: Path) -> None:
+    """J omega' = -T: it stands after J omega / T, and the run ends there."""
+    machine = MACHINE | {"drive": {"start": "50 Hz", "load": "0.1 N*m", "duration": "2 s"}}
+    run = frbcli.runup(case_from_dict(machine, "stops"), tmp_path / "run.h5")
+    assert run.status == "standstill"
+    assert run.t_end_s == pytest.approx(INERTIA * TURN * 50.0 / 0.1, rel=1e-9)
+
+
+def test_oil_brakes_a_rotor_by_the_torque_that_is_recorded(tmp_path: Path) -> None:
+    """Coast-down on films: J (omega_0 - omega) is the integral of the friction torque."""
+    case = frbcli.load_case("jeffcott", ['rotor.polar_inertia="2e-3 kg*m^2"'])
+    data = case.model_dump(by_alias=True, exclude_unset=True)
+    del data["speed"]
+    data["drive"] = {"start": "150 Hz", "duration": "1 s"}
+    run = frbcli.runup(case_from_dict(data, "coast"), tmp_path / "run.h5")
+    spent = np.trapezoid(run["friction_torque_N_m"], run["time_s"])
+    lost = 2e-3 * TURN * (run["speed_Hz"][0] - run["speed_Hz"][-1])
+    assert lost > 0.05 * 2e-3 * TURN * 150.0
+    assert spent == pytest.approx(lost, rel=1e-5)
