@@ -70,6 +70,7 @@ def machine_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, 
         films_change(case),
         case.contact.rough,
         case.start.position,
+        case.drive is not None,
     )
 
 
@@ -81,8 +82,10 @@ def _film_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ..
 
 
 def moment_of_run(case: Case) -> Case:
-    """A case whose run takes a moment, at its last speed."""
+    """A case whose run takes a moment, at its last speed; with a drive from its first one on."""
     duration = max(MOMENT_s, 2 * case.output.step)
+    if case.drive is not None:
+        return case.with_settings(f"drive.duration={duration!r}", f"drive.down_duration={duration!r}")
     end = case.speed.end
     return case.with_settings({"speed": {"from": end, "to": end, "duration": duration}})
 
