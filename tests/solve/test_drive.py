@@ -10,9 +10,12 @@ import pytest
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
+from frbcli.cli.runs.transient import exit_code
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
+from frbcli.scene.planning.plan import make_plan
+from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
 
 INERTIA, TORQUE, BRAKES = 2e-4, 0.05, 1e-4
 MACHINE = {
@@ -37,3 +40,51 @@ def test_analyses_at_given_speeds_refuse_a_free_one() -> None:
     case = case_from_dict(MACHINE, "drive")
     assert not faults(case, RUN)
     assert all("drive" in [fault.key for fault in faults(case, analysis)] for analysis in (CYCLES, LADDER))
+
+
+def test_a_rotor_under_a_constant_load_stands_still_when_its_momentum_is_used_up(tmp_path: Path) -> None:
+    drive = {"load": "0.05 N*m", "start": "50 Hz", "duration": "2 s"}
+    run = frbcli.runup(case_from_dict(MACHINE | {"drive": drive}, "coast"), tmp_path / "run.h5")
+    stands_s = INERTIA * 2.0 * math.pi * 50.0 / 0.05
+    assert run.status == "standstill"
+    assert run.t_end_s == pytest.approx(stands_s, rel=1e-6)
+    assert [(event["kind"], event["speed_Hz"]) for event in run.events] == [("standstill", 0.0)]
+    assert run.events[0]["t_s"] == pytest.approx(stands_s, rel=1e-6)
+    assert exit_code(run.status) == 0
+
+
+def test_the_top_speed_is_where_the_torque_falls_to_the_load(tmp_path: Path) -> None:
+    """0.05 N m for 0.2 s, then to nothing within 10 ms, against 0.01 N m."""
+    torque = [["0 s", "0.05 N*m"], ["0.2 s", "0.05 N*m"], ["0.21 s", "0 N*m"]]
+    drive = {"torque": torque, "load": "0.01 N*m", "duration": "0.5 s"}
+    run = frbcli.runup(case_from_dict(MACHINE | {"drive": drive}, "top"), tmp_path / "run.h5")
+    (event,) = run.events
+    assert event["kind"] == "top-speed"
+    assert event["t_s"] == pytest.approx(0.208, abs=2e-4)
+    assert event["speed_Hz"] == pytest.approx((0.04 * 0.2 + 0.5 * 0.04 * 0.008) / INERTIA / (2.0 * math.pi), rel=1e-5)
+
+
+def test_a_rotor_that_only_gains_speed_has_no_top_speed(tmp_path: Path) -> None:
+    assert frbcli.runup(case_from_dict(MACHINE, "drive"), tmp_path / "run.h5").events == []
+
+
+def test_a_moment_of_a_driven_run_keeps_its_drive() -> None:
+    driven = case_from_dict(MACHINE, "drive")
+    given = case_from_dict(
+        {key: table for key, table in MACHINE.items() if key != "drive"}
+        | {"speed": {"from": 0, "to": "10 Hz", "duration": "0.5 s"}},
+        "given",
+    )
+    moment = moment_of_run(driven)
+    assert moment.drive is not None
+    assert (moment.drive.torque, moment.drive.duration) == (TORQUE, 1e-3)
+    assert machine_kernels(driven, ()) != machine_kernels(given, ())
+
+
+def test_the_plan_names_the_drive_and_its_top_speed() -> None:
+    drive = {"torque": "0.05 N*m", "load": {"linear": "1e-4 N*m*s"}, "to": "40 Hz", "duration": "20 s"}
+    told = {made.choice: made.value for made in make_plan(case_from_dict(MACHINE | {"drive": drive}, "plan")).decisions}
+    assert (told["speed"], told["drive"], told["load"]) == ("free", "0.05 N*m", "0.0001 N*m*s")
+    assert told["governor"] == "40 Hz"
+    slope = TORQUE / (0.02 * 80.0 * math.pi)  # N m s: by how much the governor takes the torque away
+    assert float(told["top speed"].split()[0]) == pytest.approx(40.0 * slope / (slope + BRAKES), rel=1e-3)
