@@ -88,3 +88,17 @@ def test_the_plan_names_the_drive_and_its_top_speed() -> None:
     assert told["governor"] == "40 Hz"
     slope = TORQUE / (0.02 * 80.0 * math.pi)  # N m s: by how much the governor takes the torque away
     assert float(told["top speed"].split()[0]) == pytest.approx(40.0 * slope / (slope + BRAKES), rel=1e-3)
+
+
+def test_oil_brakes_a_coasting_rotor_by_the_law_of_petroff(tmp_path: Path) -> None:
+    """On both journals pi mu D^3 B omega / (2 C) where they are in their middles, and 1 / sqrt(1 - eps^2) of it beside
+    them; the pressure adds less than 1 % below an eccentricity of 0.2."""
+    case = frbcli.load_case("coast-down", ["drive.duration=2 s", "output.step=1 ms"])
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    film, omega = case.films[0], 2.0 * math.pi * run["speed_Hz"]
+    centred = math.pi * case.oil.viscosity * film.diameter**3 * 0.02 * omega / (2.0 * film.clearance)
+    over = run["friction_torque_N_m"] / centred * np.sqrt(1.0 - run["eccentricity"] ** 2)
+    assert 0.9999 < over.min() <= over.max() < 1.01
+    # beside it, 1 and 0.1 N s/m of damping take nothing from the rotation
+    gone = case.polar_inertia * (omega[0] - omega[-1])
+    assert gone == pytest.approx(np.trapezoid(run["friction_torque_N_m"], run["time_s"]), rel=1e-4)
