@@ -46,8 +46,8 @@ class ShortAnalysis:
 def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     """Short forms of all analyses that a case can be asked for, of runs, stability, sheets and kinematic tests. Raises
     InputError if the machine cannot be modelled."""
-    if not case.given_bearings:
-        return  # thrust bearings alone need no kernels
+    if not case.given_bearings or (case.given_rotor is None and case.motion is None):
+        return  # thrust and ball bearings alone need no kernels
     if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
         make_plan(case)  # raises the faults of a machine
     found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
