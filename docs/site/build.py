@@ -49,6 +49,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "stability": (["stability", "jeffcott"], "jeffcott-campbell.png"),
     "limit-cycles": (["limit-cycles", "jeffcott"], "jeffcott-limit-cycles.png"),
     "response": (["response", "jeffcott", *SHORT], "jeffcott-response.png"),
+    "balance": (["balance", "run.h5", "--planes", "disk", "--at", "100 Hz"], ""),
     "accuracy": (["accuracy", "jeffcott", "--theory", "short", "--until", "1 s"], "jeffcott-accuracy.png"),
     "sweep": (["sweep", "jeffcott", *SHORT, "--stability", "--jobs", "1", "--set",
                "bearing.clearance=30 um,35 um,40 um,45 um", "-o", "study"], "study/sweep.png"),

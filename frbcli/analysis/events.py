@@ -1,5 +1,6 @@
 """Events of a run, found from its signals: critical speed, onset, offset and lock-in of whirl, self-excited vibration,
-contact, touch and lift-off of rough surfaces, pins and stops; and when a clearance changed or a blade was lost.
+contact, touch and lift-off of rough surfaces, pins and stops; when a clearance changed or a blade was lost; the top
+speed and the standstill of a rotor whose speed is free.
 
 The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
@@ -39,7 +40,7 @@ from frbcli.results.store import CLEARANCE_STEP, LOSS
 from frbcli.units import HERTZ, SpeedUnit
 
 Kind = Literal["critical-speed", "self-excited", "onset", "offset", "lock-in", "contact", "touch", "lift-off",
-               "clearance-step", "loss", "forced"]  # fmt: skip
+               "clearance-step", "loss", "forced", "top-speed", "standstill"]  # fmt: skip
 
 SUBSYNCHRONOUS = 0.5  # order of oil whirl, about half the rotor speed
 WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1: +-2/4 about the order 0.5
@@ -56,6 +57,8 @@ CONTACT_ECCENTRICITY = 0.9999  # where the run does not say where its contact be
 COLLAR_FILM, COLLAR_TOUCHES = "thrust_film_thickness_m", 1e-6 * (1.0 + 1e-9)  # m: the roughness of surfaces
 PIN, PIN_UNIT, PUSHES = "pin_torque", "_N_m", 1e-300  # N m: a pin that has any torque touches its ring
 STOP, ALONG_X = "stop_force", "_x_N"
+DRIVE, FALLS = "drive_torque_N_m", 0.01  # share of its top speed by which a rotor must slow down behind it
+OF_SPEED = ("top-speed", "standstill")  # kinds of events that are seen in the speed itself, sample by sample
 CONTACT_PAUSE_s = 0.1  # a bouncing journal touches several times in one contact
 TOUCHES, LIFTED = 0.01, 0.001  # share of the force from which asperities count as touching, and below which as apart
 
@@ -106,7 +109,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     -------
     tuple of Event
         Critical speeds, self-excited vibrations, onsets and offsets of whirl, lock-in, contact, touch and lift-off of
-        rough surfaces and of rings and their pins, in the order of time.
+        rough surfaces and of rings and their pins, top speed and standstill of a driven rotor, in the order of time.
 
     Examples
     --------
@@ -153,6 +156,7 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
     for signal in [name for name in run.signals if name.startswith(STOP) and name.endswith(ALONG_X)]:
         stop = joined("stop", signal.removeprefix(STOP).removesuffix(ALONG_X).strip("_"))
         events += _touches(run, signal, None, stop, (PUSHES, PUSHES))
+    events += _turning(run)
     changes = _changes(run)  # before their consequences at the same time
     return tuple(sorted([*changes, *events, *on_pads], key=lambda event: event.t_s))
 
@@ -163,6 +167,8 @@ def resolution(run: RunLike, event: Mapping[str, Any]) -> tuple[float, float]:
     t, speed = float(event["t_s"]), abs(float(event["speed_Hz"]))
     in_rings = str(event["film"] or "").endswith(SIDES)
     step_s = window_step_s(run) if in_rings else 1.0 / (STEPS * max(speed, 1.0))
+    if event["kind"] in OF_SPEED:
+        step_s = float(np.ptp(signals.piece(run, "time_s", 0, 2)))
     around = [signals.speed_at(run, t + sign * step_s) for sign in (-1.0, 1.0)]
     line_Hz = 1.0 / (HOPS * step_s) if in_rings else speed / FREQUENCY_REVOLUTIONS
     return 0.5 * abs(around[1] - around[0]), 0.0 if event["kind"] == "critical-speed" else SHARE_OF_LINE * line_Hz
@@ -394,6 +400,28 @@ def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
         for first in np.flatnonzero(np.diff(times, prepend=touched) > CONTACT_PAUSE_s):
             yield Event("contact", film or None, float(times[first]), float(speeds[first]), None, None)
         touched = float(times[-1])
+
+
+def _turning(run: RunLike) -> Iterator[Event]:
+    """Of a rotor whose speed is free, its highest speed, if it is neither at the start nor held up to the end, and its
+    standstill, up to which it slows down from the last two samples as between them."""
+    if DRIVE not in run.signals:
+        return
+    top, top_s, count = 0.0, 0.0, len(run)
+    for start, stop in pieces(count):
+        speeds = signals.piece(run, "speed_Hz", start, stop)
+        fastest = int(np.argmax(speeds))
+        if speeds[fastest] > top:
+            top, top_s = float(speeds[fastest]), float(signals.piece(run, "time_s", start, stop)[fastest])
+    first, begun = (float(signals.piece(run, name, 0, 1)[0]) for name in ("speed_Hz", "time_s"))
+    (before_s, last_s), (before, last) = (
+        signals.piece(run, name, count - 2, count).tolist() for name in ("time_s", "speed_Hz")
+    )
+    if top_s > begun and top > first and last < (1.0 - FALLS) * top:
+        yield Event("top-speed", None, top_s, top, None, None)
+    if run.status == "standstill":
+        left = last / (before - last) if before > last else 0.0
+        yield Event("standstill", None, last_s + min(max(left, 0.0), 1.0) * (last_s - before_s), 0.0, None, None)
 
 
 def _touches(

@@ -44,7 +44,8 @@ class RunLike(Protocol):
 
     @property
     def status(self) -> str:
-        """How the run ended: "finished", "contact", "starved", "not-converged" or "interrupted"."""
+        """How the run ended: "finished", "standstill", "contact", "starved", "not-converged" or
+        "interrupted"."""
         ...
 
     def __getitem__(self, name: str) -> Array: ...

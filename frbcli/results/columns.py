@@ -60,7 +60,7 @@ EVENTS = (
     Column("event", "", "", event_name, shown=(Shown("event"),),
            key="", flat=False),
     Column("kind", "", "`critical-speed`, `onset`, `offset`, `lock-in`, `self-excited`, `contact`, `touch`, "
-           "`lift-off`, `clearance-step`, `loss`, `forced`",
+           "`lift-off`, `clearance-step`, `loss`, `forced`, `top-speed`, `standstill`",
            more="forced is a line of a measurement that keeps its frequency at all rotor speeds; touch and lift-off "
                 "of asperities, or of a ring and its pin where `point` is a ring, or of a stop"),
     Column("film", "", "film, none where there is but one"),

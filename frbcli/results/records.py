@@ -19,6 +19,7 @@ from frbcli.results.signals import Signal, pieces
 
 COMMANDS = ("runup", "rundown")
 STATUSES = ("finished", "standstill", "contact", "starved", "overheated", "not-converged", "interrupted")
+WHOLE = STATUSES[:2]  # of a run that nothing has cut short
 TIME, SPEED = "time_s", "speed_Hz"
 LONGEST_LABEL = 200  # characters
 MOST_ENTRIES = 500  # of a table

@@ -13,6 +13,7 @@ import numpy as np
 from frbcli.analysis.signals import films, joined
 from frbcli.case.schema import Case
 from frbcli.elements.collar.thrust import COLLAR
+from frbcli.results.records import WHOLE
 from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film
 from frbcli.runs.march import UNBOUNDED
@@ -88,7 +89,7 @@ def run_advice(case: Case, end: RunEnd) -> tuple[str, ...]:
         return _overheated(case, end)
     if end.status == "contact":
         return _contact(case, end)
-    if end.status == "finished":
+    if end.status in WHOLE:
         return tuple(film.remark for film in unfed_films(case) if not film.keeps)
     return _stuck(case, end)
 

@@ -157,16 +157,12 @@ def _run(command: str, case: Case, path: Path, wanted: Wanted, observe: Observer
             return _with_second_run(march, RunWriter.of(earlier), earlier, observe)
         segments = make_segments(case, plan)
         march = March(case, plan, segments, profile)
+        march.compile()  # before there is a file: an interruption leaves none, or one of a run that has begun
         if earlier is not None and earlier.checkpoint is not None:
             _restore(march, earlier, header(command, case, segments))
             writer = RunWriter.resume(path)
         else:
             writer = RunWriter(path, header(command, case, segments, _critical_speeds(segments)))
-        try:
-            march.compile()
-        except KeyboardInterrupt:  # the file is there, as of any run that is interrupted
-            writer.checkpoint(march.snapshot(), march.cost(), march.error_so_far(), march.time)
-            return writer.so_far()
         run = _go(march, writer, observe, second_run_s(case, plan, profile))
         if run.status == "interrupted":
             return run

@@ -64,6 +64,7 @@ SLOW = [
     Command(("waterfall", "run.h5", "--window", "10 ms"), "out"),
     Command(("plot", "run.h5"), "out"),
     Command(("fit", "jeffcott", "--measured", "run.h5", "--vary", "oil.viscosity", *SHORT), "err", 2),
+    Command(("balance", "run.h5", "--planes", "nowhere"), "err", 2),
     Command(("export", "run.h5"), "out"),
     Command(("report", "run.h5"), "out"),
 ]  # fmt: skip

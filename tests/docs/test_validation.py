@@ -38,6 +38,8 @@ def planned(name: str, settings: tuple[str, ...]) -> bool:
     case = load_case(name, settings)
     if not case.given_bearings:
         return bool(thrust_plan(case))
+    if case.given_rotor is None and case.motion is None:
+        return bool(frbcli.ball_bearing_sheet(case, [1000.0], [60.0]).points)
     if case.motion is None:
         return bool(make_plan(case).decisions)
     test = "rotation" if case.motion.frequency is None else "squeeze"

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import re
+import runpy
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +16,6 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import frbcli
-from frbcli.arrays import Array
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.surroundings.spring import Spring
 from frbcli.elements.spring import SpringForce
@@ -22,7 +23,7 @@ from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
-from frbcli.rotor.port import ANSWER, F_X, MOTION, XX, ForceLaw, Port
+from frbcli.rotor.port import ANSWER, MOTION, XX, Port
 from frbcli.rotor.port_function import evaluate
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
@@ -222,19 +223,14 @@ def test_a_spring_between_two_places_acts_on_both() -> None:
     np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
 
 
-def test_a_force_of_ones_own_moves_a_machine() -> None:
-    """F = -p d^5 of a law that no file of the program knows: a quarter period from its energy."""
+def test_a_force_of_ones_own_moves_a_machine(tmp_path: Path) -> None:
+    """F = -p d^5, the law of docs/adding-a-model.md: a quarter period from its energy."""
 
-    class Fifth(ForceLaw):
-        length = 1e-5
-
-        @property
-        def numbers(self) -> Array:
-            return np.array([1e25])
-
-        @staticmethod
-        def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:  # noqa: ARG004
-            answer[F_X], answer[XX] = -numbers[0] * motion[0] ** 5, -5.0 * numbers[0] * motion[0] ** 4
+    page = (Path(__file__).parents[2] / "docs" / "adding-a-model.md").read_text(encoding="utf-8")
+    (example,) = (text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "ForceLaw" in text)
+    file = tmp_path / "own.py"
+    file.write_text(example, encoding="utf-8")
+    law = runpy.run_path(str(file))["FifthPower"](1e25)
 
     amplitude = 3e-5
 
@@ -245,7 +241,7 @@ def test_a_force_of_ones_own_moves_a_machine() -> None:
 
     period = 4.0 * quad(quarter, 0.0, 0.5 * math.pi, epsabs=0.0, epsrel=1e-12)[0]
     system = made(sprung({"stiffness": "1e-3 N/m"}))
-    port = Port("own", dict(system.rotor.points)["journal"], 1.0, Fifth())
+    port = Port("own", dict(system.rotor.points)["journal"], 1.0, law)
     system = replace(system, rotor=replace(system.rotor, ports=(port,)))
     profile = speed_profile([0.0, 5.0 * period], [0.0, 0.0])
     begin = start(system, profile, np.array([amplitude, 0.0]))

@@ -151,6 +151,7 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "forces over time": ("jeffcott", (TABLE,)),
     "blade loss": ("jeffcott", (LOSS,)),
     "bow": ("jeffcott", ("rotor.bow=10 um",)),
+    "free speed": ("coast-down", ()),
     "motion of the ground": ("jeffcott", (GROUND,)),
     "journals that tilt": ("turbocharger-car", (SINGLE_FILMS, TILTS)),
     "floating rings that tilt": ("turbocharger-car", (TILTS,)),

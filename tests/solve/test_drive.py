@@ -11,9 +11,12 @@ from scipy.integrate import cumulative_simpson, solve_ivp
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
+from frbcli.cli.runs.transient import exit_code
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
+from frbcli.scene.planning.plan import make_plan
+from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
 
 TURN = 2.0 * math.pi
 INERTIA, TORQUE, BRAKES = 2e-4, 0.05, 1e-4
@@ -102,14 +105,6 @@ def test_work_of_the_drive_is_kept_or_damped(tmp_path: Path) -> None:
     np.testing.assert_allclose(total[late], work[late], rtol=1e-3)
 
 
-def test_a_rotor_stops_under_a_constant_load(tmp_path: Path) -> None:
-    """J omega' = -T: it stands after J omega / T, and the run ends there."""
-    machine = MACHINE | {"drive": {"start": "50 Hz", "load": "0.1 N*m", "duration": "2 s"}}
-    run = frbcli.runup(case_from_dict(machine, "stops"), tmp_path / "run.h5")
-    assert run.status == "standstill"
-    assert run.t_end_s == pytest.approx(INERTIA * TURN * 50.0 / 0.1, rel=1e-9)
-
-
 def test_oil_brakes_a_rotor_by_the_torque_that_is_recorded(tmp_path: Path) -> None:
     """Coast-down on films: J (omega_0 - omega) is the integral of the friction torque."""
     case = frbcli.load_case("jeffcott", ['rotor.polar_inertia="2e-3 kg*m^2"'])
@@ -121,3 +116,65 @@ def test_oil_brakes_a_rotor_by_the_torque_that_is_recorded(tmp_path: Path) -> No
     lost = 2e-3 * TURN * (run["speed_Hz"][0] - run["speed_Hz"][-1])
     assert lost > 0.05 * 2e-3 * TURN * 150.0
     assert spent == pytest.approx(lost, rel=1e-5)
+
+
+def test_a_rotor_under_a_constant_load_stands_still_when_its_momentum_is_used_up(tmp_path: Path) -> None:
+    drive = {"load": "0.05 N*m", "start": "50 Hz", "duration": "2 s"}
+    run = frbcli.runup(case_from_dict(MACHINE | {"drive": drive}, "coast"), tmp_path / "run.h5")
+    stands_s = INERTIA * 2.0 * math.pi * 50.0 / 0.05
+    assert run.status == "standstill"
+    assert run.t_end_s == pytest.approx(stands_s, rel=1e-6)
+    assert [(event["kind"], event["speed_Hz"]) for event in run.events] == [("standstill", 0.0)]
+    assert run.events[0]["t_s"] == pytest.approx(stands_s, rel=1e-6)
+    assert exit_code(run.status) == 0
+
+
+def test_the_top_speed_is_where_the_torque_falls_to_the_load(tmp_path: Path) -> None:
+    """0.05 N m for 0.2 s, then to nothing within 10 ms, against 0.01 N m."""
+    torque = [["0 s", "0.05 N*m"], ["0.2 s", "0.05 N*m"], ["0.21 s", "0 N*m"]]
+    drive = {"torque": torque, "load": "0.01 N*m", "duration": "0.5 s"}
+    run = frbcli.runup(case_from_dict(MACHINE | {"drive": drive}, "top"), tmp_path / "run.h5")
+    (event,) = run.events
+    assert event["kind"] == "top-speed"
+    assert event["t_s"] == pytest.approx(0.208, abs=2e-4)
+    assert event["speed_Hz"] == pytest.approx((0.04 * 0.2 + 0.5 * 0.04 * 0.008) / INERTIA / (2.0 * math.pi), rel=1e-5)
+
+
+def test_a_rotor_that_only_gains_speed_has_no_top_speed(tmp_path: Path) -> None:
+    assert frbcli.runup(case_from_dict(MACHINE, "drive"), tmp_path / "run.h5").events == []
+
+
+def test_a_moment_of_a_driven_run_keeps_its_drive() -> None:
+    driven = case_from_dict(MACHINE, "drive")
+    given = case_from_dict(
+        {key: table for key, table in MACHINE.items() if key != "drive"}
+        | {"speed": {"from": 0, "to": "10 Hz", "duration": "0.5 s"}},
+        "given",
+    )
+    moment = moment_of_run(driven)
+    assert moment.drive is not None
+    assert (moment.drive.torque, moment.drive.duration) == (TORQUE, 1e-3)
+    assert machine_kernels(driven, ()) != machine_kernels(given, ())
+
+
+def test_the_plan_names_the_drive_and_its_top_speed() -> None:
+    drive = {"torque": "0.05 N*m", "load": {"linear": "1e-4 N*m*s"}, "to": "40 Hz", "duration": "20 s"}
+    told = {made.choice: made.value for made in make_plan(case_from_dict(MACHINE | {"drive": drive}, "plan")).decisions}
+    assert (told["speed"], told["drive"], told["load"]) == ("free", "0.05 N*m", "0.0001 N*m*s")
+    assert told["governor"] == "40 Hz"
+    slope = TORQUE / (0.02 * 80.0 * math.pi)  # N m s: by how much the governor takes the torque away
+    assert float(told["top speed"].split()[0]) == pytest.approx(40.0 * slope / (slope + BRAKES), rel=1e-3)
+
+
+def test_oil_brakes_a_coasting_rotor_by_the_law_of_petroff(tmp_path: Path) -> None:
+    """On both journals pi mu D^3 B omega / (2 C) where they are in their middles, and 1 / sqrt(1 - eps^2) of it beside
+    them; the pressure adds less than 1 % below an eccentricity of 0.2."""
+    case = frbcli.load_case("coast-down", ["drive.duration=2 s", "output.step=1 ms"])
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    film, omega = case.films[0], 2.0 * math.pi * run["speed_Hz"]
+    centred = math.pi * case.oil.viscosity * film.diameter**3 * 0.02 * omega / (2.0 * film.clearance)
+    over = run["friction_torque_N_m"] / centred * np.sqrt(1.0 - run["eccentricity"] ** 2)
+    assert 0.9999 < over.min() <= over.max() < 1.01
+    # beside it, 1 and 0.1 N s/m of damping take nothing from the rotation
+    gone = case.polar_inertia * (omega[0] - omega[-1])
+    assert gone == pytest.approx(np.trapezoid(run["friction_torque_N_m"], run["time_s"]), rel=1e-4)

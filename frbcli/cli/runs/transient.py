@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
 
-EXIT_CODES = {"finished": 0, "input-error": 2, "interrupted": 130}
+EXIT_CODES = {"finished": 0, "standstill": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
 SUMMARY = "-summary.png"
 TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step

@@ -19,6 +19,7 @@ from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
 from frbcli.errors import input_error
+from frbcli.results.records import WHOLE
 from frbcli.units import SpeedUnit
 
 if TYPE_CHECKING:
@@ -237,7 +238,7 @@ def _report(found: Sweep, terminal: Terminal) -> None:
     terminal.table(found.case.heading, table.heads(), table.cells()[:LONGEST_TABLE])
     if len(found.points) > LONGEST_TABLE:
         terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
-    failed = [point for point in found.points if point.status != "finished"]
+    failed = [point for point in found.points if point.status not in WHOLE]
     if any(point.status == "interrupted" for point in failed):
         terminal.remark("Interrupted; the same command resumes the sweep.")
     elif failed:
@@ -259,7 +260,7 @@ def _exit_code(found: Sweep) -> int:
     statuses = {point.status for point in found.points}
     if "interrupted" in statuses:
         return EXIT_CODES["interrupted"]
-    return 0 if statuses == {"finished"} else ENDED_EARLY
+    return 0 if statuses <= set(WHOLE) else ENDED_EARLY
 
 
 def of_machines(

@@ -47,6 +47,8 @@ NAMES = {
     "clearance-step": "clearance step",
     "loss": "loss",
     "forced": "forced",
+    "top-speed": "top speed",
+    "standstill": "standstill",
 }
 
 

@@ -23,9 +23,11 @@ Line = Any  # a line style of matplotlib: a name, or an offset and lengths of da
 
 LINES: tuple[Line, ...] = ("-", (0, (5, 1.5)), (0, (1.5, 1)), (0, (6, 1.5, 1.5, 1.5)))
 MARKS = {"critical-speed": "o", "self-excited": "D", "onset": "^", "offset": "v", "lock-in": "s", "contact": "X",
-         "touch": "1", "lift-off": "2", "clearance-step": "|", "loss": "|"}  # fmt: skip
+         "touch": "1", "lift-off": "2", "clearance-step": "|", "loss": "|",
+         "top-speed": "*", "standstill": "P"}  # fmt: skip
 WORDS = {"critical-speed": "critical", "self-excited": "self-excited", "onset": "whirl", "offset": "whirl ends",
-         "lock-in": "locks in", "contact": "contact", "clearance-step": "step", "loss": "loss"}  # fmt: skip
+         "lock-in": "locks in", "contact": "contact", "clearance-step": "step", "loss": "loss",
+         "top-speed": "top speed", "standstill": "stands"}  # fmt: skip
 ROW_HEIGHT = 0.32  # inches of a variant's row
 LEFT_SHARE = 0.85  # of the time axis; the label of an event beyond stands left of it
 

@@ -17,7 +17,7 @@ from frbcli.errors import NotConverged
 from frbcli.results.store import Run
 from frbcli.runs.march import March, Progress
 from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan
-from frbcli.solve.state import CONTACT, FINISHED, RUNNING
+from frbcli.solve.state import CONTACT, FINISHED, RUNNING, STANDSTILL
 
 SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run
 
@@ -59,7 +59,7 @@ def second_run(march: March, run: Run, observe: Observer | None = None) -> Secon
             observe(other.progress(run.t_end_s))
     # One signal at a time: all of them are held once, beside those of the run.
     joined = {name: np.concatenate([chunk.pop(name) for chunk in chunks]) for name in tuple(chunks[0])}
-    ended = {RUNNING: "interrupted", FINISHED: "finished", CONTACT: "contact"}
+    ended = {RUNNING: "interrupted", FINISHED: "finished", CONTACT: "contact", STANDSTILL: "standstill"}
     return SecondRun(joined, run.references, ended.get(status, "not-converged"))
 
 

@@ -70,9 +70,9 @@ def _difference(case: Case, trial: Trial) -> float:
 
 def _marched(march: March) -> bool:
     """Whether a run reaches its end."""
-    from frbcli.solve.state import FINISHED, RUNNING
+    from frbcli.solve.state import FINISHED, RUNNING, STANDSTILL
 
     status = RUNNING
     while status == RUNNING:
         status, _ = march.chunk()
-    return status == FINISHED
+    return status in (FINISHED, STANDSTILL)

@@ -23,7 +23,7 @@ from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
-from frbcli.scene.inputs import input_decisions
+from frbcli.scene.inputs import drive_decisions, input_decisions
 from frbcli.scene.machine.elements import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
 from frbcli.scene.planning.coarser_plan import cost_of_run
@@ -134,6 +134,8 @@ def _plan(case: Case, target: float) -> Plan:
         decisions.append(Decision(choice, str(value), reason))
 
     _decide_scene(case, decide)
+    for decided in drive_decisions(case):
+        decide(*decided)
     films, coupling, length = choose_films(case, target), FULL.name, 0.0
     if case.films:
         coupling = _decide_films(case, films, decide)
@@ -142,10 +144,13 @@ def _plan(case: Case, target: float) -> Plan:
         decide("length", display(length, "m"), f"what errors are relative to: {reason}")
     method, tolerance, steps = _time_integration(case, films, target, decide)
     if turning_rings(case):
-        reason = "turns the rings" if case.film.torque == "all" else "turns the rings; set in the case"
+        reason = "turns the rings" if case.drive is None else "turns the rings and brakes the rotor"
+        reason = reason if case.film.torque == "all" else f"{reason}; set in the case"
         decide("torque", case.film.torque, reason)
-    elif case.films:
+    elif case.films and case.drive is None:
         decide("torque", "left out", "the rotor speed is given and no ring turns")
+    elif case.films:
+        decide("torque", "of the films", "brakes the rotor, whose speed is free")
     return Plan(
         theory=films.theory,
         cavitation=case.film.cavitation,

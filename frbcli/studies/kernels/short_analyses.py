@@ -46,8 +46,8 @@ class ShortAnalysis:
 def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
     """Short forms of all analyses that a case can be asked for, of runs, stability, sheets and kinematic tests. Raises
     InputError if the machine cannot be modelled."""
-    if not case.given_bearings:
-        return  # thrust bearings alone need no kernels
+    if not case.given_bearings or (case.given_rotor is None and case.motion is None):
+        return  # thrust and ball bearings alone need no kernels
     if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
         make_plan(case)  # raises the faults of a machine
     found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
@@ -70,6 +70,7 @@ def machine_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, 
         films_change(case),
         case.contact.rough,
         case.start.position,
+        case.drive is not None,
     )
 
 
@@ -81,8 +82,10 @@ def _film_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ..
 
 
 def moment_of_run(case: Case) -> Case:
-    """A case whose run takes a moment, at its last speed."""
+    """A case whose run takes a moment, at its last speed; with a drive from its first one on."""
     duration = max(MOMENT_s, 2 * case.output.step)
+    if case.drive is not None:
+        return case.with_settings(f"drive.duration={duration!r}", f"drive.down_duration={duration!r}")
     end = case.speed.end
     return case.with_settings({"speed": {"from": end, "to": end, "duration": duration}})
 

@@ -12,9 +12,10 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.errors import input_error
 from frbcli.linear.threshold import STABLE, UNSTABLE
+from frbcli.results.records import WHOLE
 from frbcli.studies.sweep.points import NUMBER
 from frbcli.studies.sweep.sweep import Sweep
-from frbcli.studies.sweep.task import FINISHED, NO_WHIRL, ONSET, THRESHOLD, SweepPoint
+from frbcli.studies.sweep.task import NO_WHIRL, ONSET, THRESHOLD, SweepPoint
 
 PERCENTS = (5.0, 25.0, 50.0, 75.0, 95.0)
 SURE = 1.959964  # standard deviations of an interval of 95 %
@@ -88,7 +89,7 @@ def whirl_speed(point: SweepPoint) -> float:
     event = point.first(THRESHOLD) or point.first(ONSET)
     if event is not None:
         return float(event["speed_Hz"])
-    if point.status != FINISHED:
+    if point.status not in WHOLE:
         return math.nan
     if point.message.startswith((STABLE, NO_WHIRL)):
         return math.inf

@@ -12,6 +12,7 @@ from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import threshold_alone
+from frbcli.results.records import SPEED, WHOLE
 from frbcli.runs.run import runup
 
 if TYPE_CHECKING:
@@ -31,8 +32,8 @@ class SweepPoint:
 
     number: from 1; settings: key -> value as text; status: that of its run, or "input-error" (no case, or a file that
     cannot be written), "error" (a bug, or its process died), "interrupted" (not computed yet); message: why, where the
-    status is not "finished", or on which side of the speeds a missing onset or threshold lies; events: as in a run, or
-    the one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.
+    status is not one of WHOLE, or on which side of the speeds a missing onset or threshold lies; events: as in a run,
+    or the one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.
     """
 
     number: int
@@ -83,9 +84,11 @@ def one_line(error: InputError) -> str:
 def _run(task: Task) -> SweepPoint:
     with _run_file(task.run) as path:
         run = runup(task.case, path, resume=True)
-    message = "" if run.status == FINISHED else f"{run.status} at {run.t_end_s:.4g} s"
-    if run.status == FINISHED and not any(event["kind"] == ONSET for event in run.events):
-        message = f"{NO_WHIRL} {max(map(abs, (task.case.speed.start, task.case.speed.end))):.4g} Hz."
+    message = "" if run.status in WHOLE else f"{run.status} at {run.t_end_s:.4g} s"
+    if run.status in WHOLE and not any(event["kind"] == ONSET for event in run.events):
+        given = task.case.speed.start, task.case.speed.end
+        reached = max(map(abs, given)) if task.case.drive is None else float(run[SPEED].max())
+        message = f"{NO_WHIRL} {reached:.4g} Hz."
     point = SweepPoint(task.number, task.settings, run.status, message, tuple(run.events), run.cost)
     return replace(point, run=task.run)
 
