@@ -28,8 +28,9 @@ force: Any = ForceLaw.force  # stands in the template below for that of one law
 @cache
 def compiled_force(law: type[ForceLaw]) -> Any:
     """The C function of a law: of a shipped one kept on disk until its file changes."""
-    shipped, file = law.__module__.startswith(_SHIPPED), inspect.getfile(law)
-    code = _force.__code__.replace(co_filename=file if shipped else __file__)
+    shipped = law.__module__.startswith(_SHIPPED)
+    file = inspect.getfile(law) if shipped else __file__
+    code = _force.__code__.replace(co_filename=file)
     function = FunctionType(code, {**globals(), "force": jitted(law.force)})
     function.__module__ = law.__module__ if shipped else __name__
     function.__qualname__ = f"{law.__qualname__}.{_force.__name__}"

@@ -23,7 +23,7 @@ from paths import ROOT
 from frbcli.cli.main import run as frb
 from frbcli.cli.progress import progress_line
 from frbcli.results.store import Run, read_run
-from frbcli.runs.march import March, Progress
+from frbcli.runs.march import Progress
 from frbcli.units import SpeedUnit
 
 PNG = b"\x89PNG"
@@ -250,15 +250,6 @@ def test_ctrl_c_keeps_the_run_and_resume_finishes_it(whole_run: Run) -> None:
     assert read_run(path).t_end_s == found["t_end_s"]
     assert frb(["runup", *LONG, "-o", str(path), "--resume", "--quiet", "--no-picture"]) == 0
     assert_same(read_run(path), whole_run)
-
-
-def test_ctrl_c_while_kernels_are_made_ready_leaves_no_file(monkeypatch: pytest.MonkeyPatch) -> None:
-    def interrupted(_: March) -> None:
-        raise KeyboardInterrupt
-
-    monkeypatch.setattr(March, "compile", interrupted)
-    assert frb(["runup", *LONG, "-o", "a.h5", "--no-picture"]) == 130
-    assert os.listdir() == []
 
 
 def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> None:

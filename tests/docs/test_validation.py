@@ -15,6 +15,7 @@ from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measu
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_names
+from frbcli.linear.rolling.sheet import ball_bearing_sheet
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
@@ -39,7 +40,7 @@ def planned(name: str, settings: tuple[str, ...]) -> bool:
     if not case.given_bearings:
         return bool(thrust_plan(case))
     if case.given_rotor is None and case.motion is None:
-        return bool(frbcli.ball_bearing_sheet(case, [1000.0], [60.0]).points)
+        return bool(ball_bearing_sheet(case, [1000.0], [60.0]).points)
     if case.motion is None:
         return bool(make_plan(case).decisions)
     test = "rotation" if case.motion.frequency is None else "squeeze"

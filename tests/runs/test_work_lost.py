@@ -23,7 +23,6 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.files.container import USER_BLOCK, seal
-from frbcli.results.store import read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 from frbcli.studies import accuracy as ladder
@@ -91,11 +90,11 @@ def test_a_run_that_has_ended_is_replaced_as_the_readme_s_first_line_needs() -> 
         assert frb(["waterfall", "run.h5", "-o", "waterfall.png", "--window", "10 ms", "--quiet"]) == 0
 
 
-def test_an_interrupted_run_without_samples_is_worth_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_interruption_before_the_first_step_leaves_no_run(monkeypatch: pytest.MonkeyPatch) -> None:
     with monkeypatch.context() as patch:
         patch.setattr(March, "compile", ask_to_end)
         assert frb(["runup", *QUICK, "-o", "run.h5"]) == 130
-    assert read_run("run.h5").status == "interrupted"
+    assert not Path("run.h5").exists()
     assert frb(["runup", *QUICK, "-o", "run.h5", "--no-picture"]) == 0
 
 
