@@ -34,6 +34,7 @@ class ForceLaw(ABC):
     """How a force at a port follows the motion: a class for each kind. `force` is a plain function, compiled with the
     plain functions of its module that it calls, which see floats, arrays and `math`."""
 
+    quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
 
     @property
@@ -50,6 +51,12 @@ class ForceLaw(ABC):
     def memory(self) -> Array:
         """(w,) what an evaluation may leave for the next one to begin with, at first. No result depends on it."""
         return np.zeros(0)
+
+    def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
+        """Further signals of a run, by their quantity: unit and values (k,), from what evaluations at k moments have
+        left (k, w)."""
+        del memories
+        return {}
 
     @staticmethod
     @abstractmethod
@@ -89,11 +96,22 @@ class Port:
             self.law.force(self.law.numbers, self.law.memory.copy(), motion, answer)
         return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
 
-    def along(self, q: Array, v: Array, omega: Array, angle: Array) -> Array:
-        """(k, 2) N on the first node by one element, at displacements q and velocities v (k, n)."""
+    def along(self, q: Array, v: Array, omega: Array, angle: Array) -> tuple[Array, Array]:
+        """(k, 2) N on the first node by one element, at displacements q and velocities v (k, n), and (k, w) what the
+        law has left behind each."""
         from frbcli.rotor.port_function import evaluate_along  # as above
 
         return evaluate_along(self.law, np.column_stack([q @ self.place.T, v @ self.place.T, omega, angle]))
+
+    def signals(self, q: Array, v: Array, omega: Array, angle: Array) -> dict[str, tuple[str, Array]]:
+        """Units and values (k,) of its signals in a run, at displacements q and velocities v (k, n)."""
+        forces, memories = self.along(q, v, omega, angle)
+        found = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
+        part = self.name.removeprefix(self.law.quantity)
+        for quantity, (unit, values) in self.law.inside(memories).items():
+            end = {"": "", "N": "_N", "rad": "_rad", "Pa": "_Pa"}[unit]
+            found[f"{quantity}{part}{end}"] = unit, values
+        return found
 
 
 def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: float = 0.0) -> Array:

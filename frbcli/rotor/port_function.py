@@ -45,12 +45,12 @@ def evaluate(law: ForceLaw, motion: Array) -> Array:
     return answer
 
 
-def evaluate_along(law: ForceLaw, motions: Array) -> Array:
-    """(k, 2) N: the force of a law at motions (k, MOTION) that follow each other."""
-    forces = np.empty((len(motions), 2))
+def evaluate_along(law: ForceLaw, motions: Array) -> tuple[Array, Array]:
+    """(k, 2) N: the force of a law at motions (k, MOTION) that follow each other, and (k, w) what it has left."""
     address, memory = address_of(compiled_force(type(law))), law.memory.copy()
-    _forces(address, law.numbers, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces)
-    return forces
+    forces, left = np.empty((len(motions), 2)), np.empty((len(motions), len(memory)))
+    _forces(address, law.numbers, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces, left)
+    return forces, left
 
 
 def _call_force(typingctx, address, parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
@@ -64,10 +64,14 @@ call_force: Any = intrinsic(_call_force)
 
 
 @compiled()
-def _forces(address: int, numbers: Array, memory: Array, motions: Array, answer: Array, forces: Array) -> None:
+def _forces(
+    address: int, numbers: Array, memory: Array, motions: Array, answer: Array, forces: Array, left: Array
+) -> None:
     for k in range(len(motions)):
         call_force(address, len(numbers), len(memory), numbers, memory, motions[k], answer)
         forces[k, 0], forces[k, 1] = answer[F_X], answer[F_Y]
+        for i in range(len(memory)):
+            left[k, i] = memory[i]
 
 
 def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]

@@ -15,7 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.elements.rolling.force import ball_bearing_force, ball_numbers
-from frbcli.elements.rolling.rest import at_displacement
+from frbcli.elements.rolling.rest import at_displacement, balls_of
 from frbcli.materials.solids import ROLLING, Elastic
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
@@ -31,7 +31,22 @@ class BallForce(ForceLaw):
 
     rings: BallBearing
 
+    quantity: ClassVar[str] = "ball_force"
     turns: ClassVar[bool] = True
+
+    def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
+        of, (at_inner, at_outer) = self.rings.numbers, self.rings.contacts
+        balls = balls_of(of, memories, 0.0)
+        inner, outer = balls.inner_load.max(axis=1), balls.outer_load.max(axis=1)
+        # of a Hertz contact in proportion to the cube root of its load
+        pressure = np.maximum(at_inner.pressure(1.0) * np.cbrt(inner), at_outer.pressure(1.0) * np.cbrt(outer))
+        return {
+            "ball_inner_load": ("N", inner),
+            "ball_outer_load": ("N", outer),
+            "ball_contact_angle": ("rad", np.nan_to_num(balls.inner_angle).max(axis=1)),
+            "ball_pressure": ("Pa", pressure),
+            "balls_apart": ("", (balls.inner_load <= 0.0).sum(axis=1) * (self.rings.balls / of.points)),
+        }
 
     @property
     def numbers(self) -> Array:
@@ -100,7 +115,7 @@ class BallBearingElement(MachineElement):
     @property
     def signal(self) -> str:
         """Name of the signal of its force."""
-        return f"{self.given.name}_ball_force".lstrip("_")
+        return f"{BallForce.quantity}_{self.given.name}".rstrip("_")
 
     @property
     def linear(self) -> LinearPart:

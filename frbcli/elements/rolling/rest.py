@@ -21,7 +21,7 @@ ROUND = 1e-15  # m, below which a deflection is round-off of the places
 @dataclass(frozen=True)
 class Balls:
     """The balls of one row at rest. angles: from the x-axis, rad; inner_angle, outer_angle: contact angles in rad, NaN
-    without contact; inner_load, outer_load: N. All (n,)."""
+    without contact; inner_load, outer_load: N. All but the angles (..., n)."""
 
     angles: Array
     inner_angle: Array
@@ -51,12 +51,13 @@ def at_displacement(bearing: BallBearing, place: Array, omega: float, cage: floa
     z = of.preload if of.held else float(memory[0])
     sums = rings(of, x, y, z, omega, cage, memory)
     force = np.array([f_x, f_y, -sums[2]])
-    return RestingRings(np.array([x, y, z]), force, np.reshape(k, (2, 2)), sums[8], _balls(of, memory, cage))
+    return RestingRings(np.array([x, y, z]), force, np.reshape(k, (2, 2)), sums[8], balls_of(of, memory, cage))
 
 
-def _balls(of: BallNumbers, memory: Array, cage: float) -> Balls:
-    """The balls that the kernel has left in its memory."""
-    a, r, u, v = memory[1:].reshape(of.points, KNOWN)[:, :4].T
+def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
+    """The balls that the kernel has left in its memory (..., w)."""
+    known = memory[..., 1:].reshape(*memory.shape[:-1], of.points, KNOWN)
+    a, r, u, v = np.moveaxis(known[..., :4], -1, 0)
     inner, outer = np.hypot(a - u, r - v) - of.inner, np.hypot(u, v) - of.outer
     inner_load, outer_load = (
         k * np.where(each > ROUND, each, 0.0) ** 1.5 for k, each in ((of.k_inner, inner), (of.k_outer, outer))

@@ -99,8 +99,8 @@ def port_signals(system: System, samples: Samples) -> dict[str, Array]:
     for port in system.rotor.ports:
         speed = samples.rotation.speeds
         angle = samples.rotation.states[2] if port.law.turns else np.zeros(len(speed))
-        forces = port.along(samples.q, samples.v, speed, angle)
-        found |= {f"{port.name}_x_N": forces[:, 0], f"{port.name}_y_N": forces[:, 1]}
+        signals = port.signals(samples.q, samples.v, speed, angle)
+        found |= {name: values for name, (_, values) in signals.items()}
     return found
 
 
@@ -159,7 +159,7 @@ def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
     if rotor.loads:
         left = left - loads_at(rotor.loads, rotor.size, np.asarray(samples.times), angle)
     for port in rotor.ports:
-        left = left - port.count * port.along(samples.q, samples.v, omega, angle) @ port.place
+        left = left - port.count * port.along(samples.q, samples.v, omega, angle)[0] @ port.place
     rows = rotor.journals.reshape(-1, rotor.size) * np.repeat(rotor.multiplicity, 2)[:, None]
     return np.asarray((left @ np.linalg.pinv(rows)).reshape(len(a), len(rotor.journals), 2), dtype=np.float64)
 

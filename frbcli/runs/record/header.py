@@ -9,6 +9,8 @@ from collections.abc import Sequence
 from functools import cache
 from importlib.metadata import PackageNotFoundError, version
 
+import numpy as np
+
 from frbcli.analysis.orders.forced import ForcedLine, forced_references, lines_of_table
 from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
@@ -116,7 +118,9 @@ def pin_signals(system: System, q: Array, v: Array) -> dict[str, Array]:
 
 def port_units(system: System) -> dict[str, str]:
     """Names and units of the signals of forces that are not linear."""
-    return {f"{port.name}_{axis}_N": "N" for port in system.rotor.ports for axis in "xy"}
+    still, zero = np.zeros((1, system.rotor.size)), np.zeros(1)
+    told = (port.signals(still, still, zero, zero) for port in system.rotor.ports)
+    return {name: unit for signals in told for name, (unit, _) in signals.items()}
 
 
 def header(

@@ -135,6 +135,14 @@ def test_balls_pass_in_the_spectrum(tmp_path: Path) -> None:
     late = np.linspace(0.1, 0.5, 8192, endpoint=False)
     spectrum = np.abs(np.fft.rfft((np.interp(late, t, y) - y.mean()) * np.hanning(len(late))))
     spectrum[:3] = 0.0
+    force = np.asarray(run.signal("ball_force_y_N"))
+    assert force.mean() == pytest.approx(LOAD, rel=1e-3)
+    largest, apart = run["ball_inner_load_N"], run["balls_apart"]
+    assert largest.min() > 10.0 / (A["balls"] * math.sin(math.radians(15.0)))  # an even share of the preload
+    assert set(np.unique(apart)) <= set(range(A["balls"]))
+    inner, outer = element.rings.contacts
+    pressures = inner.pressure(float(largest[-1])), outer.pressure(float(run["ball_outer_load_N"][-1]))
+    assert run["ball_pressure_Pa"][-1] == pytest.approx(max(pressures), rel=1e-9)
     strongest = np.argmax(spectrum) / 0.4
     assert strongest == pytest.approx(100.0 * element.rings.pass_outer, abs=2.5)
 
