@@ -15,7 +15,7 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.machine.system import System
 
 LEAST = 3e-5  # of the error: what the interpolation of tables leaves, the same on every mesh
-NO_STIFFNESS = 1e-9  # of omega times the damping: round-off
+SLIGHT = 0.1  # of omega times the damping: stiffness of a film that hardly counts
 DIFFERENCE = 1e-4  # of the gap, and of the velocity that moves the journal by it in 1 / omega
 
 
@@ -141,17 +141,17 @@ def films_at_rest(system: System, omega: float, position: RestingPosition, settl
 
 def coefficient_error(own: FilmForce, others: Sequence[tuple[FilmForce, float]], omega: float) -> float:
     """Expected error of stiffness and damping over the largest entry of each, from the same film on other meshes and
-    the share of the difference that is the error; NaN without others. omega: rad/s of the rotor, at which the film of a
-    damper, which does not turn, has no stiffness beside its damping."""
+    the share of the difference that is the error; NaN without others. omega: rad/s of the rotor. The film of a damper
+    does not turn and has no stiffness but round-off: that error counts over what its damping does at this speed."""
     errors = []
     for first in range(0, len(own.force), 2):  # forces by displacements, moments by tilts
         block = slice(first, first + 2), slice(first, first + 2)
-        least = NO_STIFFNESS * abs(omega) * float(np.abs(own.by_velocity[block]).max())
+        least = SLIGHT * abs(omega) * float(np.abs(own.by_velocity[block]).max())
         for other, share in others:
             for name, nothing in (("by_displacement", least), ("by_velocity", 0.0)):
                 mine, theirs = getattr(own, name)[block], getattr(other, name)[block]
                 size, off = float(np.abs(mine).max()), float(np.abs(mine - theirs).max())
-                errors.append(max(share * off / size, LEAST) if size > nothing else LEAST)
+                errors.append(max(share * off / max(size, nothing), LEAST) if off else LEAST)
     return max(errors, default=math.nan)
 
 
