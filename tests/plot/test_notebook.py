@@ -45,7 +45,7 @@ def test_text_of_everything_is_a_few_lines(case: frbcli.Case, tmp_path: Path) ->
 def test_what_has_no_picture_says_what_has(case: frbcli.Case) -> None:
     with pytest.raises(frbcli.InputError, match=r"Case: has no picture. There are pictures of: AccuracyLadder"):
         picture(case)
-    assert len(PICTURES) == 16
+    assert len(PICTURES) == 17
 
 
 @pytest.mark.parametrize("kind", PICTURES)

@@ -12,6 +12,7 @@ from frbcli.case.rotor import OF_SECTIONS
 from frbcli.case.surroundings.over_time import values_of
 from frbcli.units import ANGLE, SPEED, display
 
+MOST_PADS = 10**6
 ROUND = 1e-9
 FEWEST = 3  # pads of a collar under load
 ONE_SIDE = ("left", "right")
@@ -43,7 +44,9 @@ def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach((*path, "inner_radius"), problem, "Exchange the two radii, or correct them.")
     angle, taper_angle = (number(bearing, key, ANGLE) for key in ("pad_angle", "taper_angle"))
     pads = bearing.get("pads")
-    if isinstance(pads, int) and not isinstance(pads, bool) and angle and pads * angle > 2.0 * math.pi * (1.0 + ROUND):
+    if not isinstance(pads, int) or isinstance(pads, bool) or pads > MOST_PADS:  # has a fault of its own
+        pads = 0
+    if angle and pads * angle > 2.0 * math.pi * (1.0 + ROUND):
         degrees = math.degrees(angle)
         problem = f"makes the pads overlap: {pads} of {degrees:.5g} deg are {pads * degrees:.5g} deg."
         remedy = f'With {pads} pads write at most pad_angle = "{360.0 / pads:.5g} deg", or take fewer pads.'

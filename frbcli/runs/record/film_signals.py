@@ -71,7 +71,7 @@ def film_signals(
     films (Films.end_flows), if these are asked for their oil; warm: what heat has changed.
     """
     found, films = dict[str, Array](), warm or unchanged(system)
-    if samples.noted.size and (system.rotation is not None or any(kind in OF_THE_STEPS for kind in kinds)):
+    if samples.noted.shape[1] and (system.rotation is not None or any(kind in OF_THE_STEPS for kind in kinds)):
         forces = film_forces(system.rotor, samples)
         summits = _summits(system, films, samples)
         torques, powers = _torques(system, films, samples, forces - summits[..., :2])
