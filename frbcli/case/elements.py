@@ -80,7 +80,33 @@ class CoefficientsOverSpeed(Model):
     myy: tuple[MassEntry, ...] = Field(default=(), description="mass")
 
 
-class CoefficientsBearing(Model):
+class BearingWithoutFilm(Model):
+    """A bearing that has no film of its own."""
+
+    pin: ClassVar[None] = None
+
+    @property
+    def films(self) -> tuple[FilmGeometry, ...]:
+        """None, without that of a damper."""
+        return ()
+
+    @property
+    def film_keys(self) -> tuple[str, ...]:
+        """Where its films stand in its table."""
+        return ()
+
+    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
+        """The bearing itself."""
+        assert not films
+        return self
+
+    @property
+    def parts(self) -> tuple[Self, ...]:
+        """The bearing at each of its places along the shaft: itself."""
+        return (self,)
+
+
+class CoefficientsBearing(BearingWithoutFilm):
     """Given coefficients between shaft and ground or support: a force of -K d - C d' - M d'' on the shaft."""
 
     kind: Literal["coefficients"] = Field(description="given stiffness, damping and mass, without a film")
@@ -103,27 +129,6 @@ class CoefficientsBearing(Model):
     over_speed: CoefficientsOverSpeed | None = Field(default=None, description="contents of `file`, written by runs")
     damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
     support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
-    pin: ClassVar[None] = None
-
-    @property
-    def films(self) -> tuple[FilmGeometry, ...]:
-        """None, without that of a damper."""
-        return ()
-
-    @property
-    def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table."""
-        return ()
-
-    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
-        """The bearing itself."""
-        assert not films
-        return self
-
-    @property
-    def parts(self) -> tuple[Self, ...]:
-        """The bearing at each of its places along the shaft: itself."""
-        return (self,)
 
 
 class RollingMaterial(Model):
@@ -163,7 +168,7 @@ AnyPreload = Annotated[
 ]
 
 
-class BallBearingKeys(Model):
+class BallBearingKeys(BearingWithoutFilm):
     """One or two rows of balls between two rings: angular contact, or deep groove."""
 
     kind: Literal["ball"] = Field(description="balls between two rings")
@@ -200,27 +205,6 @@ class BallBearingKeys(Model):
     )
     damper: Damper | None = Field(default=None, description="squeeze film damper around its outer ring")
     support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
-    pin: ClassVar[None] = None
-
-    @property
-    def films(self) -> tuple[FilmGeometry, ...]:
-        """None, without that of a damper."""
-        return ()
-
-    @property
-    def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table."""
-        return ()
-
-    def with_films(self, films: Sequence[FilmGeometry]) -> Self:
-        """The bearing itself."""
-        assert not films
-        return self
-
-    @property
-    def parts(self) -> tuple[Self, ...]:
-        """The bearing at each of its places along the shaft: itself."""
-        return (self,)
 
 
 Element = CoefficientsBearing | BallBearingKeys

@@ -33,13 +33,13 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.rotor.assembly import HeldRotor, held_rotor, whole_rotor
-from frbcli.rotor.port import pushed, tangent
+from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
 ARM = 100.0  # clearances: torques on rings over it count beside forces, and not too much before the speeds are near
-PORT_ITERATIONS = 60
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 
 
@@ -124,31 +124,16 @@ def resting_position(
 def _at_ports(
     system: System, omega: float, start: Array | None, search: Search, beside: RestingPosition | None
 ) -> RestingPosition:
-    """resting_position of a machine with ports: Newton's method for these, each step of which is the rest of the
-    machine with their forces to first order. Its starts are the given one, the centre, and where the static load
-    pushes each port over its length: a stop that nothing touches holds nothing."""
-    ports, q = system.rotor.ports, np.zeros(system.rotor.size)
+    """resting_position of a machine with ports, from the given start, the centre, and where the static load pushes each
+    port over its length: a stop that nothing touches holds nothing."""
+
+    def rest(flat: LinearRotor, q: Array) -> tuple[Array, RestingPosition]:
+        found = resting_position(replace(system, rotor=flat), omega, q, search, None, beside)
+        return found.displacements, found
+
     starts = [] if start is None else [start]
-    starts += [q, pushed(system.rotor)]
-    reason: NotConverged | None = None
-    for q in starts:
-        share = 1.0
-        for iteration in range(PORT_ITERATIONS):
-            flat = replace(system, rotor=tangent(system.rotor, omega, q))
-            try:
-                found = resting_position(flat, omega, q, search, None, beside)
-            except NotConverged as error:
-                reason = reason or error
-                break
-            moved = max(float(np.abs(port.place @ (found.displacements - q)).max()) / port.law.length for port in ports)
-            if moved < search.step:
-                return found
-            share = share if iteration < PORT_ITERATIONS // 2 else 0.5  # steps that go to and fro over a corner
-            q = q + share * (found.displacements - q)
-    raise reason or NotConverged(
-        f"No resting position at {omega / (2 * np.pi):.4g} Hz: the forces of {ports[0].name} do not settle. "
-        "Start a run in the centre."
-    )
+    starts += [np.zeros(system.rotor.size), pushed(system.rotor)]
+    return settled(system.rotor, omega, starts, rest, search.step)
 
 
 def _remedy(system: System, omega: float) -> str:

@@ -22,10 +22,10 @@ from frbcli.errors import NotConverged
 from frbcli.rotor.body import COORDINATES, PLANE, Body
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import LinearPart, Load, bow_load
-from frbcli.rotor.port import ForceLaw, Port, pushed, tangent
+from frbcli.rotor.port import ForceLaw, Port, pushed, settled
 
 GROUND = ""
-HELD, HELD_ITERATIONS = 1e-10, 60  # over the length of a port: where it rests
+HELD = 1e-10  # over the length of a port: where it rests
 
 
 @dataclass(frozen=True)
@@ -193,19 +193,12 @@ def held_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
 
 def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:
     """held_rotor by Newton's method for the ports, from the middle and from where the load pushes them."""
-    places, reason = np.concatenate([port.place for port in rotor.ports]), None
-    for q in (np.zeros(rotor.size), pushed(rotor)):
-        for iteration in range(HELD_ITERATIONS):
-            try:
-                held = held_rotor(tangent(rotor, omega, q, compiled=False), omega)
-            except NotConverged as error:
-                reason = reason or error
-                break
-            step = held.shape - q
-            q = q + (step if iteration < HELD_ITERATIONS // 2 else 0.5 * step)
-            if np.abs(places @ step).max() < HELD * min(port.law.length for port in rotor.ports):
-                return held
-    raise reason or NotConverged(f"No resting position: the forces of {rotor.ports[0].name} do not settle.")
+
+    def rest(flat: LinearRotor, _: Array) -> tuple[Array, HeldRotor]:
+        held = held_rotor(flat, omega)
+        return held.shape, held
+
+    return settled(rotor, omega, (np.zeros(rotor.size), pushed(rotor)), rest, HELD, compiled=False)
 
 
 def preset(rotor: LinearRotor, films: Sequence[int]) -> LinearRotor:

@@ -8,16 +8,20 @@ and for its derivatives alone: they know no kinds of forces.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
 
 from frbcli.arrays import Array
+from frbcli.errors import NotConverged
 
 if TYPE_CHECKING:
     from frbcli.rotor.linear import LinearRotor
 
+Rest = TypeVar("Rest")
+ITERATIONS = 60  # of Newton's method; from half of them on its steps are halved
 D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
 F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
 
@@ -52,10 +56,9 @@ class ForceLaw(ABC):
         """(w,) what an evaluation may leave for the next one to begin with, at first. No result depends on it."""
         return np.zeros(0)
 
-    def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
+    def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:  # noqa: ARG002
         """Further signals of a run, by their quantity: unit and values (k,), from what evaluations at k moments have
         left (k, w)."""
-        del memories
         return {}
 
     @staticmethod
@@ -109,8 +112,7 @@ class Port:
         found = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
         part = self.name.removeprefix(self.law.quantity)
         for quantity, (unit, values) in self.law.inside(memories).items():
-            end = {"": "", "N": "_N", "rad": "_rad", "Pa": "_Pa"}[unit]
-            found[f"{quantity}{part}{end}"] = unit, values
+                found[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
         return found
 
 
@@ -130,6 +132,36 @@ def pushed(rotor: LinearRotor) -> Array:
         if size := float(np.linalg.norm(along)):
             found += port.law.length / size * np.linalg.pinv(port.place) @ along
     return found
+
+
+def settled(
+    rotor: LinearRotor,
+    omega: float,
+    starts: Sequence[Array],
+    rest: Callable[[LinearRotor, Array], tuple[Array, Rest]],
+    step: float,
+    compiled: bool = True,
+) -> Rest:
+    """Where a machine rests with its ports, by Newton's method: each step is the rest of the machine with their forces
+    to first order about displacements (n,), by the function `rest` of that machine and these; it returns its own.
+
+    starts: displacements that are tried in turn; step: over the length of a port, below it the machine rests; compiled:
+    see Port.at. Raises NotConverged, with what `rest` has raised first.
+    """
+    reason: NotConverged | None = None
+    for q in starts:
+        for iteration in range(ITERATIONS):
+            try:
+                there, found = rest(tangent(rotor, omega, q, compiled), q)
+            except NotConverged as error:
+                reason = reason or error
+                break
+            moved = there - q
+            if all(float(np.abs(port.place @ moved).max()) < step * port.law.length for port in rotor.ports):
+                return found
+            q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
+    name = rotor.ports[0].name.replace("_", " ")
+    raise reason or NotConverged(f"No resting position: the {name} does not settle. Start a run in the centre.")
 
 
 def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -> LinearRotor:
