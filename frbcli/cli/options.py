@@ -157,7 +157,7 @@ def signal_option(default: str | None = "journal") -> Callable[[Function], Funct
 
 def over_option(default: str | None) -> Callable[[Function], Function]:
     """Give a command the option --over, the axis of a picture."""
-    words = "Horizontal axis." if default else "Horizontal axis. [time; speed with --order]"
+    words = "Horizontal axis." if default else "Horizontal axis. [speed where it rises or falls all the time]"
     return click.option("--over", type=click.Choice(["time", "speed"]), default=default,
                         show_default=default is not None, help=words)  # fmt: skip
 

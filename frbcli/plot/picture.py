@@ -107,7 +107,7 @@ def fit(
     panels = [axes for axes in figure.axes if axes.get_label() != COLOURS]
     if rpm:
         for axes in panels:
-            for axis in (axes.xaxis, axes.yaxis):
+            for axis in (axes.xaxis, axes.yaxis, *(child.xaxis for child in axes.child_axes)):
                 _per_minute(axis)
     if x_limits is not None:
         for axes in _along(panels):
@@ -130,7 +130,7 @@ def _along(panels: list[Axes]) -> Iterable[Axes]:
 
 def _per_minute(axis: Axis) -> None:
     name = axis.get_label_text()
-    if SPEED in name and axis.get_scale() == "linear":
+    if SPEED in name and axis.get_scale() != "log":
         axis.set_label_text(name.replace(SPEED, PER_MINUTE))
         axis.set_major_locator(_PerMinute(7, steps=[1, 2, 2.5, 5, 10]))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{SECONDS * value:.6g}"))

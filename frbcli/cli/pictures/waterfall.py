@@ -99,36 +99,37 @@ def command(
     with display(terminal, READING):
         run = run_of(run_file, measurement, terminal, relative=orders is None and not view.linear)
     terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
-    axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
-        told = _spectra(terminal, run, signal, axis, view, target)
+        told = _spectra(terminal, run, signal, view, target)
     else:
-        told = _orders(terminal, run, signal, orders, axis, view, target)
+        told = _orders(terminal, run, signal, orders, view.over or "speed", view, target)
     if measurement is not None:
         told["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
             for sentence in about_critical_speeds(run, run.events, terminal.speeds):
                 terminal.sentence(sentence)
-    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
+    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal}
     terminal.emit({**document, "direction": view.direction, **told})
 
 
-def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, target: Path) -> dict[str, Any]:
+def _spectra(terminal: Terminal, run: Run, signal: str, view: View, target: Path) -> dict[str, Any]:
     """Draw spectra, and return their part of the JSON document."""
-    from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
+    from frbcli.plot.spectra.waterfall import LevelScale, natural_axis, reading, run_spectra, waterfall_figure
 
     with display(terminal):
         found = run_spectra(run, signal, view.window, view.direction)
-    scale = LevelScale(view.linear, view.levels, view.lines)
+    scale, axis = LevelScale(view.linear, view.levels, view.lines), view.over or natural_axis(found)
     draw_wanted(
         terminal,
-        lambda: waterfall_figure(run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale),
+        lambda: waterfall_figure(
+            run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale, terminal.speeds
+        ),
         target,
         "waterfall",
     )
     terminal.result(reading(found))
-    return {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+    return {"over": axis, "window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
 
 
 def _orders(
@@ -145,7 +146,7 @@ def _orders(
     for row in rows:
         most = f"{MICRO * row['amplitude_max_m']:.3g} um at {terminal.speeds.words(row['speed_Hz'], 1)}"
         terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
-    return {"orders": rows}
+    return {"over": axis, "orders": rows}
 
 
 def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:
