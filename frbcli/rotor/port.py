@@ -7,9 +7,10 @@ and for its derivatives alone: they know no kinds of forces.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from frbcli.rotor.linear import LinearRotor
 
 Rest = TypeVar("Rest")
+STEP, SLOW = 1e-4, 60.0  # of differences, over the length; rad/s of a vibration of a rotor that hardly turns
 ITERATIONS = 60  # of Newton's method; from half of them on its steps are halved
 D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
 F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
@@ -35,16 +37,19 @@ class PortForce(NamedTuple):
 
 
 class ForceLaw(ABC):
-    """How a force at a port follows the motion: a class for each kind. `force` is a plain function, compiled with the
-    plain functions of its module that it calls, which see floats, arrays and `math`."""
+    """How a force at a port follows the motion: a class for each kind, either with `force` or with `push`. Both are
+    plain functions, compiled with the plain functions of their module that they call, which see floats, arrays and
+    `math`."""
 
     quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
+    units: ClassVar[Mapping[str, str]] = {}  # of the fields of a dataclass as a case gives them, "N/m"; others are numbers
 
     @property
-    @abstractmethod
     def numbers(self) -> Array:
-        """(p,) its parameters, in SI, as `force` takes them."""
+        """(p,) its parameters, in SI, as `force` or `push` take them: by default the fields of the dataclass."""
+        assert is_dataclass(self)
+        return np.array([getattr(self, field.name) for field in fields(self)], dtype=np.float64)
 
     @property
     @abstractmethod
@@ -56,16 +61,60 @@ class ForceLaw(ABC):
         """(w,) what an evaluation may leave for the next one to begin with, at first. No result depends on it."""
         return np.zeros(0)
 
+    @property
+    def parameters(self) -> Array:
+        """(p or p + 1,) what the compiled function takes: its numbers, behind them for `push` its length."""
+        return self.numbers if self.has_derivatives() else np.append(self.numbers, self.length)
+
+    @classmethod
+    def has_derivatives(cls) -> bool:
+        """Whether the law is given by `force`."""
+        return cls.force is not ForceLaw.force
+
+    def plainly(self, motion: Array) -> Array:
+        """(ANSWER,) force and derivatives at a motion (MOTION,) in plain Python, NaN where it cannot be computed."""
+        answer = np.zeros(ANSWER)
+        try:
+            if self.has_derivatives():
+                self.force(self.numbers, self.memory.copy(), motion, answer)
+            else:
+                by_differences(self.push, self, self.length, motion, answer)
+        except (ArithmeticError, ValueError):  # compiled, these are infinities and NaN
+            answer[:] = np.nan
+        return answer
+
     def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:  # noqa: ARG002
         """Further signals of a run, by their quantity: unit and values (k,), from what evaluations at k moments have
         left (k, w)."""
         return {}
 
     @staticmethod
-    @abstractmethod
     def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
         """Fill answer (ANSWER,) with force and derivatives at a motion (MOTION,), see D_X and F_X. numbers (p,), memory
         (w,): see the properties."""
+
+    @staticmethod
+    def push(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, law: Any) -> tuple[float, float]:  # noqa: ARG004
+        """The force alone, F_x and F_y in N on the first node, at a displacement in m, a velocity in m/s and the speed of
+        the rotor in rad/s. law: its fields. Its derivatives are central differences."""
+        return math.nan, math.nan
+
+
+def by_differences(push: Any, law: Any, length: float, motion: Any, answer: Any) -> None:
+    """Fill answer (ANSWER,) with the force `push` and its derivatives at a motion (MOTION,), see ForceLaw. A step is STEP
+    of the length, and of the velocity of a vibration of this size with the rotor."""
+    d_x, d_y, v_x, v_y, omega = motion[D_X], motion[D_Y], motion[V_X], motion[V_Y], motion[SPEED]
+    for i in range(ANSWER):
+        answer[i] = math.nan  # what is left where the function fails
+    f_x, f_y = push(d_x, d_y, v_x, v_y, omega, law)
+    for by in range(4):
+        step = STEP * length * (1.0 if by < 2 else max(abs(omega), SLOW))
+        a, b, c, d = step * (by == 0), step * (by == 1), step * (by == 2), step * (by == 3)
+        x_above, y_above = push(d_x + a, d_y + b, v_x + c, v_y + d, omega, law)
+        x_below, y_below = push(d_x - a, d_y - b, v_x - c, v_y - d, omega, law)
+        place = (XX if by < 2 else V_XX) + by % 2
+        answer[place], answer[place + 2] = (x_above - x_below) / (2.0 * step), (y_above - y_below) / (2.0 * step)
+    answer[F_X], answer[F_Y] = f_x, f_y
 
 
 class Slope(NamedTuple):
@@ -95,8 +144,7 @@ class Port:
 
             answer = evaluate(self.law, motion)
         else:
-            answer = np.zeros(ANSWER)
-            self.law.force(self.law.numbers, self.law.memory.copy(), motion, answer)
+            answer = self.law.plainly(motion)
         return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
 
     def along(self, q: Array, v: Array, omega: Array, angle: Array) -> tuple[Array, Array]:

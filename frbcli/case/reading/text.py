@@ -46,6 +46,8 @@ def _written(value: Any, unit: str | None) -> Any:
         return as_tables(value)
     if isinstance(value, tuple | list):
         return [_written(item, unit) for item in value]
+    if isinstance(value, dict):  # of names that are no keys, with their units
+        return dict(value)
     if unit is None:
         return int(value)
     number = float(value)

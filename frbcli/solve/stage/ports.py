@@ -62,14 +62,14 @@ def make_ports(ports: Sequence[Port]) -> Ports | tuple[()]:
     if not ports:
         return ()
     laws = [port.law for port in ports]
-    sizes = [(len(law.numbers), len(law.memory)) for law in laws]
+    sizes = [(len(law.parameters), len(law.memory)) for law in laws]
     return Ports(
         np.array([address_of(compiled_force(type(law))) for law in laws], dtype=np.int64),
         np.array([port.place for port in ports]),
         np.array([port.count for port in ports]),
         np.array([law.length for law in laws]),
         np.concatenate([np.zeros((1, 2), dtype=np.int64), np.cumsum(sizes, axis=0)]),
-        np.concatenate([law.numbers for law in laws]),
+        np.concatenate([law.parameters for law in laws]),
         np.concatenate([law.memory for law in laws]),
         np.zeros(MOTION),
         np.zeros(ANSWER),
