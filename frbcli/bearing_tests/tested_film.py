@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.bearing_tests.forms.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.forms.short import short_course, short_force, short_moment
 from frbcli.bearing_tests.history import Course, film_course
 from frbcli.bearing_tests.resting import ForceOf, resting_displacement
@@ -18,7 +17,6 @@ from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.tables import SHORT
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
@@ -75,11 +73,6 @@ FILMS: dict[FilmForm, TestedFilm] = {
         partial(_rest, _rubbing(short_force)),
         lambda case, plan, motion: _on_summits(case, motion, short_moment(plan, motion)),
         lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
-    ),
-    GIVEN: TestedFilm(
-        partial(_rest, model_force),
-        lambda case, plan, motion: model_moment(case, plan, motion),
-        lambda case, plan, path, times, _: model_course(case, plan, path, times),
     ),
 }
 

@@ -22,7 +22,6 @@ from frbcli.equilibrium.ring_speed import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
-from frbcli.film.bearing_model.table import label_of
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
 from frbcli.html import Tabular
@@ -57,8 +56,7 @@ class BearingSheet(Tabular):
     @property
     def labels(self) -> tuple[str, ...]:
         """The model of each film in words."""
-        model = self.case.film.bearing_model
-        return tuple(label_of(model) if model else law_named(law).label for law in self.laws)
+        return tuple(law_named(law).label for law in self.laws)
 
     @property
     def columns(self) -> tuple[Column, ...]:

@@ -11,9 +11,7 @@ from typing import Any
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
-from frbcli.case.film_tables import THEORIES
 from frbcli.case.reading.toml import TomlFault, parse
-from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import MOST_MARKED, plain
@@ -102,8 +100,6 @@ def model(run: Run) -> str:
     cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
     if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
         cavitation = ""
-    if isinstance(theory, str) and theory not in THEORIES and _MODEL.fullmatch(theory):
-        return bearing_label(theory)
     words = [label_of(cavitation)]
     given = film.get("cavitation")
     own = (given if isinstance(given, dict) else film).get(cavitation)  # the law's numbers are a table of its name

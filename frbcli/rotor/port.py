@@ -43,7 +43,7 @@ class ForceLaw(ABC):
 
     quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
-    units: ClassVar[Mapping[str, str]] = {}  # of the fields of a dataclass as a case gives them, "N/m"; others are numbers
+    units: ClassVar[Mapping[str, str]] = {}  # of its fields in a case, e.g. "N/m"; others are plain numbers
 
     @property
     def numbers(self) -> Array:
@@ -92,17 +92,18 @@ class ForceLaw(ABC):
     def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
         """Fill answer (ANSWER,) with force and derivatives at a motion (MOTION,), see D_X and F_X. numbers (p,), memory
         (w,): see the properties."""
+        raise NotImplementedError
 
     @staticmethod
     def push(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, law: Any) -> tuple[float, float]:  # noqa: ARG004
-        """The force alone, F_x and F_y in N on the first node, at a displacement in m, a velocity in m/s and the speed of
-        the rotor in rad/s. law: its fields. Its derivatives are central differences."""
+        """The force alone, F_x and F_y in N on the first node, at a displacement in m, a velocity in m/s and the speed
+        of the rotor in rad/s. law: its fields. Its derivatives are central differences."""
         return math.nan, math.nan
 
 
 def by_differences(push: Any, law: Any, length: float, motion: Any, answer: Any) -> None:
-    """Fill answer (ANSWER,) with the force `push` and its derivatives at a motion (MOTION,), see ForceLaw. A step is STEP
-    of the length, and of the velocity of a vibration of this size with the rotor."""
+    """Fill answer (ANSWER,) with the force `push` and its derivatives at a motion (MOTION,), see ForceLaw. A step is
+    STEP of the length, and of the velocity of a vibration of this size with the rotor."""
     d_x, d_y, v_x, v_y, omega = motion[D_X], motion[D_Y], motion[V_X], motion[V_Y], motion[SPEED]
     for i in range(ANSWER):
         answer[i] = math.nan  # what is left where the function fails

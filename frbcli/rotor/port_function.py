@@ -91,7 +91,7 @@ def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[n
     force(carray(numbers, (parameters,)), carray(memory, (kept,)), carray(motion, (MOTION,)), carray(answer, (ANSWER,)))
 
 
-def _pushed(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]  # noqa: ARG001
+def _pushed(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
     """A law without derivatives, whose function stands for force: its fields, and behind them its length."""
     given = carray(numbers, (COUNT + 1,))
     law = Fields(*_first(given, COUNT))

@@ -107,9 +107,7 @@ def turning_cartridges(case: Case) -> tuple[str, ...]:
 
 
 def full_films(case: Case) -> Case:
-    """The case with half-Sommerfeld films, full wherever they carry; a bearing model is kept."""
-    if case.film.bearing_model:
-        return case
+    """The case with half-Sommerfeld films, full wherever they carry."""
     return altered(case, {"film": FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)})
 
 

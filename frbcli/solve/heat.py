@@ -17,7 +17,7 @@ from numba.extending import overload
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.kinds import CELLS, MODELS, kind_of
+from frbcli.solve.films.kinds import CELLS, kind_of
 from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
 from frbcli.solve.stage.contact import feel, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
@@ -133,7 +133,7 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int, until_end: flo
 def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, films, drag, clearances, wet, bodies, since: None
-    if kind_of(films) in (CELLS, MODELS):
+    if kind_of(films) == CELLS:
         return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
             heat, films, drag, clearances, wet, bodies, since
         )
@@ -146,7 +146,7 @@ def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ign
 def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: RUNNING
-    if kind_of(films) in (CELLS, MODELS):
+    if kind_of(films) == CELLS:
         return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
             heat, films, work, turning, journal, bodies, wet, taken, clearances, drag
         )

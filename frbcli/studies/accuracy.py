@@ -87,7 +87,7 @@ def accuracy(
     _check(case, theories, couplings)
     short = _until(case, until)
     own = planned_rung(make_plan(short))
-    fine, coarser = _references(case, own)
+    fine, coarser = _references(own)
     rungs = list(ladder(short, own, theories, couplings))
     numbers = itertools.count(1)
     with TemporaryDirectory(prefix="frb-accuracy-") as folder:
@@ -113,9 +113,9 @@ def accuracy(
     return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
 
 
-def _references(case: Case, own: Rung) -> tuple[Rung, Rung]:
-    """The fine reference of a case with the planned rung `own`, and a coarser one, which tells its error."""
-    *_, best = _theories(case)
+def _references(own: Rung) -> tuple[Rung, Rung]:
+    """The fine reference of the planned rung `own`, and a coarser one, which tells its error."""
+    *_, best = THEORIES
     mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
     fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)
     return fine, replace(fine, mesh=coarse, tolerance=LOOSER * fine.tolerance)
@@ -126,11 +126,6 @@ def _whole(run: Run) -> Run:
     if run.status == INTERRUPTED:
         raise KeyboardInterrupt
     return run
-
-
-def _theories(case: Case) -> tuple[str, ...]:
-    """The theories that a case can be computed with, the most exact one last; a bearing model is one of its own."""
-    return (case.film.bearing_model,) if case.film.bearing_model else THEORIES
 
 
 def planned_rung(plan: Plan) -> Rung:
@@ -145,7 +140,7 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
     rungs: list[Rung] = [own]
     for coupling in couplings or (own.coupling,):
         for tolerance in sorted({min(LOOSEST, factor * own.tolerance) for factor in TOLERANCES}, reverse=True):
-            for theory in theories or _theories(case):
+            for theory in theories or THEORIES:
                 meshes = [_mesh(own, theory, factor) for factor in MESHES]
                 rungs += [Rung(theory, own.cavitation, mesh, tolerance, coupling) for mesh in meshes]
     for rung in dict.fromkeys(rungs):
@@ -161,7 +156,7 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
 def by_theory(case: Case, theories: Sequence[str] = ()) -> list[Case]:
     """A case by each theory of its ladder that can be modelled: theories have kernels of their own."""
     found = []
-    for theory in theories or _theories(case):
+    for theory in theories or THEORIES:
         with suppress(InputError):
             found.append(_with(case, f"film.theory={theory}"))
             make_plan(found[-1])
@@ -256,7 +251,7 @@ def _check(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> Non
     require(case, LADDER)
     faults = [
         Fault(option, name, None, "is not known.", did_you_mean(name, known))
-        for option, names, known in (("--theory", theories, _theories(case)), ("--coupling", couplings, COUPLINGS))
+        for option, names, known in (("--theory", theories, THEORIES), ("--coupling", couplings, COUPLINGS))
         for name in dict.fromkeys(names)
         if name not in known
     ]

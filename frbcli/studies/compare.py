@@ -17,7 +17,6 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged, input_error
-from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import law_named, laws, names
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
@@ -210,10 +209,10 @@ def compare(
 
 def _ended(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
     """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
-    models: laws and bearing models that Python has added are known to this one alone."""
+    models: laws that Python has added are known to this one alone."""
     costs = {task.number: _cost_s(task) for task in tasks}
     shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
-    own = not shipped or any(task.case.film.bearing_model for task in tasks)
+    own = not shipped or any(spring.law for task in tasks for spring in task.case.springs)
     if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
         return in_turn(tasks, tell)
     return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), tell)
@@ -256,8 +255,7 @@ def make_variants(
     thermals: Sequence[str] = (),
 ) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
-    known = (*THEORIES, *(model.name for model in models()))
-    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, known)]
+    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, THEORIES)]
     faults += [*_unknown("--coupling", couplings, COUPLINGS), *_unknown("--thermal", thermals, THERMALS)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
@@ -278,7 +276,7 @@ def make_variants(
     variants = tuple(dict.fromkeys(found))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
-        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "
+        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(THEORIES)}, "
         remedy += f"--coupling {','.join(COUPLINGS)}, --thermal {','.join(THERMALS)}."
         raise input_error(case.name or "case", "comparison", "", problem, remedy)
     return variants

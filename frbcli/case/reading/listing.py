@@ -13,7 +13,6 @@ from frbcli.case.quantities import unit_of
 from frbcli.case.reading.toml import parse
 from frbcli.case.rules.contact_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case
-from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
 
@@ -78,11 +77,9 @@ def _by_place(key: str, found: tuple[Any, ...], written: dict[str, Any]) -> Iter
 
 
 def _is_idle(key: str, case: Case) -> bool:
-    """Whether a key belongs to a cavitation, bearing or contact model that the case does not use."""
+    """Whether a key belongs to a cavitation or contact model that the case does not use."""
     section, _, rest = key.partition(".")
     if section == "contact":
         return rest in (OF_SPRING if case.contact.rough else WITH_DEFAULT)
     model = rest.partition(".")[0]
-    if section == "film" and model in (bearing.name for bearing in bearing_models.models()):
-        return model != case.film.theory
     return section == "film" and model in table.names() and model not in case.cavitations

@@ -122,9 +122,6 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
     ):
         if given:
             raise input_error(case.name, option, ",".join(given), problem, "Leave it out.")
-    if case.film.bearing_model:
-        problem = f"is one model in a {test}: there is nothing to compare it with."
-        raise input_error(case.name, "film.theory", case.film.bearing_model, problem, f"Call `frb {test}`.")
     models = wanted.cavitation or names(law for law in laws() if law.cavitates)
     return run_test(case, test, models, outputs, terminal, compared=True) or 0
 

@@ -10,7 +10,6 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm
 from frbcli.film.rectangles.film_force import FilmData, film_force
@@ -26,11 +25,9 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
 
     d: (n, 2) displacement over the clearance; v: (n, 2) its rate in 1/s; omega: (n,) omega_J + omega_S in rad/s.
     """
-    if isinstance(film, BearingModelFilm):
-        film = film._replace(central=1)
     found = np.empty((len(d), COLUMNS))
     _sample(film, d, v, omega, found)
-    if isinstance(film, PenaltyTableFilm | BearingModelFilm | MeanFilm):
+    if isinstance(film, PenaltyTableFilm | MeanFilm):
         step = DIFFERENCE * np.maximum(np.abs(omega), 1.0)
         ahead, behind = np.empty_like(found), np.empty_like(found)
         _sample(film, d, v, omega + step, ahead)

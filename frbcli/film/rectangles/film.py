@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section, groove_pressure
 from frbcli.film.grid import Mesh
@@ -126,12 +125,7 @@ def none_of(coordinates: int) -> FilmForce:
 
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.
-
-    Derivatives of a bearing model that does not tell them are central differences here.
-    """
-    if isinstance(film, BearingModelFilm):
-        film = film._replace(central=1)
+    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s."""
     d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance
     values = np.array(film_force(film, d[0], d[1], v[0], v[1], omega))
     return FilmForce(values[:2], values[2:6].reshape(2, 2) / clearance, values[6:].reshape(2, 2) / clearance)

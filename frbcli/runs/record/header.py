@@ -16,6 +16,7 @@ from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
+from frbcli.elements.spring import law_record
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS, Header
 from frbcli.rotor.body import PLANE
@@ -25,7 +26,6 @@ from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.changes import loss_times, step_times
 from frbcli.scene.machine.elements import element_parts
-from frbcli.scene.machine.machine_films import model_record
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
 from frbcli.solve.ring_spin import STIFFNESS
@@ -151,7 +151,7 @@ def header(
         units=units,
         versions={PROGRAM: version_of(PROGRAM), "python": platform.python_version()}
         | {package: version_of(package) for package in PACKAGES}
-        | model_record(case),
+        | law_record(case),
         references=({} if system.names else {"length_m": system.length})
         | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}

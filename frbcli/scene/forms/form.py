@@ -72,7 +72,6 @@ class FilmForm:
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     as_exact: ClassVar[float] = 1.0  # share of its cells along that are as exact in a film whose errors are tabulated
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
-    same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
     modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film
     theory_in_tests: ClassVar[str] = "finite"
     parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count

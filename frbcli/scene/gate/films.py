@@ -144,7 +144,7 @@ def sealed_faults(case: Case) -> Iterator[Fault]:
             problem = "lets a cavity reach the ends, where a short bearing clips between the pressures of open ends."
             yield Fault(at, _told(film), None, problem, 'Write film.theory = "finite".')
         elif form.by_cells:
-            yield from _enclosed(case, key, film)
+            yield from _enclosed(key, film)
 
 
 def published_faults(case: Case) -> Iterator[Fault]:
@@ -170,7 +170,7 @@ def published_tilt_faults(case: Case, tilted: bool) -> Iterator[Fault]:
 
 def enclosed_faults(case: Case) -> Iterator[Fault]:
     """Films whose oil is enclosed, in tests, which show their pressure on cells."""
-    return (fault for key, film in _sealed_films(case) for fault in _enclosed(case, key, film))
+    return (fault for key, film in _sealed_films(case) for fault in _enclosed(key, film))
 
 
 def _sealed_films(case: Case) -> Iterator[tuple[str, FilmGeometry]]:
@@ -179,9 +179,9 @@ def _sealed_films(case: Case) -> Iterator[tuple[str, FilmGeometry]]:
             yield key, place.geometry
 
 
-def _enclosed(case: Case, key: str, film: FilmGeometry) -> Iterator[Fault]:
+def _enclosed(key: str, film: FilmGeometry) -> Iterator[Fault]:
     """Oil that does not come in or leave has the pressure that it was enclosed with."""
-    if film.sealed < ENCLOSED and not film.supply.feeds and not case.film.bearing_model:
+    if film.sealed < ENCLOSED and not film.supply.feeds:
         problem = "encloses the oil, for nothing feeds the film: the level of its pressure is that of its filling."
         remedy = f"Give it a supply, or a share of at least {ENCLOSED:g}; runs with half-sommerfeld take any."
         yield Fault(f"{key}.ends", _told(film), None, problem, remedy)

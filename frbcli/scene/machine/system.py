@@ -20,7 +20,6 @@ from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
-from frbcli.scene.forms.models import chosen_model
 from frbcli.scene.machine.machine_films import make_films
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.planned import Plan
@@ -200,7 +199,5 @@ def rubbing_of(case: Case) -> Rubbing:
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:
-    """eta R^3 B / C of a whole bearing in N m s, see System; of a bearing model the share of it that it is sheared."""
-    model = chosen_model(case)
-    sheared = 1.0 if model is None else model.sheared
-    return sheared * case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance
+    """eta R^3 B / C of a whole bearing in N m s, see System."""
+    return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance

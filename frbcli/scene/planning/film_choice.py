@@ -16,7 +16,6 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS, CellForm
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.inclined import INCLINED
-from frbcli.scene.forms.models import GIVEN, WHY
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
@@ -66,8 +65,6 @@ def form_of(case: Case) -> FilmForm:
         return NO_FILM
     if case.film.tilt == "follows":
         return TILTED
-    if case.film.bearing_model:
-        return GIVEN
     if any(misaligned(case)):
         return INCLINED
     if _on_volumes(case):
@@ -77,18 +74,13 @@ def form_of(case: Case) -> FilmForm:
 
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
-    choices = {NO_FILM: _no_film, GIVEN: _given, SOLUTIONS: _solutions}
+    choices = {NO_FILM: _no_film, SOLUTIONS: _solutions}
     choices |= {CELLS: _volumes, TILTED: _volumes, INCLINED: _volumes}
     return choices.get(form_of(case), _rectangles)(case, target)
 
 
 def _no_film(_: Case, __: float) -> FilmChoice:
     return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
-
-
-def _given(case: Case, _: float) -> FilmChoice:
-    each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
-    return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
 
 
 def _volumes(case: Case, target: float) -> FilmChoice:
@@ -145,8 +137,6 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
 
 def all_clipped(case: Case) -> bool:
     """Whether every film is the clipped solution of a linear equation."""
-    if case.film.bearing_model:
-        return False
     return all(law_named(model).closed for model in case.cavitations)
 
 

@@ -10,7 +10,6 @@ from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient, whole_width
@@ -18,7 +17,6 @@ from frbcli.nearest import did_you_mean
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.tables import MODAL, SHORT
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
@@ -60,7 +58,6 @@ class KinematicPlan:
     steps: int = STEPS_PER_PERIOD
     turning: float = 0.0
     ramp: float = 0.0
-    model: BearingModel | None = None
 
     @property
     def law(self) -> type[Law]:
@@ -74,13 +71,13 @@ class KinematicPlan:
 
     @property
     def theory(self) -> str:
-        """The theory of the film, or the name of its bearing model."""
-        return self.form.theory_in_tests if self.model is None else self.model.name
+        """The theory of the film."""
+        return self.form.theory_in_tests
 
     @property
     def label(self) -> str:
-        """The label of the cavitation law, or of the bearing model."""
-        return label_of(self.cavitation) if self.model is None else self.model.label
+        """The label of the cavitation law."""
+        return label_of(self.cavitation)
 
     @property
     def modal(self) -> bool:
@@ -98,10 +95,9 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
 
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """
-    model = case.film.bearing_model
-    asked = cavitation or ("" if model else tested_case(case).film.cavitation)
-    case = with_model(case, asked) if asked in names() and not model else case
-    require(case, test, _name_faults(case, asked))
+    asked = cavitation or tested_case(case).film.cavitation
+    case = with_model(case, asked) if asked in names() else case
+    require(case, test, _name_faults(asked))
     case = tested_case(case)
     bearing, motion = case.bearings[0], case.motion
     assert motion is not None
@@ -117,16 +113,12 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     if own is None:
         section = ends_at_ambient(section) if law.closed and film.ends == "free-to-air" else section
     steps = () if test == ROTATION else (Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"),)
-    chosen = chosen_model(case)
-    if chosen is not None:
-        decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
-    else:
-        decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
+    decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
     if (summits := case.contact.about_summits) is not None:
         decisions += (Decision("contact", *summits),)
     return KinematicPlan(
         test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
-        turning=turning, ramp=film.supply.rise_time, model=chosen,
+        turning=turning, ramp=film.supply.rise_time,
     )  # fmt: skip
 
 
@@ -141,18 +133,13 @@ def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
     return make_law(case, plan.cavitation, plan.section).followed(eccentricity, plan.rate)
 
 
-def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
+def _name_faults(cavitation: str) -> Iterator[Fault]:
     """Faults of the cavitation model that is asked for."""
-    if case.film.bearing_model and cavitation:
-        problem = f"has no effect on film.theory = {case.film.theory}, a bearing model."
-        yield Fault("--cavitation", cavitation, None, problem, "Leave it out.")
-    elif not case.film.bearing_model and cavitation not in names():
+    if cavitation not in names():
         yield Fault("--cavitation", cavitation, None, "is no model.", did_you_mean(cavitation, names()))
 
 
 def _form(case: Case, rectangle: Section | None) -> FilmForm:
-    if (form := form_of(case)).same_in_tests:
-        return form
     if case.film.theory == "short":
         return SHORT
     on_cells = rectangle is None or tilts(case) or case.contact.flow_factors

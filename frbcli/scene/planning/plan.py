@@ -20,7 +20,6 @@ from frbcli.scene.costs.cost import clock
 from frbcli.scene.costs.resolution import reference_length, resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
-from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
 from frbcli.scene.inputs import drive_decisions, input_decisions
@@ -172,18 +171,12 @@ def _plan(case: Case, target: float) -> Plan:
 
 def _decide_films(case: Case, films: FilmChoice, decide: Decide) -> str:
     """The films: their models, supply and form, and the coupling of rotor and films, which is returned."""
-    model = chosen_model(case)
-    if model is None:
-        _decide_models(case, films, decide)
-    else:
-        for decided in model_decisions(model):
-            decide(*decided)
+    _decide_models(case, films, decide)
     for film in unfed_films(case):
         decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
     coupling, reason = plan_coupling(case)
     decide("coupling", coupling, reason)
-    if model is None:
-        _decide_form(case, films, decide)
+    _decide_form(case, films, decide)
     return coupling
 
 

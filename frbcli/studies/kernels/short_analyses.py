@@ -78,7 +78,7 @@ def _film_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ..
     """What determines the kernels of the films of a machine and of their heat."""
     chosen = tuple(made.value for made in decisions if made.choice in COMPILED_FOR)
     heat = None if case.heat is None else case.heat.side_flow
-    return *chosen, form_of(case), heat, case.output.signals, case.film.bearing_model
+    return *chosen, form_of(case), heat, case.output.signals
 
 
 def moment_of_run(case: Case) -> Case:

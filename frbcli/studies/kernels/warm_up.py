@@ -112,9 +112,9 @@ def warm_up(cases: Iterable[Case] = (), jobs: int = -1, observe: Observer | None
 
 def _compiled(families: Sequence[Sequence[ShortAnalysis]], jobs: int) -> Generator[list[Compiled], None, None]:
     """What each analysis compiled, as it is known: family by family from processes, whose kernels are apart, so that no
-    two of them compile the same; one by one in this process, which alone has the bearing models that were added."""
-    models = any(short.case.film.bearing_model for members in families for short in members)
-    if jobs == 1 or len(families) == 1 or models:
+    two of them compile the same; one by one in this process, which alone has the force laws that were added."""
+    laws = any(spring.law for members in families for short in members for spring in short.case.springs)
+    if jobs == 1 or len(families) == 1 or laws:
         for members in families:
             for short in members:
                 yield [_compile(short)]

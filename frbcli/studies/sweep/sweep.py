@@ -120,7 +120,7 @@ def sweep(
     _check_method(method)
     check_workers(workers)
     cases = _cases(case, settings)
-    _check_models(cases, workers)
+    _check_laws(cases, workers)
     folder = Path(directory).absolute()
     runs = folder / RUNS if keep_runs and method == "runup" else None
     _make(runs or folder)
@@ -237,11 +237,11 @@ def _case(case: Case, chosen: Settings) -> Case | InputError:
     return its_case
 
 
-def _check_models(cases: Sequence[Case | InputError], workers: Workers) -> None:
-    """Raises InputError for bearing models that the processes of a sweep do not have."""
-    models = {each.film.bearing_model for each in cases if isinstance(each, Case)} - {""}
-    if models and (workers.jobs != 1 or workers.backend != "loky"):
-        problem = f"start processes that do not have the bearing model {min(models)} of this process."
+def _check_laws(cases: Sequence[Case | InputError], workers: Workers) -> None:
+    """Raises InputError for force laws that the processes of a sweep do not have."""
+    laws = {spring.law for each in cases if isinstance(each, Case) for spring in each.springs} - {""}
+    if laws and (workers.jobs != 1 or workers.backend != "loky"):
+        problem = f"start processes that do not have the force law {min(laws)} of this process."
         raise refused("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
 
 
