@@ -19,8 +19,8 @@ def complete_case(_: click.Context, __: click.Parameter, incomplete: str) -> lis
     """Shipped cases that begin so, then files."""
     from frbcli.case.reading.shipped import shipped_names
 
-    found = [CompletionItem(name) for name in shipped_names() if name.startswith(incomplete)]
-    return [*found, CompletionItem(incomplete, type="file")]
+    shipped = [CompletionItem(name) for name in shipped_names() if name.startswith(incomplete)]
+    return [*shipped, CompletionItem(incomplete, type="file")]
 
 
 def complete_key(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:

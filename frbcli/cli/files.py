@@ -67,15 +67,15 @@ def note_read(path: Path, context: click.Context | None) -> None:
 
 
 def force_option(
-    words: str = "Replace files that frb did not write.", told: bool = False
+    words: str = "Replace files that frb did not write.", exposed: bool = False
 ) -> Callable[[Function], Function]:
-    """Give a command the option --force; told: it receives `force: bool`."""
+    """Give a command the option --force; exposed: it receives `force: bool`."""
 
     def remember(context: click.Context, _: click.Parameter, force: bool) -> bool:
         context.meta[_FORCE] = force
         return force
 
-    return click.option("--force", is_flag=True, is_eager=True, expose_value=told, callback=remember, help=words)
+    return click.option("--force", is_flag=True, is_eager=True, expose_value=exposed, callback=remember, help=words)
 
 
 def forced() -> bool:

@@ -222,19 +222,19 @@ def run(arguments: Sequence[str]) -> int:
     except click.ClickException as wrong_usage:
         if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
             wrong_usage = click.UsageError(f"{wrong_usage.format_message()} {NO_CASE}", wrong_usage.ctx)
-        told = io.StringIO()
-        wrong_usage.show(told)
-        _tell(told.getvalue().rstrip("\n"))
+        message = io.StringIO()
+        wrong_usage.show(message)
+        _show(message.getvalue().rstrip("\n"))
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
-        return _tell_error(arguments, error)
+        return _show_error(arguments, error)
     except Exception as error:
         del spare
         known = _of_files(error) or shortage(error)
         if known is None:
             raise
-        return _tell_error(arguments, known)
+        return _show_error(arguments, known)
     return code if isinstance(code, int) else 0
 
 
@@ -251,7 +251,7 @@ def _of_files(error: Exception) -> FrbError | None:
     return input_error(f"file {name}", "file", "", f"cannot be used: {error.strerror}.", "Check path and permissions.")
 
 
-def _tell(text: str) -> None:
+def _show(text: str) -> None:
     """Write an error; on a terminal in lines that fit it, elsewhere a line for each fault."""
     lines = printable(text).split("\n")
     if sys.stderr.isatty():
@@ -261,8 +261,8 @@ def _tell(text: str) -> None:
     click.echo("\n".join(lines), err=True)
 
 
-def _tell_error(arguments: Sequence[str], error: FrbError) -> int:
-    _tell(f"frb: {error}")
+def _show_error(arguments: Sequence[str], error: FrbError) -> int:
+    _show(f"frb: {error}")
     _emit_error(arguments, error)
     return error.exit_code
 

@@ -31,14 +31,14 @@ class QuantityOption(click.ParamType[float]):
         with suppress(ValueError):  # then it has a unit
             value = float(str(value))
         try:
-            found = quantity(value, self.unit, self.example)
+            number = quantity(value, self.unit, self.example)
         except ValueError as fault:
             self.fail(f"{value!r} {fault}", param, ctx)
         if self.unit == "Hz" and ctx is not None and is_per_minute(value):
             ctx.meta[PER_MINUTE] = True
-        if self.positive and found <= 0.0:
+        if self.positive and number <= 0.0:
             self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
-        return found
+        return number
 
 
 @dataclass(frozen=True)

@@ -125,11 +125,11 @@ def _animate(
     check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
     run = read_run(run_file)
     with display(terminal, "Drawing.") as shown:
-        tell = shown.counting("frame ")
+        observe = shown.counting("frame ")
         if what == "film":
-            animate_films(run, target, film, *span, observe=tell, force=forced())
+            animate_films(run, target, film, *span, observe=observe, force=forced())
         else:
-            animate_orbits(run, target, *span, observe=tell, force=forced())
+            animate_orbits(run, target, *span, observe=observe, force=forced())
     terminal.result(f"{what}: {target}")
     terminal.emit({"command": "plot", "run": run_file, "output": target, "what": what})
 

@@ -101,17 +101,17 @@ def command(
     terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
     axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
-        told = _spectra(terminal, run, signal, axis, view, target)
+        drawn = _spectra(terminal, run, signal, axis, view, target)
     else:
-        told = _orders(terminal, run, signal, orders, axis, view, target)
+        drawn = _orders(terminal, run, signal, orders, axis, view, target)
     if measurement is not None:
-        told["events"] = run.events
+        drawn["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
             for sentence in about_critical_speeds(run, run.events, terminal.speeds):
                 terminal.sentence(sentence)
     document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
-    terminal.emit({**document, "direction": view.direction, **told})
+    terminal.emit({**document, "direction": view.direction, **drawn})
 
 
 def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, target: Path) -> dict[str, Any]:
@@ -119,16 +119,16 @@ def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, 
     from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
 
     with display(terminal):
-        found = run_spectra(run, signal, view.window, view.direction)
+        levels = run_spectra(run, signal, view.window, view.direction)
     scale = LevelScale(view.linear, view.levels, view.lines)
     draw_wanted(
         terminal,
-        lambda: waterfall_figure(run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale),
+        lambda: waterfall_figure(run, axis, signal, view.cascade, view.window, view.direction, view.log, levels, scale),
         target,
         "waterfall",
     )
-    terminal.result(reading(found))
-    return {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+    terminal.result(reading(levels))
+    return {"window_s": levels.window_s, "synchronous_low_dB": float(levels.low_dB.max())}
 
 
 def _orders(

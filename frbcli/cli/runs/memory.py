@@ -40,9 +40,9 @@ def shortage(error: BaseException) -> OutOfMemory | None:
     if not isinstance(error, MemoryError) and _allowed() > SUSPECT * _enough():
         return None
     reason = " ".join(str(error).split())[:LONGEST_REASON]
-    told = f"out of memory ({reason})." if reason else "out of memory."
+    cause = f"out of memory ({reason})." if reason else "out of memory."
     remedy = "Allow more, or ask for less: fewer cells (accuracy.mesh), fewer samples (output.step)."
-    return OutOfMemory(f"{told}{_limits()} {remedy}")
+    return OutOfMemory(f"{cause}{_limits()} {remedy}")
 
 
 def _limits() -> str:

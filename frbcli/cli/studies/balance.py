@@ -95,17 +95,17 @@ def command(
     if run.case_text:
         terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
     with _progress(terminal, run, tried):
-        found = balance(run, planes, speeds or None, points or None, tried, triggered)
-    _tell(terminal, found)
+        balancing = balance(run, planes, speeds or None, points or None, tried, triggered)
+    _show(terminal, balancing)
     if csv is not None:
         from frbcli.results.files.write import write_table
 
-        write_table(found.to_pandas(), csv, forced())
+        write_table(balancing.to_pandas(), csv, forced())
         terminal.result(f"table: {csv}")
-    terminal.emit(document(found, run_file) | {"csv": csv})
+    terminal.emit(document(balancing, run_file) | {"csv": csv})
 
 
-def document(found: Balancing, run_file: Path) -> dict[str, object]:
+def document(balancing: Balancing, run_file: Path) -> dict[str, object]:
     """As JSON."""
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import documents
@@ -113,14 +113,14 @@ def document(found: Balancing, run_file: Path) -> dict[str, object]:
     return {
         "command": "balance",
         "run": run_file,
-        "status": found.status,
-        "influence": "trials" if found.trials else "computed",
-        "planes": found.table().documents(),
-        "residual": found.residual,
-        "condition": found.condition,
-        "speeds_Hz": found.speeds_Hz,
-        "points": documents(POINTS, found.points),
-        "doubts": found.doubts,
+        "status": balancing.status,
+        "influence": "trials" if balancing.trials else "computed",
+        "planes": balancing.table().documents(),
+        "residual": balancing.residual,
+        "condition": balancing.condition,
+        "speeds_Hz": balancing.speeds_Hz,
+        "points": documents(POINTS, balancing.points),
+        "doubts": balancing.doubts,
     }
 
 
@@ -153,26 +153,27 @@ def _progress(terminal: Terminal, run: Run, trials: Sequence[TrialRun]) -> Any:
     return computing(terminal, load_case_text(run.case_text, name=run.case_name), kernels="rest")
 
 
-def _tell(terminal: Terminal, found: Balancing) -> None:
+def _show(terminal: Terminal, balance: Balancing) -> None:
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import table_of
 
-    for doubt in found.doubts:
+    for doubt in balance.doubts:
         terminal.sentence(f"Doubtful: {doubt}")
-    terminal.show(f"{found.run.title}: {'doubtful ' if found.doubts else ''}corrections", found.table())
-    zero = "the trial unbalances" if found.trials else "`phase` of a disk"
+    terminal.show(f"{balance.run.title}: {'doubtful ' if balance.doubts else ''}corrections", balance.table())
+    zero = "the trial unbalances" if balance.trials else "`phase` of a disk"
     terminal.sentence(
         "Add the correction: it is opposite to the unbalance. Angles are on the rotor, in the sense of rotation, from "
         f"the zero of {zero}."
     )
-    rows = found.points
+    rows = balance.points
     table = table_of(POINTS, rows[-MOST_ROWS:])
     terminal.show("Synchronous amplitudes, and as expected with the corrections", table)
     if len(rows) > MOST_ROWS:
         terminal.result(f"The last {MOST_ROWS} of {len(rows)}: --json has all.")
     vectors = 2 * len(rows)
-    by = "trial runs" if found.trials else "the linear response of the case"
+    by = "trial runs" if balance.trials else "the linear response of the case"
     terminal.sentence(
-        f"Residual {100.0 * found.residual:.2g} % of {vectors} vectors at {terminal.speeds.listed(found.speeds_Hz)}; "
-        f"condition number {found.condition:.3g}; influence coefficients of {by}."
+        f"Residual {100.0 * balance.residual:.2g} % of {vectors} vectors at "
+        f"{terminal.speeds.listed(balance.speeds_Hz)}; condition number {balance.condition:.3g}; "
+        f"influence coefficients of {by}."
     )

@@ -58,13 +58,13 @@ def measured_options(function: Function) -> Function:
         "time-unit": ({"type": _UNITS["time"]}, "Unit of the times. [of the file, or 1 s]"),
         "speed-unit": ({"type": _UNITS["speed"]}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
     }
-    told: Any = function
-    told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
-                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(told)  # fmt: skip
+    command: Any = function
+    command = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
+                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(command)  # fmt: skip
     for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
         kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
-        told = click.option(f"--{name}", help=meaning, **kind)(told)
-    return told  # type: ignore[no-any-return]
+        command = click.option(f"--{name}", help=meaning, **kind)(command)
+    return command  # type: ignore[no-any-return]
 
 
 def show_columns(path: Path, terminal: Terminal) -> None:
