@@ -242,12 +242,12 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
     return ax
 
 
-def campbell(found: Stability, ax: Axes | None = None) -> Axes:
+def campbell(analysis: Stability, ax: Axes | None = None) -> Axes:
     """Draw damped eigenfrequencies in Hz over the rotor speed; filled dots grow.
 
     Parameters
     ----------
-    found : Stability
+    analysis : Stability
         See `stability`.
     ax : as of `draw_eccentricity`
 
@@ -263,18 +263,18 @@ def campbell(found: Stability, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_campbell(frbcli.stability(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_frequencies(ax, [point for point in found.sweep if point.rests])
+    draw_frequencies(ax, [point for point in analysis.sweep if point.rests])
     ax.set_xlabel("rotor speed in Hz")
     legend_beside(ax)
     return ax
 
 
-def response(found: Response, ax: Axes | None = None) -> Axes:
+def response(motion: Response, ax: Axes | None = None) -> Axes:
     """Draw the amplitudes of all points over the rotor speed, dotted where a whirl grows.
 
     Parameters
     ----------
-    found : Response
+    motion : Response
         See `response`.
     ax : as of `draw_eccentricity`
 
@@ -290,7 +290,7 @@ def response(found: Response, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_response(frbcli.response(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_amplitude(ax, found)
+    draw_amplitude(ax, motion)
     legend_beside(ax)
     return ax
 

@@ -64,8 +64,8 @@ def picture(result: object) -> Picture:
     Examples
     --------
     >>> import frbcli
-    >>> found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
-    >>> figure = frbcli.picture(found)
+    >>> analysis = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
+    >>> figure = frbcli.picture(analysis)
     >>> len(figure.axes)
     2
     """
@@ -75,8 +75,8 @@ def picture(result: object) -> Picture:
         problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
         raise input_error("picture", type(result).__name__, "", problem, remedy)
     module, _, name = place.partition(":")
-    found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
-    return found
+    figure: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
+    return figure
 
 
 SECONDS = 60.0  # of a minute

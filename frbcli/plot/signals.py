@@ -80,8 +80,8 @@ def clearance(run: Run, bearing: str = "") -> float:
 
 def shell(run: Run, bearing: str = "") -> float | None:
     """The clearance of a bearing in m, None of one without a film, where no shell is drawn."""
-    told = any(True for _ in films(run.signals))  # a measured run may not say where it has films
-    room = in_film(run, bearing) if told else "length_m" not in run.references
+    has_films = any(True for _ in films(run.signals))  # a measured run may not say where it has films
+    room = in_film(run, bearing) if has_films else "length_m" not in run.references
     return clearance(run, bearing) if room else None
 
 
@@ -140,13 +140,13 @@ def events(run: Run) -> list[dict[str, Any]]:
 def uncertain_times(run: Run) -> list[tuple[float, float]]:
     """Time in s of each event with an uncertainty, and how much earlier or later it may be, from its uncertainty in the
     rotor speed; none of those at a constant speed."""
-    found = []
+    uncertain = []
     for event in run.events[:MOST_MARKED]:
         uncertainty, t = event.get("speed_uncertainty_Hz"), event["t_s"]
         before, after = (speed_at(run, time) for time in (t - RAMP_s, t + RAMP_s))
         if uncertainty and after != before:
-            found.append((t, min(uncertainty * 2.0 * RAMP_s / abs(after - before), ends(run)[1])))
-    return found
+            uncertain.append((t, min(uncertainty * 2.0 * RAMP_s / abs(after - before), ends(run)[1])))
+    return uncertain
 
 
 def is_searchable(run: Run) -> bool:

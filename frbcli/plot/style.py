@@ -113,7 +113,7 @@ DIRECTION = re.compile(r"\b(force|stiffness|damping|spring|misalignment)\.([01])
 
 def name_of_key(key: str, unit: str = "") -> str:
     """A key of the case file in words, for an axis, with its unit: oil viscosity in mPa s, force 0 force x in N."""
-    key = DIRECTION.sub(lambda found: f"{found[1]}.{'xy'[int(found[2])]}", key)
+    key = DIRECTION.sub(lambda match: f"{match[1]}.{'xy'[int(match[2])]}", key)
     words = " ".join(word for word in re.split(r"[._]", key) if word)
     return plain(f"{words} in {in_words(unit)}" if unit else words)
 

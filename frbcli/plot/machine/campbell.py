@@ -42,9 +42,9 @@ def campbell_figure(stability: Stability) -> Figure:
 
 def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     """Damped eigenfrequencies of the points with films, with bars of their expected errors."""
-    told = [(point.speed_Hz, *mode) for point in points for mode in point.modes_with_errors]
-    speeds, errors = (np.array([row[column] for row in told], dtype=float) for column in (0, 2))
-    values = np.array([value for _, value, _ in told], dtype=complex)
+    rows = [(point.speed_Hz, *mode) for point in points for mode in point.modes_with_errors]
+    speeds, errors = (np.array([row[column] for row in rows], dtype=float) for column in (0, 2))
+    values = np.array([value for _, value, _ in rows], dtype=complex)
     frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0
     fastest = max((point.speed_Hz for point in points), default=1.0)
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]

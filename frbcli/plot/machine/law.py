@@ -86,11 +86,11 @@ def _draw_models(axes: Axes, case: Case) -> None:
 
 def _compared(law: type[Law], given: Any) -> list[Any]:
     """The values of the case for the keys of a law, and others for those which the law compares, sorted by these."""
-    found = [given]
+    variants = [given]
     for key, values in law.compared:
         others = {*values, getattr(given, key)}
-        found = [altered(one, {key: value}) for one in found for value in sorted(others)]
-    return found
+        variants = [altered(one, {key: value}) for one in variants for value in sorted(others)]
+    return variants
 
 
 def _draw(axes: Axes, number: int, pressure: Array, fraction: Array, label: str, own: bool) -> None:

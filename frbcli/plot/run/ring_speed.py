@@ -63,10 +63,10 @@ def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
     """A dashed line for each ratio of concentric surfaces, with the ring that has it where they differ."""
     for value in sorted(set(concentric.values())):
         alike = [name for name, own in concentric.items() if own == value]
-        told = alike[0] if len(alike) < len(concentric) else ""
+        ring = alike[0] if len(alike) < len(concentric) else ""
         axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
         axes.annotate(
-            " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
+            " ".join(word for word in ("concentric", ring) if word) + f" {value:.3f}",
             (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
             ha="right", va="bottom", color=GREY, bbox=PAPER,
         )  # fmt: skip

@@ -35,7 +35,7 @@ CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one belo
 
 
 def speeds_figure(
-    run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal",
+    run: Run, times_s: Sequence[float], spectra: Spectrogram, signal: str = "journal",
     words: Callable[[float], str] = "{:.4g} Hz".format,
 ) -> Figure:  # fmt: skip
     """A row for each of some moments in s: the orbit of the last revolutions until then, and the spectrum of the
@@ -48,7 +48,7 @@ def speeds_figure(
         rows = figure.subplots(len(times_s), 2, squeeze=False, width_ratios=(1.0, 2.0))
         for (left, right), time_s in zip(rows, times_s, strict=True):
             draw_orbit_until(left, run, time_s, signal)
-            draw_spectrum_at(right, run, time_s, found, signal)
+            draw_spectrum_at(right, run, time_s, spectra, signal)
             left.set_title(f"{words(speed_at(run, time_s))}, {time_s:.4g} s")
     return figure
 
@@ -91,17 +91,17 @@ def between(part: Signal, first: int, last: int, times: int) -> Values:
     return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - BESIDE - 1) * times + 1])
 
 
-def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, signal: str = "journal") -> None:
+def draw_spectrum_at(axes: Axes, run: Run, time_s: float, spectra: Spectrogram, signal: str = "journal") -> None:
     """Peak amplitudes over frequency of the spectrum nearest to a time in s, with the frequencies of interest."""
-    column = int(np.argmin(np.abs(found.time_s - time_s)))
-    speed = abs(float(found.speed_Hz[column]))
-    highest = min(float(found.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / found.window_s))
-    kept = found.frequency_Hz <= highest
-    axes.plot(found.frequency_Hz[kept], MICRO * found.amplitude[kept, column], color=BLUE)
+    column = int(np.argmin(np.abs(spectra.time_s - time_s)))
+    speed = abs(float(spectra.speed_Hz[column]))
+    highest = min(float(spectra.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / spectra.window_s))
+    kept = spectra.frequency_Hz <= highest
+    axes.plot(spectra.frequency_Hz[kept], MICRO * spectra.amplitude[kept, column], color=BLUE)
     if highest > 0.0:
         axes.set_xlim(0.0, highest)
     axes.set_ylim(bottom=0.0)
-    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, found))
+    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, spectra))
     last, lower = -np.inf, 0.0
     for at, name in lines:
         if 0.0 < at < highest:
@@ -117,14 +117,14 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, si
 def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
     """The first time in s at which the rotor turns as fast as each of some speeds; those it does not reach are left
     out."""
-    found = []
+    times = []
     for wanted in speeds_Hz:
         before = 0.0
         for start, stop in pieces(0, len(run)):
             speed = np.abs(run.read(SPEED, start, stop))
             reached = np.flatnonzero((speed >= abs(wanted)) & (before <= abs(wanted)))
             if len(reached):
-                found.append(float(run.read("time_s", start + int(reached[0]), start + int(reached[0]) + 1)[0]))
+                times.append(float(run.read("time_s", start + int(reached[0]), start + int(reached[0]) + 1)[0]))
                 break
             before = float(speed[-1])
-    return found
+    return times
