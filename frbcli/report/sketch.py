@@ -61,20 +61,20 @@ class _SketchScale:
 def rotor_sketch(case: Case) -> tuple[str, str]:
     """(drawing along the axis, a sentence about what is not to scale, and one about arrows)."""
     if case.shaft:
-        told = "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
-        return _of_sections(case), told + _arrows_told(case)
+        scales = "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+        return _of_sections(case), scales + _arrow_note(case)
     if not case.rotor.symmetric:
         return "", "The shaft of this rotor is in a file of its own and is not drawn."
-    told = "Bearings to scale; shaft and disk have no dimensions in this model."
+    scales = "Bearings to scale; shaft and disk have no dimensions in this model."
     if not case.bearings:
-        told = "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
-    return _symmetric(case), told + _arrows_told(case)
+        scales = "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
+    return _symmetric(case), scales + _arrow_note(case)
 
 
-def _arrows_told(case: Case) -> str:
+def _arrow_note(case: Case) -> str:
     """A sentence about the arrows of elements, "" without any."""
-    told = ", ".join(dict.fromkeys(" ".join(each.arrow) for each in elements_of(case) if each.arrow))
-    return f" Arrows show places, not directions: {told}, numbered as in the case." if told else ""
+    arrows = ", ".join(dict.fromkeys(" ".join(each.arrow) for each in elements_of(case) if each.arrow))
+    return f" Arrows show places, not directions: {arrows}, numbered as in the case." if arrows else ""
 
 
 def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
@@ -146,8 +146,8 @@ def _shell(film: FilmGeometry, at: float, scale: _SketchScale) -> Iterator[str]:
 def _supply(film: FilmGeometry, at: float, outer: float, scale: _SketchScale) -> Iterator[str]:
     """Where oil enters: through the body outside of the film, or out of a recess in it."""
     start, inner = at - 0.5 * film.width, 0.5 * film.diameter
-    found = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
-    for axial, half, through in found:
+    outlines = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
+    for axial, half, through in outlines:
         low, high = max(start + axial - half, start), min(start + axial + half, start + film.width)
         yield scale.box(low, high, inner, outer if through else inner + RECESS * (outer - inner), "oil")
 

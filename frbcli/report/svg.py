@@ -15,8 +15,8 @@ SHELL, FLAT = 22.0, 5.0  # width and height of a shell without dimensions
 
 def element(tag: str, content: str = "", **attributes: object) -> str:
     """One element; underscores in the names of attributes stand for hyphens, `kind` for class; numbers are rounded."""
-    told = "".join(f' {_name(name)}="{escape(_text(value))}"' for name, value in attributes.items())
-    return f"<{tag}{told}>{content}</{tag}>" if content else f"<{tag}{told}/>"
+    written = "".join(f' {_name(name)}="{escape(_text(value))}"' for name, value in attributes.items())
+    return f"<{tag}{written}>{content}</{tag}>" if content else f"<{tag}{written}/>"
 
 
 def text(x: float, y: float, words: str, kind: str = "label", anchor: str = "middle") -> str:

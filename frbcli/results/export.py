@@ -132,11 +132,11 @@ def write_ross(table: pd.DataFrame, path: Path, force: bool = False) -> None:
     table: the rows of the film in BearingSheet.to_pandas over speed; states that were not found are left out. Raises
     InputError if the file cannot be written.
     """
-    found = table[table["status"] == "resting"].sort_values("speed_Hz")
+    resting = table[table["status"] == "resting"].sort_values("speed_Hz")
     name = table["film"].iloc[0] or "bearing"
     lines = [f"# {MARK}", f'["BearingElement_{name}"]', "n = 0", f'tag = "{name}"']
-    lines += [f"{name} = {_numbers(found[column])}" for name, column in COLUMNS.items()]
-    lines.append(f"frequency = {_numbers(2.0 * math.pi * found['speed_Hz'])}")
+    lines += [f"{name} = {_numbers(resting[column])}" for name, column in COLUMNS.items()]
+    lines.append(f"frequency = {_numbers(2.0 * math.pi * resting['speed_Hz'])}")
     write(path, ROSS, "\n".join(lines) + "\n", force)
 
 

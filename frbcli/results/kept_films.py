@@ -62,8 +62,8 @@ def kept_film(run: Run, films: Sequence[str], name: str | None = None) -> KeptFi
     if MOMENTS not in arrays:
         raise refuse(run.path, "has not kept the oil of its films.", REMEDY)
     if name is not None and name not in films:
-        told = ", ".join(films) if any(films) else "Its only film has no name: leave --film out."
-        raise refuse(run.path, f'has no film "{name}".', did_you_mean(name, [film for film in films if film], told))
+        choices = ", ".join(films) if any(films) else "Its only film has no name: leave --film out."
+        raise refuse(run.path, f'has no film "{name}".', did_you_mean(name, [film for film in films if film], choices))
     film, count = 0 if name is None else films.index(name), len(films)
     moments, oil, gas, edges = (np.asarray(arrays.get(part, np.zeros(0))) for part in (MOMENTS, OIL, GAS, EDGES))
     n = len(moments)

@@ -120,11 +120,11 @@ class Run:
 
     def __repr__(self) -> str:
         """File, end and events: a few lines, however long it is."""
-        told = [f"{event['kind']} at {event['speed_Hz']:.4g} Hz" for event in self.events[:MOST_NAMED]]
+        named = [f"{event['kind']} at {event['speed_Hz']:.4g} Hz" for event in self.events[:MOST_NAMED]]
         more = [f"{len(self.events) - MOST_NAMED} more"] if len(self.events) > MOST_NAMED else []
         return (
             f"Run {self.path}: {self.title}\n{self.command}, {self.status} at {self.t_end_s:.4g} s; "
-            f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*told, *more]) or 'none'}"
+            f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*named, *more]) or 'none'}"
             + "".join(f"\n{remark}" for remark in self.remarks)
         )
 

@@ -138,10 +138,10 @@ def _ends(collection: bytes) -> bool:
     at = HEAD
     while at + HEAD <= len(collection):
         index, _, size = struct.unpack_from("<HH4xQ", collection, at)
-        taken = size if index == 0 else HEAD + -(-size // 8) * 8
-        if taken < HEAD:
+        span = size if index == 0 else HEAD + -(-size // 8) * 8
+        if span < HEAD:
             return False
-        at += taken
+        at += span
     return at <= len(collection)
 
 

@@ -53,9 +53,9 @@ def has_checksum(path: Path) -> bool:
     with path.open("rb") as file:
         begin, tail = _tail(file)
         for at, number in _numbers(tail):
-            if found := _CHECKSUM.search(number[1]):
-                before = _checksum(file, begin + at + number.start(1) + found.start())
-                return zlib.crc32(tail[at + number.end(1) :], before) == int(found[1])
+            if match := _CHECKSUM.search(number[1]):
+                before = _checksum(file, begin + at + number.start(1) + match.start())
+                return zlib.crc32(tail[at + number.end(1) :], before) == int(match[1])
     return False
 
 

@@ -45,14 +45,14 @@ def wrong_place(path: Path, kind: Kind, reads: Iterable[Path] = (), force: bool 
     are followed. Whether the disk has room for it is known when it is written.
     """
     try:
-        found = _status(path)
-        if found is not None and stat.S_ISDIR(found.st_mode):
+        status = _status(path)
+        if status is not None and stat.S_ISDIR(status.st_mode):
             return "is not a file.", "Give -o the name of a file."
-        if found is not None and any(os.path.samestat(found, other) for other in map(_status, reads) if other):
+        if status is not None and any(os.path.samestat(status, other) for other in map(_status, reads) if other):
             return "is read by this command, and would be lost.", "Choose another name."
-        if found is not None and not stat.S_ISREG(found.st_mode):  # a device or a pipe takes what is written
+        if status is not None and not stat.S_ISREG(status.st_mode):  # a device or a pipe takes what is written
             return None if os.access(path, os.W_OK) else NOT_ALLOWED
-        return _wrong_file(real(path), kind, found is not None, force and kind.forced)
+        return _wrong_file(real(path), kind, status is not None, force and kind.forced)
     except (OSError, ValueError) as error:
         return f"cannot be used: {getattr(error, 'strerror', None) or error}.", "Choose another name with -o."
 

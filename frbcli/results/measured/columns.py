@@ -112,8 +112,8 @@ def unit_in(name: str) -> str | None:
     plain = without_unit(name).strip()
     if ITSELF.fullmatch(plain):
         return plain
-    found = SUFFIX.fullmatch(plain)
-    return None if found is None else found.group(1) or found.group(2)
+    match = SUFFIX.fullmatch(plain)
+    return None if match is None else match.group(1) or match.group(2)
 
 
 def is_interval(name: str) -> bool:

@@ -101,10 +101,10 @@ class _Layout:
         """Whether a row has a number, or a gap, in all places in which most rows have one, and a number in some."""
         if len(row) < self.width or any(row[self.width :]):
             return False
-        found = [self.is_number(row[at]) for at in self.numbers]
+        filled = [self.is_number(row[at]) for at in self.numbers]
         gaps = (row[at].lower() in GAPS for at in self.numbers)
         stamped = all(STAMP.fullmatch(row[at]) for at in self.stamps)
-        return stamped and any(found) and all(map(max, found, gaps))
+        return stamped and any(filled) and all(map(max, filled, gaps))
 
     def is_labelled(self, row: Sequence[str]) -> bool:
         """Whether a row has a word in the first place where others have a number or a time stamp."""
@@ -133,14 +133,14 @@ def read_table(content: bytes) -> DelimitedTable:
     layout = _layout(ending[:: max(1, len(ending) // LOOKED_AT)], numbered[-2:][0][1])
     comments = [line.lstrip().lstrip(COMMENT) for number, line in lines if line.lstrip().startswith(COMMENT)]
     head = _head([layout.split(line) for _, line in numbered], layout, comments)
-    found, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
+    line_numbers, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
     import pandas as pd
 
     values = pd.read_csv(
         io.StringIO("\n".join(rows)), sep=r"\s+" if layout.delimiter == " " else layout.delimiter, header=None,
         decimal=layout.mark, names=range(len(head.names)), skipinitialspace=True, low_memory=False,
     )  # fmt: skip
-    return DelimitedTable(head.names, head.units, values, found, head.numbers, layout.mark)
+    return DelimitedTable(head.names, head.units, values, line_numbers, head.numbers, layout.mark)
 
 
 def fields(line: str, delimiter: str) -> list[str]:
@@ -202,11 +202,11 @@ def _decimal_mark(delimiter: str, rows: Sequence[Sequence[str]]) -> str:
     """The mark between whole number and decimals."""
     if delimiter == ",":
         return "."
-    found = {mark for row in rows for field in row for mark in ".," if mark in field and _number(field, mark)}
-    if len(found) > 1:
+    marks = {mark for row in rows for field in row for mark in ".," if mark in field and _number(field, mark)}
+    if len(marks) > 1:
         problem = "it has numbers both with a decimal point and with a decimal comma"
         raise NoTable(problem, "Write all with one of them, without marks between thousands.")
-    return found.pop() if found else "."
+    return marks.pop() if marks else "."
 
 
 def _number(field: str, mark: str) -> bool:
@@ -221,9 +221,9 @@ def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str
     first = _first_row(rows, whole, layout)
     names_at, units_at = _names_at(rows[:first], layout), None
     if names_at is None:
-        found = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
+        words_above = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
                       and len(words) == layout.width), [""] * layout.width)  # fmt: skip
-        head = _Head(first, tuple(found), tuple(map(_unit_in, found)), {})
+        head = _Head(first, tuple(words_above), tuple(map(_unit_in, words_above)), {})
     else:
         units_at = _units_at(rows[:first], names_at, layout)
         begin = next(at for at in range(max(names_at, units_at or 0) + 1, first + 1)
@@ -303,13 +303,13 @@ def _units_of(
     if units_at is None:
         return tuple(map(_unit_in, names)), {}
     row = rows[units_at]
-    found = [*([""] if _is_called_units(row) else row[:1]), *row[1:], *[""] * len(names)][: len(names)]
+    row_of_units = [*([""] if _is_called_units(row) else row[:1]), *row[1:], *[""] * len(names)][: len(names)]
     numbers = {
         name: float(field.replace(layout.mark, "."))
-        for at, (name, field) in enumerate(zip(names, found, strict=True))
+        for at, (name, field) in enumerate(zip(names, row_of_units, strict=True))
         if at not in layout.numbers and layout.is_number(field)
     }
-    units = (_unit(field) for field in found)
+    units = (_unit(field) for field in row_of_units)
     named = zip(names, units, strict=True)
     return tuple("" if name in numbers else unit or _unit_in(name) for name, unit in named), numbers
 
@@ -323,18 +323,18 @@ def _are_units(row: Sequence[str], layout: _Layout) -> bool:
 
 def _numbers_of(head: Sequence[Sequence[str]], layout: _Layout) -> dict[str, float]:
     """The numbers of lines of a word and a number, or of the same one for each channel."""
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     for row in head:
         values = {field for field in row[1:] if layout.is_number(field)}
         if row[0] and not layout.is_number(row[0]) and len(values) == 1 and layout.is_number(row[1]):
-            found[row[0].rstrip(":= ")] = float(values.pop().replace(layout.mark, "."))
-    return found
+            numbers[row[0].rstrip(":= ")] = float(values.pop().replace(layout.mark, "."))
+    return numbers
 
 
-def _without_end(found: Sequence[str]) -> list[str]:
+def _without_end(cells: Sequence[str]) -> list[str]:
     """The fields up to the last one that is not empty."""
-    filled = [place for place, field in enumerate(found) if field]
-    return list(found[: max(filled, default=0) + 1])
+    filled = [place for place, field in enumerate(cells) if field]
+    return list(cells[: max(filled, default=0) + 1])
 
 
 def _unit(text: str) -> str:
@@ -362,9 +362,9 @@ def _even_rows(numbered: Sequence[tuple[int, str]], delimiter: str, width: int) 
         if count == width:
             yield number, line
             continue
-        found = fields(line, delimiter)
-        if count < width or any(found[width:]):
+        cells = fields(line, delimiter)
+        if count < width or any(cells[width:]):
             problem = f"row {row} (line {number}) has {count} fields, and the line of names {width}"
             remedy = DECIMAL_COMMA if delimiter == "," and width < count and "." not in line else UNEVEN
             raise NoTable(problem, remedy)
-        yield number, delimiter.join(found[:width])
+        yield number, delimiter.join(cells[:width])
