@@ -363,12 +363,12 @@ class March:
         steps = summed(self._state.errors, until / self._profile.end)
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
         passed = self._segments[: self._current + 1]
-        found = budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+        errors = budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
         if fewer is not None and len(passed) == 1:
-            found["error_grows_from_s"] = grows_from(
+            errors["error_grows_from_s"] = grows_from(
                 self._now, self._state.errors, fewer, times, self._samples, until, self._profile.end
             )
-        return found
+        return errors
 
     @property
     def film_error_s(self) -> float:

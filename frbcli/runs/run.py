@@ -245,6 +245,6 @@ def _critical_speeds(segments: Sequence[Segment]) -> tuple[float, ...] | None:
     """Critical speeds of the linearised machine in all segments of a run, Hz, those that differ in the unbalance alone
     once; None if those of one are not known."""
     apart = {id(segment.system.films): segment for segment in reversed(segments)}
-    found = [linear_critical_speeds(segment.case) for segment in reversed(apart.values())]
-    known = [speeds for speeds in found if speeds is not None]
-    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
+    by_segment = [linear_critical_speeds(segment.case) for segment in reversed(apart.values())]
+    known = [speeds for speeds in by_segment if speeds is not None]
+    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(by_segment) else None

@@ -103,7 +103,7 @@ def budget_of_segments(
         )
     keys = {key: None for budget in budgets for key in budget}
     values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
-    return {key: max(found, default=None) for key, found in values.items()}
+    return {key: max(errors, default=None) for key, errors in values.items()}
 
 
 def summed(errors: Array, share: float) -> tuple[float, float]:
@@ -231,7 +231,7 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     forces = system.films.compared()
     if forces is None:
         return FilmErrors(*np.zeros((3, 0)))
-    control, count, found = control_of(case, plan), len(system.names), []
+    control, count, rows = control_of(case, plan), len(system.names), []
     changing = films_change(case)
     every = max(1, len(samples) // (system.films.compared_states or len(samples) or 1))
     for t, sample in zip(times[::every], samples[::every], strict=True):
@@ -248,6 +248,6 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
                 exact, force = forces(i, at, scale * rate, scale * total)
             except NotConverged:
                 continue
-            found.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))
-    table = np.array(found).reshape(-1, 3)
+            rows.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))
+    table = np.array(rows).reshape(-1, 3)
     return FilmErrors(table[:, 0], table[:, 1], table[:, 2])

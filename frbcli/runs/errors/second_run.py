@@ -69,8 +69,8 @@ def with_second_run(march: March, run: Run, observe: Observer | None = None) -> 
     second = second_run(march, run, observe)
     if second is None:
         return run.events, run.error
-    found = [asdict(event) for event in find_events(second)]
-    events = with_uncertainties(run, run.events, found, _least_amplitude(run.error), _share(march))
+    events_of_second = [asdict(event) for event in find_events(second)]
+    events = with_uncertainties(run, run.events, events_of_second, _least_amplitude(run.error), _share(march))
     if march.plan.form.table_of_solutions:
         events = [_shared(event) for event in events]
     return events, {**run.error, **slow_uncertainties(run, second)}

@@ -68,17 +68,17 @@ def number_of(run: Run, name: str, place: int) -> float | None:
     an array that has no such number."""
     if run.checkpoint is None or name not in run.checkpoint:
         return None
-    found = np.asarray(run.checkpoint[name])
-    if found.ndim != 1 or len(found) <= place or not abs(found[place]) <= LARGEST:
+    numbers = np.asarray(run.checkpoint[name])
+    if numbers.ndim != 1 or len(numbers) <= place or not abs(numbers[place]) <= LARGEST:
         raise refuse(run.path, f"has a checkpoint whose {name} are not those of a run.", "Run the case again.")
-    return float(found[place])
+    return float(numbers[place])
 
 
 def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:
     """A copy of an array of a checkpoint. Raises WrongCheckpoint unless it has that shape and finite numbers."""
-    found = np.array(checkpoint[name]) if name in checkpoint else None
-    if found is None or found.dtype != np.float64 or found.shape != shape:
+    copied = np.array(checkpoint[name]) if name in checkpoint else None
+    if copied is None or copied.dtype != np.float64 or copied.shape != shape:
         raise WrongCheckpoint(f"{name} is missing or has another shape")
-    if not np.all(np.abs(found) <= LARGEST):
+    if not np.all(np.abs(copied) <= LARGEST):
         raise WrongCheckpoint(f"{name} holds invalid numbers")
-    return found
+    return copied
