@@ -34,11 +34,11 @@ def stored(path: Path, made_for: str = "") -> bytes | None:
     Only plain files are opened: a FIFO would be waited for.
     """
     try:
-        found = path.read_bytes() if path.is_file() else b""
+        written = path.read_bytes() if path.is_file() else b""
     except OSError:
         return None
-    content = found[CHECKSUM:]
-    return content if found[:CHECKSUM] == _checksum(content, made_for) else None
+    content = written[CHECKSUM:]
+    return content if written[:CHECKSUM] == _checksum(content, made_for) else None
 
 
 def store(path: Path, content: bytes, made_for: str = "") -> None:

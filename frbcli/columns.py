@@ -55,8 +55,8 @@ class Shown:
 
     def unit_beside(self, unit: str = "") -> tuple[str, ...]:
         """The shown unit, or this one without it; empty where there is none or the head names it."""
-        told = self.unit or unit
-        return (told,) if told and not self.heads[0].endswith(told) else ()
+        own = self.unit or unit
+        return (own,) if own and not self.heads[0].endswith(own) else ()
 
     def cells(self, value: Any) -> tuple[str, ...]:
         """The cells of a value; "-" for a number that is not known."""
@@ -192,7 +192,7 @@ class Table:
 
     def documents(self) -> list[dict[str, Any]]:
         """An object of JSON per row."""
-        found: list[dict[str, Any]] = []
+        rows: list[dict[str, Any]] = []
         for row in self.rows:
             document: dict[str, Any] = {}
             for column, value in zip(self.columns, row, strict=True):
@@ -202,8 +202,8 @@ class Table:
                     place = place.setdefault(key, {})
                 if last:
                     place[last] = value
-            found.append(document)
-        return found
+            rows.append(document)
+        return rows
 
     def heads(self, table: str = "") -> tuple[str, ...]:
         """The heads of a table of the terminal."""
@@ -275,10 +275,10 @@ def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
 
 def legend(columns: Columns, table: str = "") -> str:
     """The heads of a table of the terminal with meaning and unit."""
-    told = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
+    listed = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
     return "; ".join(
         ", ".join((*shown.heads[:-1], f"{shown.heads[-1]}: {column.meaning}", *shown.unit_beside(column.unit)))
-        for column, shown in told
+        for column, shown in listed
     )
 
 

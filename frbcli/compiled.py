@@ -137,7 +137,7 @@ def compiled_for(kind: type, otherwise: object = None) -> Callable[[Kernel], Ker
 
     def decorated(function: Kernel) -> Kernel:
         kernel = compiled()(function)
-        has, has_not = _call_of_part(function, kernel), _told(function, "part", otherwise)
+        has, has_not = _call_of_part(function, kernel), _composed(function, "part", otherwise)
 
         def asked(*given: Any) -> Any:
             return kernel(*given) if isinstance(given[0], kind) else otherwise
@@ -160,13 +160,13 @@ def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
 
 def _call_of_part(function: Callable[..., Any], part: Any) -> Callable[..., Any]:
     """A function that calls the part of a kernel: what Python calls."""
-    return _told(function, "part({names})", part)
+    return _composed(function, "part({names})", part)
 
 
-def _told(function: Callable[..., Any], told: str, part: Any) -> Callable[..., Any]:
+def _composed(function: Callable[..., Any], body: str, part: Any) -> Callable[..., Any]:
     """A function of the arguments of another one, {names}, that does what is told of them and of `part`."""
     names = ", ".join(signature(function).parameters)
-    call: Callable[..., Any] = eval(f"lambda {names}: {told.format(names=names)}", {"part": part})
+    call: Callable[..., Any] = eval(f"lambda {names}: {body.format(names=names)}", {"part": part})
     return update_wrapper(call, function)
 
 
@@ -245,8 +245,8 @@ def _is_plain(value: Any) -> bool:
 
 def folder_of(kernel: Callable[..., object]) -> Path | None:
     """The folder in which a kernel is kept, None if it is not."""
-    found: Any = kernel
-    return None if found._cache.cache_path is None else Path(found._cache.cache_path)
+    cached: Any = kernel
+    return None if cached._cache.cache_path is None else Path(cached._cache.cache_path)
 
 
 def _keep(made: Any, *sources: Path) -> None:
@@ -277,8 +277,8 @@ def _keep(made: Any, *sources: Path) -> None:
 
 def _index_of(cache: Any) -> Path | None:
     """Where numba has the index of a kernel, to which it has no public way; None if it is elsewhere."""
-    found = getattr(getattr(cache, "_cache_file", None), "_index_path", None)
-    return None if found is None else Path(found)
+    path = getattr(getattr(cache, "_cache_file", None), "_index_path", None)
+    return None if path is None else Path(path)
 
 
 def _is_own_place(index: Path) -> bool:
@@ -304,8 +304,8 @@ def _use_temporary_cache() -> None:
 
 @cache
 def _say_that_nothing_is_kept(cause: str = "there is no place for them") -> None:
-    told = "Compiled kernels are not kept on disk: %s. The next start compiles them again."
-    logging.getLogger("frbcli").warning(told, cause)
+    message = "Compiled kernels are not kept on disk: %s. The next start compiles them again."
+    logging.getLogger("frbcli").warning(message, cause)
 
 
 class _Files:
@@ -375,11 +375,11 @@ def _name_memory() -> None:
 @cache
 def sources_digest(*files: Path) -> str:
     """Of the contents of files of this package and of all that they import from it, directly or not."""
-    found, waiting = set[Path](), list(files)
+    sources, waiting = set[Path](), list(files)
     while waiting:
-        found.add(one := waiting.pop())
-        waiting += [other for other in _source(one)[1] if other not in found]
-    return hashlib.sha256("".join(_source(one)[0] for one in sorted(found)).encode()).hexdigest()
+        sources.add(one := waiting.pop())
+        waiting += [other for other in _source(one)[1] if other not in sources]
+    return hashlib.sha256("".join(_source(one)[0] for one in sorted(sources)).encode()).hexdigest()
 
 
 @cache

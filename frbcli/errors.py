@@ -38,7 +38,7 @@ class Fault:
         return f"{self.key}{value}{where}: {self.problem} {self.remedy}".rstrip()
 
 
-MOST_TOLD = 100  # faults in the text of an error
+MOST_LISTED = 100  # faults in the text of an error
 
 
 class InputError(FrbError):
@@ -49,8 +49,8 @@ class InputError(FrbError):
     def __init__(self, source: str, faults: tuple[Fault, ...]) -> None:
         self.source = source
         self.faults = faults
-        more = f"\n  and {len(faults) - MOST_TOLD} more" if len(faults) > MOST_TOLD else ""
-        super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_TOLD]) + more)
+        more = f"\n  and {len(faults) - MOST_LISTED} more" if len(faults) > MOST_LISTED else ""
+        super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_LISTED]) + more)
 
 
 def input_error(source: str, key: str, value: str, problem: str, remedy: str, line: int | None = None) -> InputError:

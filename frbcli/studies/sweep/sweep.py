@@ -46,7 +46,7 @@ EVENTS = {
     "runup": ("critical-speed", "self-excited", "onset", "offset", "lock-in", "contact"),
     "stability": ("threshold",),
 }
-TOLD = ("onset", "threshold")  # events in the table of the terminal
+LISTED = ("onset", "threshold")  # events in the table of the terminal
 LONGEST_REASON = 100  # characters in the table of the terminal
 
 
@@ -328,7 +328,7 @@ def event_columns(kind: str) -> tuple[Column, ...]:
         found.append(
             Column(f"{name}_{quantity}_uncertainty", "Hz", f"uncertainty of the {words} {at}", uncertainty, key="")
         )
-        if kind in TOLD:
+        if kind in LISTED:
             shown = _with_unit(head, HERTZ)
             if quantity == "speed":
                 shown = replace(shown, per_minute=_with_unit(head, SpeedUnit(rpm=True)))
