@@ -23,11 +23,11 @@ from frbcli.analysis.orders.resonance import (
     LATE,
     beside,
     critical_steps,
+    distinct_modes,
     near,
     passes,
     resonant,
     synchronous_amplitude,
-    told_apart,
     vibrations_beside,
 )
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, START_s, Tracked, track
@@ -205,13 +205,13 @@ def _near_the_speed(
     clearances = (length for name, length in run.references.items() if name.startswith("clearance_m"))
     room = min(clearances, default=without_films)
     modes = signals.critical_speeds(run)
-    found = [
+    vibrations_of = [
         (vibration, name)
         for name, motions in zip(resonances, besides, strict=False)
         if room > 0.0
         for vibration in vibrations_beside(motions, turns, room, before_s, modes)
     ]
-    vibrations = sorted(found, key=lambda each: each[0].time_s)
+    vibrations = sorted(vibrations_of, key=lambda each: each[0].time_s)
     own_frequencies = [vibration for vibration, _ in vibrations]
     motions = list(resonances.values())
     for number, step in critical_steps(motions, turns, FLOOR * room, quiet, modes, own_frequencies):
@@ -231,33 +231,33 @@ def about_critical_speeds(
     rotor speeds."""
     if len(run) < 2:
         return []
-    found = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
+    known = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
                                                      "frequency_ratio")}) for each in events]  # fmt: skip
     time_s, speed = signals.course(signals.SignalOf(run, "time_s"), signals.SignalOf(run, "speed_Hz"))
-    quiet = _quiet_spans(found, float(time_s[-1]))
+    quiet = _quiet_spans(known, float(time_s[-1]))
     modes = signals.critical_speeds(run)
     if modes is None:
         begins, ends = [end for _, end in quiet], [*[begin for begin, _ in quiet[1:]], float(time_s[-1])]
         hidden = [unit.span(signals.speed_at(run, begin), signals.speed_at(run, min(end, time_s[-1])))
                   for begin, end in zip(begins, ends, strict=False) if begin < time_s[-1]]  # fmt: skip
         return [f"During whirl no critical speed is sought: {', '.join(hidden)}."] if hidden else []
-    told: dict[tuple[str, str], list[float]] = {}
+    missed: dict[tuple[str, str], list[float]] = {}
     for first, last in passes(speed):
         way = slice(first, min(last + 1, len(speed)))
         t, size = time_s[way], np.abs(speed[way])
         up = size[-1] > size[0]
         ramp = float(np.ptp(size)) / max(float(np.ptp(t)), 1e-12)
-        seen = [abs(each.speed_Hz) for each in found if each.kind == "critical-speed" and t[0] <= each.t_s <= t[-1]]
-        for mode in told_apart(modes):
+        seen = [abs(each.speed_Hz) for each in known if each.kind == "critical-speed" and t[0] <= each.t_s <= t[-1]]
+        for mode in distinct_modes(modes):
             if not size.min() < mode < size.max() or near(mode, seen, LATE * ramp**0.5):
                 continue
             when = float(np.interp(mode, size if up else size[::-1], t if up else t[::-1]))
             left = abs(float(size[-1]) - mode)
             reason = _why_not_found(when - float(time_s[0]), quiet, left < LATE * ramp**0.5)
-            told.setdefault(("up" if up else "down", reason), []).append(mode)
+            missed.setdefault(("up" if up else "down", reason), []).append(mode)
     return [
         f"No critical speed at {unit.listed(speeds)} on the way {way}: {reason}."
-        for (way, reason), speeds in told.items()
+        for (way, reason), speeds in missed.items()
     ]
 
 

@@ -223,17 +223,17 @@ def _without_slow_roll(
     if tacho is None:
         problem = "does not tell the angle of the rotor, which a slow roll turns with."
         raise wrong_file(columns.path, problem, "Give --tacho COLUMN, or leave --slow-roll out.")
-    left, told, revolutions = dict[str, Array](), list[str](), 0.0
+    left, vectors, revolutions = dict[str, Array](), list[str](), 0.0
     for name, signal in seen.items():
         try:
-            found = slow_roll(signal, tacho.angle, tacho.speed_Hz, given.slow_roll_Hz)
+            roll = slow_roll(signal, tacho.angle, tacho.speed_Hz, given.slow_roll_Hz)
         except ValueError as error:
             remedy = "Give --slow-roll a speed that it keeps for a while, well below the critical speeds."
             raise wrong_file(columns.path, f"has a rotor that {error}", remedy) from None
-        left[name], revolutions = signal - found.at(tacho.angle), found.revolutions
-        told.append(f"{name} {1e6 * abs(found.vector):.4g} um at {math.degrees(cmath.phase(found.vector)):.4g} deg")
+        left[name], revolutions = signal - roll.at(tacho.angle), roll.revolutions
+        vectors.append(f"{name} {1e6 * abs(roll.vector):.4g} um at {math.degrees(cmath.phase(roll.vector)):.4g} deg")
     at = f"{given.slow_roll_Hz:g} Hz over {revolutions:.3g} revolutions"
-    return left, f"Slow roll subtracted, of {at}: {', '.join(told)}."
+    return left, f"Slow roll subtracted, of {at}: {', '.join(vectors)}."
 
 
 class _Units:
@@ -264,22 +264,22 @@ class _Units:
 
     def _one(self, name: str, stated: str | None, one: float | None, unit: str, option: str) -> float:
         """What 1 in a column is in SI."""
-        found = None if stated is None else _in_si(stated, unit)
+        in_unit = None if stated is None else _in_si(stated, unit)
         path = self.columns.path
         if stated is not None and unit == "m" and any(_in_si(stated, other) for other in RATE_OF_TIME):
             problem = f'has "{name}" in {stated}, which is no displacement.'
             raise wrong_file(path, problem, "Integrate it over time first.")
-        if one is None and stated is not None and found is None:
+        if one is None and stated is not None and in_unit is None:
             problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
             raise wrong_file(path, problem, f"Say by {option} what 1 {stated} stands for, e.g. {EXAMPLES[option]}.")
         if one is None:
             assumed = f"{NAMES[option]} (no unit in the file; {option} changes it)"
             self._used[name] = assumed if stated is None else stated
-            return found or USUAL[option]
-        if found is not None and not math.isclose(found, one, rel_tol=SAME):
+            return in_unit or USUAL[option]
+        if in_unit is not None and not math.isclose(in_unit, one, rel_tol=SAME):
             problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
             raise wrong_file(path, problem, f'Give {option} "1 {stated}".')
-        self._used[name] = stated if found is not None and stated else f"{one:g} {unit}"
+        self._used[name] = stated if in_unit is not None and stated else f"{one:g} {unit}"
         return one
 
 
@@ -343,10 +343,10 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tach
     try:
         if len(pulses) != len(time):
             raise ValueError("has another length than the displacements.")
-        found = tacho_speed(time, pulses, given.pulses)
+        turning = tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
-    return found.speed_Hz, found
+    return turning.speed_Hz, turning
 
 
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:

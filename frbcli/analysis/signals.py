@@ -87,13 +87,13 @@ def samples(column: SignalColumn, places: NDArray[np.int64]) -> Array:
     if len(places) == 0:
         return np.empty(0)
     first, last = int(places[0]), int(places[-1])
-    found = []
+    parts = []
     for start in range(first, last + 1, PIECE):
         here = places[(places >= start) & (places < start + PIECE)]
         if len(here):
             begin = int(here[0])
-            found.append(column[begin : int(here[-1]) + 1][here - begin])
-    return np.concatenate(found)
+            parts.append(column[begin : int(here[-1]) + 1][here - begin])
+    return np.concatenate(parts)
 
 
 def course(time_s: SignalColumn, speed_Hz: SignalColumn) -> tuple[Array, Array]:

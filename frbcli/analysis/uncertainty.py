@@ -115,13 +115,13 @@ def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
     several signals of a kind that of the least certain one; without such signals nothing."""
     count = min(len(run), len(second))
     edges = np.unique(np.linspace(0, count, WINDOWS + 1).astype(np.int64))
-    found = {}
+    uncertainties = {}
     for quantity, key in SLOW.items():
         names = [name for name in run.signals if name.startswith(quantity)]
         apart = [_means(run, name, edges) - _means(second, name, edges) for name in names]
         if apart and count:
-            found[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
-    return found
+            uncertainties[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
+    return uncertainties
 
 
 def _means(run: RunLike, name: str, edges: NDArray[np.int64]) -> Array:
@@ -139,12 +139,12 @@ def partners(events: Sequence[Record], second: Sequence[Record]) -> list[Record 
         for j, other in enumerate(second)
         if _key(other) == _key(event) and _are_near(event, other)
     )
-    found: dict[int, int] = {}
+    partner_of: dict[int, int] = {}
     for _, i, j in candidates:
-        same = [(a, b) for a, b in found.items() if _key(events[a]) == _key(events[i])]
-        if i not in found and all((a < i) == (b < j) and b != j for a, b in same):
-            found[i] = j
-    return [second[found[i]] if i in found else None for i in range(len(events))]
+        same = [(a, b) for a, b in partner_of.items() if _key(events[a]) == _key(events[i])]
+        if i not in partner_of and all((a < i) == (b < j) and b != j for a, b in same):
+            partner_of[i] = j
+    return [second[partner_of[i]] if i in partner_of else None for i in range(len(events))]
 
 
 def _key(event: Record) -> tuple[Any, ...]:

@@ -74,7 +74,7 @@ def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Passage:
     """A resonance at a step of the revolutions, in the motion of a point by its number; mode: the known critical speed
     in Hz next to it, None if none is known; turn: by how much the phase turns from the lowest point before the
     resonance to that behind it, rad."""
@@ -101,16 +101,16 @@ def critical_steps(
     in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
     that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
     """
-    chosen: list[_Found] = []
-    modes = None if modes is None else told_apart(modes)
+    chosen: list[_Passage] = []
+    modes = None if modes is None else distinct_modes(modes)
     for pass_ in passes(turns.speed_Hz):
         for span in quiet:
-            found = [
+            resonances = [
                 each
                 for point, tracked in enumerate(motions)
                 for each in _in_pass(tracked, turns, (floor, point), pass_, span, modes, vibrations)
             ]
-            chosen += _distinct(found, turns, modes)
+            chosen += _distinct(resonances, turns, modes)
     return [(each.point, each.step) for each in sorted(chosen, key=lambda each: each.step)]
 
 
@@ -123,7 +123,7 @@ def passes(speed_Hz: Array) -> list[tuple[int, int]]:
     return list(itertools.pairwise([0, *inner, len(size)]))
 
 
-def told_apart(modes: Sequence[float]) -> list[float]:
+def distinct_modes(modes: Sequence[float]) -> list[float]:
     """Critical speeds in Hz, ascending, one of those that a peak does not tell apart."""
     kept: list[float] = []
     for mode in modes:
@@ -140,7 +140,7 @@ def _in_pass(
     quiet: tuple[float, float],
     modes: Sequence[float] | None,
     vibrations: Sequence[Vibration],
-) -> Iterator[_Found]:
+) -> Iterator[_Passage]:
     """The resonances of a point in one pass and one span of time without whirl. numbers: floor, and that of the
     point; others: see critical_steps."""
     half = REVOLUTIONS * STEPS // 2
@@ -163,14 +163,14 @@ def _in_pass(
         known = not peak.low if modes is None else near(speed, modes, late)
         if known and not own:
             mode = None if modes is None else min(modes, key=lambda each: abs(each - speed))
-            yield _Found(step, point, peak.prominence, peak.height, mode, peak.turn)
+            yield _Passage(step, point, peak.prominence, peak.height, mode, peak.turn)
 
 
-def _distinct(found: Sequence[_Found], turns: Revolutions, modes: Sequence[float] | None) -> list[_Found]:
+def _distinct(passages: Sequence[_Passage], turns: Revolutions, modes: Sequence[float] | None) -> list[_Passage]:
     """The clearest of the resonances of one pass that belong together: of several points, of one mode, and those that
     the free vibration behind a resonance makes by beating with the unbalance, in which the phase turns back."""
-    kept: list[_Found] = []
-    for each in sorted(found, key=lambda each: -each.prominence):
+    kept: list[_Passage] = []
+    for each in sorted(passages, key=lambda each: -each.prominence):
         speed, ramp = abs(float(turns.speed_Hz[each.step])), _ramp(turns, each.step)
         same = max(SAME * speed, 0.0 if modes is not None else 2.0 * LATE * np.sqrt(ramp))
         others = [abs(abs(float(turns.speed_Hz[other.step])) - speed) for other in kept]
@@ -193,7 +193,7 @@ def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
 @dataclass(frozen=True)
 class _Resonance:
     """A peak of the synchronous motion, see Peak. height: of it; low: whether its prominence is so low that only a
-    known critical speed makes it one; turn: see _Found."""
+    known critical speed makes it one; turn: see _Passage."""
 
     place: int
     before: int
