@@ -232,26 +232,26 @@ def _computed(run: Run, vectors: SynchronousVectors, named: tuple[str, ...], dou
         remedy = 'Give trial runs, as --trial a=trial.csv:"5 g*mm@30deg".'
         raise input_error("balance", "run", str(run.path), "is a measurement, which carries no case.", remedy)
     case = load_case_text(run.case_text, name=run.case_name)
-    found, influence = computed_influence(case, planes_named(case, named), vectors.speeds_Hz.tolist(), vectors.points)
-    doubts += _nonlinear(found)
+    motion, influence = computed_influence(case, planes_named(case, named), vectors.speeds_Hz.tolist(), vectors.points)
+    doubts += _nonlinear(motion)
     return influence
 
 
-def _nonlinear(found: Response) -> list[str]:
-    beyond = [speed for speed, kind in zip(found.speeds_Hz, found.validity, strict=True) if kind != SOUND]
-    whirls = found.speeds_Hz[found.growth > 0.0].tolist()
-    unit, told = found.case.speed_unit, []
+def _nonlinear(motion: Response) -> list[str]:
+    beyond = [speed for speed, kind in zip(motion.speeds_Hz, motion.validity, strict=True) if kind != SOUND]
+    whirls = motion.speeds_Hz[motion.growth > 0.0].tolist()
+    unit, doubts = motion.case.speed_unit, []
     if beyond:
-        told.append(
+        doubts.append(
             f"At {unit.listed(beyond)} a journal moves so far in its gap that linear influence coefficients are wrong "
             "by more than 15 %."
         )
     if whirls:
-        told.append(
+        doubts.append(
             f"At {unit.listed(whirls)} a whirl grows: the journals do not move about the positions for which the "
             "influence coefficients are computed."
         )
-    return told
+    return doubts
 
 
 def _by_trials(
@@ -333,14 +333,14 @@ def _condition(rows: Complex) -> float:
 
 
 def _uncertain(planes: Sequence[PlaneCorrection], residual: float, condition: float) -> list[str]:
-    told, largest = [], max(abs(plane.unbalance) for plane in planes)
+    doubts, largest = [], max(abs(plane.unbalance) for plane in planes)
     if residual > DOUBTFUL_RESIDUAL:
-        told.append(f"Unbalances in these planes leave {100.0 * residual:.3g} % of the vectors unexplained.")
+        doubts.append(f"Unbalances in these planes leave {100.0 * residual:.3g} % of the vectors unexplained.")
     unsure = [plane.plane for plane in planes if plane.uncertainty > DOUBTFUL_UNCERTAINTY * largest]
     if unsure:
         why = f": the planes are hard to tell apart (condition number {condition:.3g})" if condition > ALIKE else ""
-        told.append(
+        doubts.append(
             f"The corrections of {', '.join(unsure)} are uncertain by more than a fifth of the largest{why}. Take "
             "other planes, more points or more speeds."
         )
-    return told
+    return doubts

@@ -33,11 +33,11 @@ def computed_influence(
     unbalance in each of k planes, at the angle 0 of the rotor, linearised about the resting positions.
 
     Raises InputError as response does, NotConverged if the rotor does not rest at a speed."""
-    found = response(case, speeds_Hz)
-    if len(found.speeds_Hz) < len(set(speeds_Hz)):
+    linear = response(case, speeds_Hz)
+    if len(linear.speeds_Hz) < len(set(speeds_Hz)):
         raise NotConverged("The rotor has no resting position at some of the speeds. Choose others, by --at.")
     influence = []
-    for point in found.resting:
+    for point in linear.resting:
         rotor, omega = point.rotor, 2.0 * np.pi * point.speed_Hz
         if rotor is None:
             continue
@@ -45,4 +45,4 @@ def computed_influence(
         pull = np.stack([omega**2 * (nodes[plane.node][1] + 1j * nodes[plane.node][0]) for plane in planes], axis=-1)
         motion = forced_motion(rotor, omega, (omega, pull), *coefficients_of(point.films))
         influence.append([nodes[name] @ motion for name in points])
-    return found, np.array(influence)
+    return linear, np.array(influence)

@@ -59,9 +59,9 @@ def synchronous_vectors(
         raise input_error("balance", "speed", "", "is not above 0: the rotor turns the other way round.", "")
     speeds = _usual_speeds(tracks[0]) if speeds_Hz is None else sorted(set(speeds_Hz))
     turned = np.exp(2j * np.pi * run.references.get(MARK, 0.0))
-    found = [[_at(track, speed) for track in tracks] for speed in speeds]
-    values = np.array([[value for value, _ in row] for row in found])
-    scatter = np.array([[scatter for _, scatter in row] for row in found])
+    rows = [[_at(track, speed) for track in tracks] for speed in speeds]
+    values = np.array([[value for value, _ in row] for row in rows])
+    scatter = np.array([[scatter for _, scatter in row] for row in rows])
     return SynchronousVectors(np.array(speeds), tuple(names), turned * values, scatter)
 
 
