@@ -33,7 +33,7 @@ from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
-from frbcli.studies.side_by_side import COMMANDS, Ended, RunTask, Tell, in_turn, side_by_side
+from frbcli.studies.side_by_side import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side
 
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
@@ -193,11 +193,11 @@ def compare(
             for number, (its_case, path, resume) in enumerate(zip(cases, paths, begun, strict=True), start=1)
         ]
 
-        def tell(number: int, progress: Progress) -> None:
+        def report(number: int, progress: Progress) -> None:
             if observe is not None:
                 observe(variants[number - 1], number, len(variants), progress)
 
-        ended = dict(_ended(tasks, tell))
+        ended = dict(_ended(tasks, report))
     runs = {number: run for number, run in sorted(ended.items()) if isinstance(run, Run)}
     failures = [end for _, end in sorted(ended.items()) if not isinstance(end, Run)]
     if 1 not in runs:
@@ -208,15 +208,15 @@ def compare(
     return Comparison(case, test, tuple(results), status, message)
 
 
-def _ended(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
+def _ended(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int, Ended]]:
     """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
     models: laws and bearing models that Python has added are known to this one alone."""
     costs = {task.number: _cost_s(task) for task in tasks}
     shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
     own = not shipped or any(task.case.film.bearing_model for task in tasks)
     if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
-        return in_turn(tasks, tell)
-    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), tell)
+        return in_turn(tasks, report)
+    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), report)
 
 
 def _cost_s(task: RunTask) -> float:
@@ -266,16 +266,16 @@ def make_variants(
     if not (cavitations or theories or couplings or thermals):
         closed = names(law for law in laws() if law.closed)
         others = (Variant(theory, cavitation, own.coupling) for cavitation in closed for theory in THEORIES)
-        found = [own, *(variant for variant in others if _fits(case, variant))]
+        combinations = [own, *(variant for variant in others if _fits(case, variant))]
     else:
-        found = [
+        combinations = [
             Variant(theory, cavitation, coupling, thermal)
             for cavitation in cavitations or (own.cavitation,)
             for theory in theories or (own.theory,)
             for coupling in couplings or (own.coupling,)
             for thermal in thermals or ("",)
         ]
-    variants = tuple(dict.fromkeys(found))
+    variants = tuple(dict.fromkeys(combinations))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
         remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "

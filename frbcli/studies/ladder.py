@@ -80,12 +80,12 @@ class AccuracyLadder(Tabular):
     @property
     def front(self) -> tuple[RungResult, ...]:
         """Pareto's front: the rungs for which no cheaper rung has a smaller error."""
-        best, found = math.inf, []
+        best, cheapest = math.inf, []
         for result in sorted(self.ladder, key=lambda item: item.cpu_s):
             if result.error.eccentricity_largest < best:
                 best = result.error.eccentricity_largest
-                found.append(result)
-        return tuple(found)
+                cheapest.append(result)
+        return tuple(cheapest)
 
     def above_front(self, quiet: bool = False) -> float:
         """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.

@@ -101,13 +101,13 @@ def warm_up(cases: Iterable[Case] = (), jobs: int = -1, observe: Observer | None
     different = {short.kind: short for case in reversed(wanted) for short in short_analyses(case)}
     work = sorted(different.values(), key=attrgetter("family"))
     families = [list(members) for _, members in groupby(work, attrgetter("family"))]
-    found: list[Compiled] = []
+    kernels: list[Compiled] = []
     with closing(_compiled(families, jobs)) as done:
         for compiled in done:
-            found += compiled
+            kernels += compiled
             if observe is not None:
-                observe(", ".join(f"{each.case}: {each.analysis}" for each in compiled[-1:]), len(found), len(work))
-    return WarmUp(tuple(case.name for case in wanted), tuple(found), time.monotonic() - began)
+                observe(", ".join(f"{each.case}: {each.analysis}" for each in compiled[-1:]), len(kernels), len(work))
+    return WarmUp(tuple(case.name for case in wanted), tuple(kernels), time.monotonic() - began)
 
 
 def _compiled(families: Sequence[Sequence[ShortAnalysis]], jobs: int) -> Generator[list[Compiled], None, None]:

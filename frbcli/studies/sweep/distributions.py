@@ -46,8 +46,8 @@ class Distribution:
         if self.form == "uniform":
             return np.asarray(self.low + shares * (self.high - self.low))
         below, upto = (ndtr((limit - self.mean) / self.deviation) for limit in (self.low, self.high))
-        found = self.mean + self.deviation * ndtri(below + shares * (upto - below))
-        return np.asarray(np.clip(found, self.low, self.high))
+        values = self.mean + self.deviation * ndtri(below + shares * (upto - below))
+        return np.asarray(np.clip(values, self.low, self.high))
 
 
 def read_distribution(key: str, text: str) -> Distribution | None:
@@ -70,12 +70,12 @@ def read_distribution(key: str, text: str) -> Distribution | None:
     units = {unit for _, unit in given.values()}
     if len(units) > 1:
         raise refused(key, text, "has several units.", "Write all of its numbers in one unit; a deviation may be in %.")
-    found = Distribution(key, form, units.pop(), **{name: number for name, (number, _) in given.items()})
-    if not found.low < found.high:
+    distribution = Distribution(key, form, units.pop(), **{name: number for name, (number, _) in given.items()})
+    if not distribution.low < distribution.high:
         raise refused(key, text, "has a lower limit that is not below the upper one.", "Exchange or correct them.")
-    if form != "uniform" and not found.deviation > 0.0:
+    if form != "uniform" and not distribution.deviation > 0.0:
         raise refused(key, text, "has a deviation that is not above 0.", f"Write e.g. {EXAMPLE}.")
-    return found
+    return distribution
 
 
 def samples(
