@@ -80,8 +80,8 @@ def _capacity(case: Case, plan: KinematicPlan, omega: float, force_of: ForceOf) 
     for e in sorted(STARTS):
         place = (side * e * math.sin(ATTITUDE), -e * math.cos(ATTITUDE))
         with suppress(NotConverged):
-            found = force_of(case, plan, COARSE_CELLS, Motion(place, (0.0, 0.0), omega), None)
-            forces[e] = float(np.linalg.norm(found.force))
+            loads = force_of(case, plan, COARSE_CELLS, Motion(place, (0.0, 0.0), omega), None)
+            forces[e] = float(np.linalg.norm(loads.force))
     if not forces:
         return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
     highest = max(forces, key=forces.__getitem__)
@@ -103,12 +103,12 @@ def _carried(force: Near, section: Section, load: Array, omega: float, start: Ar
 
     def balance(position: Array, before: ForceBalance[FilmForce] | None) -> ForceBalance[FilmForce]:
         x, y = (position[0] / section.clearance).tolist()
-        found = force(Motion((x, y), (0.0, 0.0), omega), before.films if before else None)
-        return ForceBalance(found.force - load, found.by_displacement, found)
+        rest = force(Motion((x, y), (0.0, 0.0), omega), before.films if before else None)
+        return ForceBalance(rest.force - load, rest.by_displacement, rest)
 
     size, c = float(np.linalg.norm(load)), section.clearance
-    found = search_rest(balance, c * start[None], lambda at: at / c, Search(0.0, SETTLED * size, SMALLEST_SHARE))
-    place: Array = found.position[0] / c
-    if not found.settled:
-        raise NotConverged(f"{found.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")
+    rest = search_rest(balance, c * start[None], lambda at: at / c, Search(0.0, SETTLED * size, SMALLEST_SHARE))
+    place: Array = rest.position[0] / c
+    if not rest.settled:
+        raise NotConverged(f"{rest.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")
     return place

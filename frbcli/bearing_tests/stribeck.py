@@ -75,13 +75,13 @@ def _walk(
     point: Callable[[float], _Point], begun: list[_Point], ratio: float, ends: Callable[[Sequence[_Point]], bool]
 ) -> list[_Point]:
     """Points and those behind them, at speeds that grow by a ratio, up to one that ends them."""
-    found = list(begun)
-    while len(found) < len(begun) + MOST and not ends(found):
+    points = list(begun)
+    while len(points) < len(begun) + MOST and not ends(points):
         try:
-            found.append(point(found[-1].speed * ratio))
+            points.append(point(points[-1].speed * ratio))
         except NotConverged:
             break
-    return found
+    return points
 
 
 def _point(case: Case, plan: KinematicPlan, load: float, speed: float) -> _Point:

@@ -36,8 +36,8 @@ def short_moment(plan: KinematicPlan, motion: Motion, share: float = 1.0) -> Fil
     error is that of the theory, against the film of finite length."""
     section = _rectangle(plan, share)
     film = _film(plan, section)
-    found = _force(section, film, motion).force
-    force = float(found[0]), float(found[1])
+    vector = _force(section, film, motion).force
+    force = float(vector[0]), float(vector[1])
     exact = modal_force(plan, motion) if share == 1.0 else (UNKNOWN, UNKNOWN)
     error = math.dist(force, exact) / math.hypot(*exact) if any(exact) else UNKNOWN
     return FilmMoment(_field(plan, section, film, motion), _loads(section, film, motion, force), error, 0, 0,
@@ -60,8 +60,8 @@ def short_course(plan: KinematicPlan, rubbing: Rubbing, path: Path, times: Array
         along = PROBE_WIDTH * section.bearing_width / section.width
         probe = float(_pressures(section, film, motion, np.array([PROBE]), np.array([along]))[0, 0])
         gap = float(gap_height(section, motion.d, np.array([PROBE]))[0])
-        found = rubbing.loads(_loads(section, film, motion, (x, y)), motion)
-        moments.append(MovedFilm(time, motion.d, found, probe, gap, 0))
+        loads = rubbing.loads(_loads(section, film, motion, (x, y)), motion)
+        moments.append(MovedFilm(time, motion.d, loads, probe, gap, 0))
     worst = max(moments, key=lambda moment: moment.size)
     there = short_moment(plan, path(worst.time), _share(plan, worst.time))
     error = there.force_error * rubbing.share_of_error(there.loads, worst.loads)
