@@ -32,7 +32,7 @@ class Compilations(Listener):
         if not self._depth:
             self._began = time.process_time(), time.perf_counter()
         self._depth += 1
-        self._tell()
+        self._notify()
 
     def on_end(self, _event: Any) -> None:
         """A function is compiled."""
@@ -40,9 +40,9 @@ class Compilations(Listener):
         if not self._depth:
             self.cpu_s += time.process_time() - self._began[0]
             self.wall_s += time.perf_counter() - self._began[1]
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         if self._observe is not None:
             self._observe()
 

@@ -123,7 +123,7 @@ def _frequencies(axes: Axes, diagram: LimitCycles) -> None:
         values = np.array([point.frequency_Hz for point in branch.points])
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
         _band(axes, branch, values, [point.frequency_uncertainty_Hz for point in branch.points], number)
-        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, told=False)
+        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, in_legend=False)
     for kind, (marker, _) in MARKS.items():
         points = diagram.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
