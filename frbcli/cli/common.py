@@ -130,7 +130,7 @@ class Terminal:
             _write(sys.stderr, f"{printable(text)}\n")
 
     def text(self, text: str) -> None:
-        """Print a text that was asked for, quiet or not; with json the document has it."""
+        """Print a requested text, also with --quiet; with --json it is in the document instead."""
         if not self.json:
             _write(sys.stdout, text)
 

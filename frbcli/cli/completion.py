@@ -1,4 +1,4 @@
-"""What the shell completes beside commands and options: shipped cases, files, keys of a case."""
+"""What the shell completes besides commands and options: shipped cases, files, keys of a case."""
 
 from __future__ import annotations
 

@@ -103,8 +103,8 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     require_places(wanted, () if context is None else context.meta.get(_READS, ()), forced())
 
 
-def beside(run: Path, what: str) -> Path:
-    """The default place of a result: beside its run."""
+def next_to(run: Path, what: str) -> Path:
+    """The default place of a result: next to its run."""
     return run.parent / (run.stem + what)
 
 

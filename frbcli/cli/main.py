@@ -1,8 +1,8 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
 Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug, or
-too little memory; `process.main` adds the codes of streams that cannot be written. docs/command-line.md lists those of
-each command.
+too little memory; `process.main` adds the codes for streams that cannot be written. docs/command-line.md lists the
+codes of each command.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ COMMANDS = {
     ),
     "bearing": (
         "frbcli.cli.bearings.bearing",
-        "Resting position, K, C, loss, flow of every film over speed or eccentricity.",
+        "Static equilibrium, K, C, loss, flow of every film over speed or eccentricity.",
         "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
     "thrust": (
@@ -85,7 +85,7 @@ COMMANDS = {
     ),
     "stability": (
         "frbcli.cli.machines.stability",
-        "Resting positions, linear coefficients, eigenvalues, threshold speed.",
+        "Static equilibria, linear coefficients, eigenvalues, threshold speed.",
         "frb stability jeffcott --speed '100 Hz' --speed '200 Hz'",
     ),
     "response": (

@@ -1,5 +1,5 @@
 """The picture and the table of a command: their options, their places, which are checked before the work, and how they
-are written. A picture beside results never affects them: a failure is a remark."""
+written. A picture next to results never affects them: a failure is a remark."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MISSING = re.compile(r"Glyph (\d+) .*missing from")  # how matplotlib begins its
 
 @dataclass(frozen=True)
 class Outputs:
-    """The picture and the table that a command writes beside its text, None for none."""
+    """The picture and the table that a command writes in addition to its text, None for none."""
 
     picture: Path | None
     csv: Path | None
@@ -40,8 +40,8 @@ class Outputs:
     def write(
         self, terminal: Terminal, table: Tabular, what: str = "picture", picture: Callable[[], Picture] | None = None
     ) -> dict[str, Path | None]:
-        """Write those of a result, and return their paths as parts of a JSON document. what: the name of the picture in
-        the text; picture: in place of that of the result."""
+        """Write picture and table of a result, and return their paths as parts of a JSON document. what: the name of
+        the picture in the text; picture: drawn instead of the picture of the table."""
         if self.csv is not None:
             from frbcli.results.files.write import write_table
 

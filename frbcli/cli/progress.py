@@ -1,6 +1,6 @@
 """Progress on the terminal: lines that are redrawn, or without a terminal one now and then; the compilation of kernels.
 
-Kernels are compiled at the first start and kept beside their sources.
+Kernels are compiled at the first start and kept next to their sources.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 REFRESH_Hz = 8
 PRINT_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
-# What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
+# A long command is announced there as soon as its first numbers show it: after so much time, if so much is left.
 ANNOUNCED_s, LONG_s = 1.0, 5.0
 COMPUTING, READING, WRITING = "Computing.", "Reading.", "Writing."
 CLOCK_AFTER_s = 1.0  # without a change the time is shown
@@ -54,12 +54,12 @@ class Display:
         return self._draw is not None
 
     def redraw(self, lines: str) -> None:
-        """Show lines in place of the last ones, where that is possible."""
+        """Show lines instead of the last ones, where that is possible."""
         if self._draw is not None:
             self._draw(lines)
 
     def line(self, line: str) -> None:
-        """Show a line in place of the last one, or print it."""
+        """Show a line instead of the last one, or print it."""
         if self._draw is None:
             self._terminal.remark(line)
         else:
@@ -72,7 +72,7 @@ class Display:
     def counting(self, what: str = "") -> Callable[[int, int], None]:
         """A function that shows a number of so many, and the time left.
 
-        The time left is that of the numbers since the first one, which compiles.
+        The time left is extrapolated from the numbers after the first one, which includes compilation.
         """
         begun, first, announced, show = 0.0, 0, False, self.now_and_then()
 

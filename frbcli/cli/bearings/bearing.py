@@ -41,7 +41,7 @@ PRESSED = (
 @speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
 @click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
               help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
-              "[that of the rotor]")  # fmt: skip
+              "[the rotor's]")  # fmt: skip
 @click.option("--ross", metavar="FILE", type=OUTPUT,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
 @click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
@@ -59,7 +59,7 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
-    """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
+    """Static equilibrium, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
     from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
     from frbcli.linear.film_state import heat_capacity
@@ -163,7 +163,7 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
     if sheet.case.contact.rough:
         terminal.sentence(f"{legend(columns, MIXED)}.")
     if not full:
-        one = f", --film {films[0]} those of one film" if len(films) > 1 else ""
+        one = f", --film {films[0]} one film" if len(films) > 1 else ""
         terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
     if any(law_named(law).keeps_oil for law in sheet.laws):
         terminal.sentence(SETTLED)

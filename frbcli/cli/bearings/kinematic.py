@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from frbcli.bearing_tests.kinematic import KinematicResult, KinematicTest
     from frbcli.case.schema import Case
 
-LARGEST = "Values are those of the moment of the largest force."
+LARGEST = "Values are from the moment of the largest force."
 
 
 def _command(test: str, description: str) -> Callable[..., Any]:
@@ -49,7 +49,7 @@ def run_test(
     case: Case, test: str, cavitation: tuple[str, ...], options: OutputOptions, terminal: Terminal,
     compared: bool = False,
 ) -> int | None:  # fmt: skip
-    """Run a test, print and draw it; its exit code. compared: the document is that of `frb compare`."""
+    """Run a test, print and draw it; its exit code. compared: write the document of `frb compare`."""
     from frbcli.bearing_tests import kinematic
 
     outputs = options.check(here(case.name, f"-{'compare' if compared else test}.png"))

@@ -131,7 +131,7 @@ def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, te
 
 
 def _axial(case: Case) -> dict[str, object]:
-    """The collar under its axial load at the top speed; the plan tells it to people."""
+    """The collar under its axial load at the top speed, for JSON; the plan shows it on the terminal."""
     from frbcli.linear.thrust.axial import axial_state
     from frbcli.linear.thrust.columns import AXIAL
     from frbcli.scene.gate.rule import run_omega
@@ -187,7 +187,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     except CompilationNeededError:
         terminal.sentence(
             "Steady temperatures at the top speed are solutions of the films, whose kernels are not compiled yet. "
-            "frb warm-up compiles all that this case needs, once; afterwards frb check tells the temperatures."
+            "frb warm-up compiles all that this case needs, once; afterwards frb check shows the temperatures."
         )
         return {}
     show_heat(terminal, warm, "heat at the top speed, when everything is warm")
@@ -229,7 +229,7 @@ def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) ->
 
 
 def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError | None, remark: str) -> Decision:
-    """The line of the expected error. remark: why a machine is not tried, "" where it need not be told."""
+    """The line of the expected error. remark: why a machine is not tried, "" without a remark."""
     from frbcli.scene.films import rings
     from frbcli.scene.planning.planned import Decision
 
@@ -255,13 +255,13 @@ def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple
 
     solved = f", {cost.film_solves} film solves" if with_films else ""
     solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"
-    beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
+    parts = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
     if cost.second_s:
-        beside += f", {clock(cost.second_s)} for the uncertainty of its events"
+        parts += f", {clock(cost.second_s)} for the uncertainty of its events"
     first = memory(max(cost.memory_B, compile_B))
     return (
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
-        Decision("before, after", clock(cost.total_s - cost.cpu_s), beside),
+        Decision("before, after", clock(cost.total_s - cost.cpu_s), parts),
         Decision("memory", memory(cost.memory_B), f"of the whole process; {first} where it compiles the kernels"),
     )
 
@@ -301,7 +301,7 @@ def _about_tilt(case: Case) -> str:
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
-    """The values under the tables that hold them, whose names would not fit beside them."""
+    """The values, each under the name of its table: the full names would be too wide."""
     table = ""
     for value in listed:
         holder, _, key = value.key.rpartition(".")

@@ -16,8 +16,8 @@ from frbcli.cli.progress import display
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processes. [one for each core]")
 @output_options
 def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | None, terminal: Terminal) -> None:
-    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: those of run-ups, stability, bearing
-    sheets and kinematic tests."""
+    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: for run-ups, stability, bearing sheets
+    and kinematic tests."""
     if settings and not sources:
         raise click.UsageError("--set is of a CASE.")
     with display(terminal) as shown:

@@ -1,4 +1,4 @@
-"""`frb limit-cycles`: resting positions, Hopf points and branches of limit cycles over the rotor speed."""
+"""`frb limit-cycles`: static equilibria, Hopf points and branches of limit cycles over the rotor speed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KINDS = {"hopf": "Hopf points", "fold": "folds"}
 
 @dataclass(frozen=True)
 class Range:
-    """The numbers that are varied in place of the speed or beside it, see the options of the command."""
+    """The keys that are varied instead of the speed or in addition to it, see the options of the command."""
 
     over: str
     key: str | None
@@ -42,23 +42,23 @@ class Range:
 
     @property
     def second(self) -> tuple[str, str, str] | None:
-        """The key of --and with its range, which is that of --from and --to beside the speed."""
+        """The key of --and and its range; with the speed as the first variable, the range is --from and --to."""
         low, high = (self.low, self.high) if self.over == "speed" else (self.and_low, self.and_high)
         return None if self.key is None or low is None or high is None else (self.key, low, high)
 
 
 @click.command()
 @case_argument
-@speeds_option("those of the diagram; at given ones the cycles have their orbits")
+@speeds_option("those in the diagram; at given ones the cycles have their orbits")
 @click.option("--over", default="speed", metavar="KEY",
-              help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
+              help="A number of the case instead of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
               help="Draw a map: curves of Hopf points and folds over --over and this key, "
                    "e.g. bearing.clearance.")  # fmt: skip
 @click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
 @click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
-@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
-@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
+@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and, with --over KEY.")
+@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and, with --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
               help="Number of values of --and at which diagrams are computed; the curves begin at "
                    "their points. [3]")  # fmt: skip
@@ -78,10 +78,10 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
-    """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
+    """Static equilibria of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
-    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
-    with --with-unbalance the whirls that lock in with it.
+    Limit cycles, stable or not, are without unbalance. The synchronous response with unbalance is shown next to them,
+    and with --with-unbalance the whirls that lock in with it.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
@@ -127,7 +127,7 @@ def _check_range(varied: Range) -> None:
     if (other or map_) != (varied.low is not None and varied.high is not None):
         raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
     if (other and map_) != (varied.and_low is not None and varied.and_high is not None):
-        raise click.UsageError("--and-from and --and-to are the range of --and KEY beside --over KEY, both or none.")
+        raise click.UsageError("--and-from and --and-to are the range of --and KEY with --over KEY, both or none.")
 
 
 def _map(

@@ -214,7 +214,7 @@ def _doubts(motion: Response, unit: SpeedUnit) -> list[str]:
     if doubtful:
         sentences.append(
             f"?: doubtful at {_among(doubtful, speeds, unit)}. A journal moves over more than {DOUBTFUL:g} of the gap "
-            "that its resting position leaves: its amplitude may be wrong by more than 15 %."
+            "that its static equilibrium leaves: its amplitude may be wrong by more than 15 %."
         )
     if beyond:
         sentences.append(

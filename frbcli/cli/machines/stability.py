@@ -1,4 +1,4 @@
-"""`frb stability`: resting positions, linear coefficients, eigenvalues over speed, threshold speed."""
+"""`frb stability`: static equilibria, linear coefficients, eigenvalues over speed, threshold speed."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 @case_argument
 @speeds_option("60 over the range of CASE", REST_OPTION)
 @click.option("--threshold", "with_threshold", is_flag=True,
-              help="Seek the threshold over the range of CASE beside speeds of --speed, too.")  # fmt: skip
+              help="Seek the threshold over the range of CASE, in addition to the speeds of --speed.")  # fmt: skip
 @click.option("--modes", "--stiffness", "stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only undamped natural frequencies of the rotor, from 0 Hz on: "free", on "bearings" of given '
                    'coefficients, or on a stiffness of e.g. "5e6 N/m".')  # fmt: skip
@@ -54,7 +54,7 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
-    """Resting positions, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
+    """Static equilibria, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
@@ -83,7 +83,7 @@ def command(
     for modes in natural:
         show_modes(terminal, modes)
     if natural and _beside_bearings(analysis):
-        terminal.result("On supports, the modes are those of the whole machine: frb stability --shapes SPEED.")
+        terminal.result("On supports, the modes belong to the whole machine: frb stability --shapes SPEED.")
     elif len(natural) == 1 and analysis.points[-1].rests:
         at = terminal.speeds.words(analysis.points[-1].speed_Hz)
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")

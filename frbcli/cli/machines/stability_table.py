@@ -1,5 +1,5 @@
-"""The table of `frb stability` in 80 columns: resting positions and, for each speed, the modes with the least damping;
-and the error of the coefficients that static results are made of.
+"""The table of `frb stability` in 80 columns: static equilibria and, for each speed, the least damped modes; and the
+error of the coefficients that static results are made of.
 
 All growing modes are listed, then the least damped ones.
 """
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
 IN_LINE = 2  # in the one line of a single film
-NONE = "none"  # no resting position, or no coefficients there
+NONE = "none"  # no static equilibrium, or no coefficients there
 
 
 def show_points(terminal: Terminal, analysis: Stability, every_speed: bool) -> None:
@@ -73,7 +73,7 @@ def _lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
 
 
 def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
-    """A line for each film, and beside them one for each mode."""
+    """A line for each film, with one mode in each."""
     if not point.rests:
         return [(speed, NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))

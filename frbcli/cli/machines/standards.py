@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def show_limits(terminal: Terminal, limits: VibrationLimits) -> None:
-    """Tables of the points of the shaft beside their limits, and of the critical speeds beside their margins."""
+    """Tables of the points of the shaft with their limits, and of the critical speeds with their margins."""
     from frbcli.columns import table_of
     from frbcli.linear.standards.vibration import (
         API,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import INPUT, beside, check_outputs, force_option, forced, here
+from frbcli.cli.files import INPUT, check_outputs, force_option, forced, here, next_to
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import TIME_OPTION, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
@@ -97,7 +97,7 @@ def command(
         raise click.UsageError("--signal belongs to --what displacement.")
     if over != "time" and what not in CURVES:
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
-    target = output or beside(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
+    target = output or next_to(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
     if animate:
         _animate(run_files[0], target, span.both, what, film, terminal)
         return

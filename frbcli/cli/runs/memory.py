@@ -1,8 +1,8 @@
 """Too little memory: reported in one line, whatever error a library raises.
 
 Where a process may use little memory (`ulimit -v`), libraries do not load, the compiler aborts, and linear algebra
-waits forever for its buffers. So what takes less than a usual run is told before any of them is loaded; what happens
-later, with an error of some kind of theirs, after it.
+waits forever for its buffers. So too small a limit is reported before any of them is loaded; what happens later, with
+an error of a library's own kind, is reported after it.
 """
 
 from __future__ import annotations

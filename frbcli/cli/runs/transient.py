@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import OUTPUT, beside, check_outputs, force_option, here
+from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.outputs import draw, picture_switch
@@ -73,7 +73,7 @@ def run_options(function: Function) -> Function:
 @run_options
 @output_options
 def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
-    """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
+    """Run the rotor of CASE up and write the run to a file, with a summary picture next to it."""
     from frbcli.runs import run
 
     return transient("runup", run.runup, case, options, terminal)
@@ -84,7 +84,7 @@ def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
 @run_options
 @output_options
 def rundown(case: Case, options: RunOptions, terminal: Terminal) -> int:
-    """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
+    """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture next to it."""
     from frbcli.runs import run
 
     return transient("rundown", run.rundown, case, options, terminal)
@@ -100,7 +100,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     path = options.output or here(case.name, ".h5")
     check_output(path)
     if options.picture:
-        check_outputs(picture=beside(path, SUMMARY))
+        check_outputs(picture=next_to(path, SUMMARY))
     standing = standing_run(command, case, path, options.resume, options.force)
     complete = not options.uncertainty or (standing is not None and SECOND_RUN in standing.cost)
     if standing is not None and standing.status != INTERRUPTED and complete:
@@ -131,7 +131,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     if options.picture and len(run) > 1:
         from frbcli.plot.run.summary import summary_figure
 
-        draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
+        draw(terminal, lambda: summary_figure(run), next_to(path, SUMMARY))
     interrupted = verified is not None and verified["status"] == "interrupted"
     return exit_code("interrupted" if interrupted else run.status)
 

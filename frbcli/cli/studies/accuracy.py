@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @case_argument
-@click.option("--until", type=TIME_OPTION, metavar="TIME", help='End of the run, e.g. "2 s". [that of CASE]')
+@click.option("--until", type=TIME_OPTION, metavar="TIME", help='End of the run, e.g. "2 s". [as in CASE]')
 @theory_option("all that apply")
 @coupling_option
 @outputs_options("CASE-accuracy.png, here")

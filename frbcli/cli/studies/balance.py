@@ -54,7 +54,7 @@ class TrialOption(click.ParamType[tuple[str, Path, float, float]]):
 @click.command()
 @click.argument("run_file", metavar="RUN", type=INPUT)
 @click.option("--planes", type=Names(), default=(), metavar="A,B",
-              help="Disks where masses can be added. [those of --trial]")  # fmt: skip
+              help="Disks where masses can be added. [as in --trial]")  # fmt: skip
 @click.option("--trial", "trials", multiple=True, type=TrialOption(), metavar="PLANE=FILE:UNBALANCE@ANGLE",
               help=f"A run with a trial unbalance in a plane, e.g. {EXAMPLE}. Repeatable. "
                    "[coefficients are computed for the case of RUN]")  # fmt: skip
@@ -131,14 +131,14 @@ def _recorded(path: Path, measurement: Measurement | None, terminal: Terminal) -
     across, up = ([] if text is None else [name.strip() for name in text.split(",")]
                   for text in ((None, None) if measurement is None else (measurement.x, measurement.y)))  # fmt: skip
     if path.suffix.lower() not in READERS or measurement is None or len(across) < 2 or not path.exists():
-        computed = path.suffix.lower() not in READERS  # a trial run of frb beside measurements has no columns
+        computed = path.suffix.lower() not in READERS  # a computed trial run among measurements has no columns
         return run_of(path, None if computed else measurement, terminal, relative=False)
     if up and len(up) != len(across):
         raise click.UsageError(f"--x has {len(across)} columns and --y {len(up)}: give one for each probe, or no --y.")
     from frbcli.analysis.measured import measured_probes
 
-    beside: list[str | None] = [*up] if up else [None] * len(across)
-    run = measured_probes(path, measurement, list(zip(across, beside, strict=True)))
+    upward: list[str | None] = [*up] if up else [None] * len(across)
+    run = measured_probes(path, measurement, list(zip(across, upward, strict=True)))
     for remark in run.remarks:
         terminal.remark(remark)
     return run

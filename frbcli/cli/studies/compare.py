@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, beside, here
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here, next_to
 from frbcli.cli.options import (
     cavitation_option,
     coupling_option,
@@ -47,14 +47,14 @@ class Models:
 @click.command()
 @case_or_run_argument
 @cavitation_option
-@theory_option("that of CASE")
+@theory_option("as in CASE")
 @coupling_option
 @thermal_option
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
               help="The scene: runup, rundown, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
-              help="A measured run-up to set beside RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
+              help="A measured run-up to compare with RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
 @signal_option()
 @measured_options
 @outputs_options("CASE-compare.png, here")
@@ -71,8 +71,8 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int:
-    """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or set a
-    measurement beside RUN.h5.
+    """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or compare
+    RUN.h5 with a measurement.
 
     Without --cavitation, --theory and --coupling CASE is compared with all models of low cost whose films keep
     neither oil nor gas.
@@ -83,7 +83,7 @@ def command(
 
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
-            raise click.UsageError("A measurement stands beside a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
+            raise click.UsageError("Compare a measurement with a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
         beside_measured(terminal, case, file, measurement, signal, outputs)
         return 0
     if test in TESTS:
@@ -155,7 +155,7 @@ def beside_measured(
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 
-    places = outputs.check(beside(run_file, "-measured.png"))
+    places = outputs.check(next_to(run_file, "-measured.png"))
     with display(terminal):
         run = read_run(run_file)
         comparison = against_measured(run, run_of(file, measurement, terminal), signal)

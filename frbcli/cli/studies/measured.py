@@ -1,4 +1,4 @@
-"""Options that say where a motion stands in the file of a measurement, and the run that it makes."""
+"""Options that say which columns of a measurement hold a motion, and the run that it makes."""
 
 from __future__ import annotations
 
@@ -90,7 +90,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
     for names in EITHER:
         several = [f"--{name.replace('_', '-')}" for name in names if given[name] is not None]
         if len(several) > 1:
-            raise click.UsageError(f"{' and '.join(several)} tell the same of the measurement: give one of them.")
+            raise click.UsageError(f"{' and '.join(several)} state the same quantity: give one of them.")
     return Measurement(
         x=given["x"],
         clearance=clearance,

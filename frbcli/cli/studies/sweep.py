@@ -59,12 +59,12 @@ class Machines:
     below: float | None
 
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
-        """The machines. others: keys with several values, or a list of points, beside which nothing can scatter. Raises
+        """The machines. others: keys with several values, or a list of points, with which nothing can scatter. Raises
         InputError."""
         from frbcli.studies.sweep.distributions import read_correlation, samples
 
         if others:
-            problem, remedy = "gives several values beside keys that scatter.", "Sweep each of its values by itself."
+            problem, remedy = "gives several values while other keys scatter.", "Sweep each of its values by itself."
             raise input_error("sweep", "--set", "", problem, remedy)
         correlations = dict(map(read_correlation, self.correlations))
         return samples(distributions, self.samples, correlations, self.seed)
@@ -87,7 +87,7 @@ class Machines:
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
 @click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
-@click.option("--stability", is_flag=True, help="Compute the threshold speed alone, in place of a run-up.")
+@click.option("--stability", is_flag=True, help="Compute the threshold speed alone, instead of a run-up.")
 @click.option("--no-runs", is_flag=True, help="Keep no run files.")
 @click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT",
               help="Format of the table, csv or parquet; parquet needs the extra frbcli[parquet].")  # fmt: skip
