@@ -221,7 +221,7 @@ def _without_slow_roll(
     if given.slow_roll_Hz is None:
         return dict(seen), ""
     if tacho is None:
-        problem = "does not tell the angle of the rotor, which a slow roll turns with."
+        problem = "does not hold the angle of the rotor, with which the slow roll turns."
         raise wrong_file(columns.path, problem, "Give --tacho COLUMN, or leave --slow-roll out.")
     left, vectors, revolutions = dict[str, Array](), list[str](), 0.0
     for name, signal in seen.items():

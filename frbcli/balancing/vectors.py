@@ -1,7 +1,7 @@
 """Synchronous vectors of a run: what its points move with the rotor, with the phase to the rotor's angle.
 
-A point moves with x = Re(A exp(i alpha)), and y likewise, alpha the angle of the rotor. That of a computed run is 0 at
-its begin, that of a measurement 0 at each pulse of its tacho.
+A point moves with x = Re(A exp(i alpha)), and y likewise, alpha the angle of the rotor. In a computed run it is 0 at
+the begin, in a measurement 0 at each pulse of the tacho.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from frbcli.errors import input_error
 from frbcli.results.records import TIME
 
 OF_SHAFT = ("journal", "disk")  # kinds of points
-SAME, NEAR = 2e-3, 1e-2  # relative: speeds that are one, and that may stand for each other
+SAME, NEAR = 2e-3, 1e-2  # relative: speeds that are equal, and speeds that are close enough to replace each other
 HELD = 2.0  # windows: a speed that is held longer has settled in the second half of that time
 DWELLS = 0.25  # share of a run that holds one speed
 WINDOWS = 0.5  # share of a short run that a window has
@@ -111,5 +111,5 @@ def _between(speeds: Array, values: Complex, nearest: int, speed: float) -> Comp
 
 
 def marked(run: RunLike) -> bool:
-    """Whether a run tells the angle of the rotor."""
+    """Whether a run holds the angle of the rotor."""
     return math.isfinite(run.references.get(MARK, math.nan))

@@ -31,7 +31,7 @@ def without_settings_here(act: "Callable[..., Returned]", *given: object) -> "Re
 
 
 class _Finder:
-    """Finds numba's reader of settings as others do, and has it run without those of the current folder."""
+    """Finds numba's reader of settings as other finders do, and runs it without the settings of the current folder."""
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None

@@ -1,4 +1,4 @@
-"""Pictures on axes of one's own: every function takes `ax`, draws on it and returns it; without it on a new figure.
+"""Pictures on given axes: every function takes `ax`, draws on it and returns it; without `ax` it makes a new figure.
 
     figure, (left, right) = pyplot.subplots(1, 2)
     frbcli.draw_orbit(run, ax=left)
@@ -37,9 +37,9 @@ def eccentricity(
     run : Run
         A run, see `read_run`, `runup` and `measured_run`.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+        Axes to draw on; by default new ones, in the figure `ax.figure`.
     from_time, to_time : float, optional
-        Begin and end in s; by default those of the run.
+        Begin and end in s; by default of the whole run.
     over : {"time", "speed"}
         The axis.
 
@@ -325,7 +325,7 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """The given axes, or those of a new figure."""
+    """The given axes, or axes of a new figure."""
     if ax is not None:
         return ax
     with styled():

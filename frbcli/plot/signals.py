@@ -38,7 +38,7 @@ def motion(run: Run, node: str) -> tuple[Signal, Signal]:
 
 
 def bearing_of(run: Run, node: str) -> str:
-    """The bearing that a point belongs to: of a disk that of the same name, or else the first one."""
+    """The bearing that a point belongs to: for a disk the bearing of the same name, or else the first one."""
     bearings = list(points(run.signals, "journal"))
     name = located(run, node)[1]
     return name if name in bearings or not bearings else bearings[0]
@@ -70,7 +70,7 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, 
 
 def clearance(run: Run, bearing: str = "") -> float:
     """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o; of a machine without
-    films the length that stands for it. Raises RunFileError where the run does not say."""
+    films the length that replaces it. Raises RunFileError where the run does not state it."""
     known = [length for name, length in run.references.items() if name.startswith(("clearance_m", "length_m"))]
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
@@ -86,7 +86,7 @@ def shell(run: Run, bearing: str = "") -> float | None:
 
 
 def case_tables(run: Run) -> dict[str, Any]:
-    """The tables of the case that a run was made of. Raises RunFileError if its text cannot be that of a case."""
+    """The tables of the case that a run was made of. Raises RunFileError if its text is not a case."""
     try:
         return parse(run.case_text)
     except TomlFault as error:

@@ -47,7 +47,7 @@ MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for
 SPEEDS_NOTE = "Orbits of the last revolutions before a moment, and the spectrum about it."
 NARROW_COLUMNS = 2  # of the legends of narrow pictures
-NARROW = 4.9  # inches: the width of one of two pictures beside each other
+NARROW = 4.9  # inches: the width of one of two pictures side by side
 COURSES = {
     "pin": "Angle of the rings with a pin, and its torque on them.",
     "oil-content": "Oil fraction of the films.",
@@ -86,7 +86,7 @@ def write_report(
     both_units : bool
         Rotor speeds in Hz and in rpm; without it in rpm where the case gives them so, else in Hz.
     force : bool
-        Also in place of a file that frb did not write.
+        Also replace a file that frb did not write.
 
     Returns
     -------
@@ -113,8 +113,8 @@ def write_report(
 def report(
     run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal", author: str = "", both_units: bool = False
 ) -> str:
-    """The page as HTML. speeds_Hz: of the orbits and spectra, by default those of the events and the last one; signal:
-    of waterfall, orbits and spectra, as in `frb waterfall`; author and both_units: see write_report.
+    """The page as HTML. speeds_Hz: of orbits and spectra, by default at the events and the last one; signal: of
+    waterfall, orbits and spectra, as in `frb waterfall`; author and both_units: see write_report.
 
     Raises RunFileError for a run without samples, InputError for a speed that the run does not reach.
     """
@@ -235,7 +235,7 @@ def _event(number: int, event: dict[str, Any], unit: SpeedUnit) -> tuple[str, ..
 def _note(run: Run, signal: str, words: str) -> str:
     label = level_label(run, signal).replace("C$_i$ + C$_o$", "Cᵢ + Cₒ")
     point = signal.replace("_", " ")
-    return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers are those of the events."
+    return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers refer to the events."
 
 
 def _courses(run: Run) -> list[ShownRun]:
@@ -244,11 +244,11 @@ def _courses(run: Run) -> list[ShownRun]:
     if any(True for _ in films(run.signals)):
         figures = [(eccentricity_figure([run]), "Eccentricity.")]
     if any(name.startswith("ring_speed") for name in run.signals):
-        figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
-    films_told = {kind: f"{name[:1].upper()}{name[1:].replace('_', ' ')}." for kind, (name, *_) in FILM_SIGNALS.items()}
+        figures.append((ring_speed_figure([run]), "Speed of the rings over the rotor speed."))
+    captions = {kind: f"{name[:1].upper()}{name[1:].replace('_', ' ')}." for kind, (name, *_) in FILM_SIGNALS.items()}
     if any(name.startswith("temperature") for name in run.signals):
-        del films_told[POWER]  # it stands with the heat
-    for what, words in (COURSES | films_told).items():
+        del captions[POWER]  # it is drawn with the heat
+    for what, words in (COURSES | captions).items():
         if SUBJECTS[what].panels[0].signals(run):
             figures.append((quantity_figure([run], what), words))
     for figure, _ in figures:

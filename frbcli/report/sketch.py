@@ -88,8 +88,8 @@ def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class _Bearing:
-    """A bearing: its films from the journal outwards, with that of its damper, none of given coefficients; symbols of
-    what stands between it and the ground."""
+    """A bearing: its films from the journal outwards, including its damper's film, none for given coefficients; symbols
+    of what connects it to the ground."""
 
     name: str
     position: float
@@ -279,7 +279,7 @@ def _forces(
 
 
 def _place(case: Case, number: int) -> float:
-    """The place of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside
+    """The place of an element of a symmetric rotor, from the middle of a journal outwards over half its width: next to
     the film, or spread over the journal."""
     if case.bearings:
         return 1.25 + 0.5 * number
@@ -366,7 +366,7 @@ def _around(film: FilmGeometry, name: str, turns: bool) -> str:
     parts = [curve(outer, "shell", closed=True), curve(inner, "film", closed=True)]
     for opening in film.supply.outlines(0.5 * film.diameter, film.width):
         start, end = opening.position - opening.half_angle, opening.position + opening.half_angle
-        if opening.half_angle >= math.pi:  # all around: nothing is left to draw it beside
+        if opening.half_angle >= math.pi:  # all around: no bore wall is left to draw
             continue
         arc = [start + (end - start) * i / 40.0 for i in range(41)]
         rim = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in arc]

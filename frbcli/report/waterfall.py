@@ -122,7 +122,7 @@ def _bar(bottom: float) -> list[str]:
 
 
 def _flags(events: Sequence[dict[str, Any]], across: Any, bottom: float, span: tuple[float, float]) -> list[str]:
-    """Numbered lines of the events; numbers that would meet stand in a higher row, and where all rows are taken the
+    """Numbered lines of the events; numbers that would meet move to a higher row, and where all rows are full the
     line has none."""
     lines, flags, free = list[str](), list[str](), [-1e9] * FLAG_ROWS
     for number, event in enumerate(events, start=1):

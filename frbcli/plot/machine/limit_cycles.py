@@ -42,7 +42,7 @@ STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
 def limit_cycles_figure(diagram: LimitCycles, tracks: Sequence[RunTrack] = ()) -> Figure:
-    """Largest eccentricities of resting positions and cycles over the speed, a panel for each film, and below the
+    """Largest eccentricities of static equilibria and cycles over the speed, a panel for each film, and below the
     frequencies of the cycles with half the rotor speed and the lines of the rings.
 
     tracks: of runs, drawn over it as thin lines.
@@ -51,7 +51,7 @@ def limit_cycles_figure(diagram: LimitCycles, tracks: Sequence[RunTrack] = ()) -
     count = len(diagram.films)
     with styled():
         at = "" if diagram.over == SPEED else f" at {case.speed_unit.words(diagram.equilibria[0].speed_Hz)}"
-        words = f"resting positions and limit cycles{at}, dashed where unstable"
+        words = f"static equilibria and limit cycles{at}, dashed where unstable"
         figure = new_figure(case.heading, words, 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
@@ -184,6 +184,6 @@ def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: in
 def _line(axes: Axes, x: Array, y: Array, stable: Truths, colour: str, label: str | None) -> None:
     """A curve, solid where stable and dashed where not; a piece between the two belongs to the unstable part."""
     unstable = ~stable
-    beside = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)
+    dashed = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)
     axes.plot(x, np.where(stable, y, np.nan), color=colour, linestyle=STABLE, label=label)
-    axes.plot(x, np.where(beside, y, np.nan), color=colour, linestyle=UNSTABLE)
+    axes.plot(x, np.where(dashed, y, np.nan), color=colour, linestyle=UNSTABLE)

@@ -89,7 +89,7 @@ def shapes_figure(shapes: DampedModes) -> Figure:
     columns = min(COLUMNS, len(shown))
     rows = math.ceil(len(shown) / COLUMNS) or 1
     with styled():
-        words = f"damped modes about the resting position at {case.speed_unit.words(shapes.speed_Hz)}"
+        words = f"damped modes about the static equilibrium at {case.speed_unit.words(shapes.speed_Hz)}"
         figure = new_figure(case.heading, words, width=3.3 * max(columns, 2), height=0.5 + 3.0 * rows)
         for number, mode in enumerate(shown):
             axes: Any = figure.add_subplot(rows, max(columns, 1), number + 1, projection="3d")

@@ -52,7 +52,7 @@ def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figu
     case = motion.case
     with styled():
         grows = ", dotted where a whirl grows and hides it" if (motion.growth > 0.0).any() else ""
-        figure = new_figure(case.heading, f"linear {motion.what} about the resting position{grows}", 9.6, 10.8)
+        figure = new_figure(case.heading, f"linear {motion.what} about the static equilibrium{grows}", 9.6, 10.8)
         amplitude, phase, polar, force, first, second = figure.subplots(3, 2).ravel()
         draw_amplitude(amplitude, motion)
         for number in range(len(motion.points)):
@@ -90,8 +90,8 @@ def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figu
 
 
 def _orbit_speeds(motion: Response) -> list[int]:
-    """The numbers of the speeds of the orbits, ascending: that of the largest amplitude and the highest one, or where
-    both are one, the middle one and the highest."""
+    """The numbers of the speeds of the orbits, ascending: the speed of the largest amplitude and the highest one, or
+    where both are one, the middle one and the highest."""
     last = len(motion.speeds_Hz) - 1
     largest = int(np.argmax(motion.amplitude.max(axis=1)))
     return sorted({largest if largest != last else last // 2, last})
@@ -141,7 +141,7 @@ def _doubts(axes: Axes, motion: Response, labelled: bool = False) -> None:
 
 
 def _orbits(axes: Axes, motion: Response, speed: int) -> None:
-    """The orbits of all points about their resting positions at a speed, by its number; a dot where each is while the
+    """The orbits of all points about their static equilibrium at a speed, by its number; a dot where each is while the
     mark of the rotor points along x, or the angle of the load that excites alone is 0."""
     for number in range(len(motion.points)):
         colour, dash = _line_of(number)
@@ -171,8 +171,8 @@ def _line(axes: Axes, motion: Response, values: Array, colour: str, dash: object
     grows = motion.growth > 0.0
     axes.plot(motion.speeds_Hz, np.where(grows, np.nan, values), color=colour, linestyle=dash, label=label)
     if grows.any():
-        beside = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
-        axes.plot(motion.speeds_Hz, np.where(beside, values, np.nan), color=colour, linestyle=GROWING)
+        dotted = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
+        axes.plot(motion.speeds_Hz, np.where(dotted, values, np.nan), color=colour, linestyle=GROWING)
 
 
 def _polar(axes: Axes, motion: Response, number: int, colour: str, dash: object) -> None:

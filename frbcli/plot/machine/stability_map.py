@@ -26,7 +26,7 @@ from frbcli.plot.style import (
 HOPF_STYLES = {
     SUPERCRITICAL: (BLUE, "-", "Hopf points, soft"),
     SUBCRITICAL: (VERMILION, "-", "Hopf points, hard"),
-    None: (GREY, "--", "Hopf points, soft or hard not told"),
+    None: (GREY, "--", "Hopf points, soft or hard unknown"),
 }
 MARKS = {BAUTIN: ("o", "soft changes to hard"), CUSP: ("^", "cusp of folds")}
 UNSTABLE = "#f3e3d3"
@@ -69,11 +69,11 @@ def _limits(chart: StabilityMap) -> tuple[float, float]:
 
 
 def _shade(axes: Axes, chart: StabilityMap) -> None:
-    """Where the resting position is unstable."""
+    """Where the static equilibrium is unstable."""
     grid = np.where(np.isnan(chart.growth.rate), -1.0, chart.growth.rate)
     if grid.max() > 0.0:
         axes.contourf(chart.growth.over, chart.growth.values, grid, levels=[0.0, grid.max()], colors=[UNSTABLE])
-        axes.fill([], [], color=UNSTABLE, label="resting position unstable")
+        axes.fill([], [], color=UNSTABLE, label="static equilibrium unstable")
 
 
 def _curve(axes: Axes, curve: MapCurve) -> None:

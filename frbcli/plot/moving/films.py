@@ -1,5 +1,5 @@
 """A film of a run on its way, as far as the run has kept it: oil fraction and free gas over the whole gap, at some
-moments beside each other, or as a moving picture."""
+moments side by side, or as a moving picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from frbcli.results.files.container import refuse
 from frbcli.results.kept_films import KeptFilm, kept_film
 from frbcli.results.store import Run
 
-MOMENTS = 6  # beside each other in a picture that does not move
+MOMENTS = 6  # side by side in a still picture
 COLUMNS, COURSE = 256, 400  # of a map around, and points of a curve over time
 MAP_HEIGHT, COURSE_HEIGHT, WIDTH = 0.75, 1.5, 8.0  # inches
 TICKS = 5  # of a scale, at most
@@ -54,7 +54,7 @@ def animate_films(
     """Write a film as a moving picture of at most `frames` of the moments that a run has kept from from_time to to_time
     in s.
 
-    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    force: also replace a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
     the run has kept none.
     """
     path = Path(path)

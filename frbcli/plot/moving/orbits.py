@@ -29,7 +29,7 @@ def animate_orbits(
 ) -> Path:  # fmt: skip
     """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
 
-    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    force: also replace a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
     the run has no samples between these times.
     """
     path = Path(path)

@@ -27,7 +27,7 @@ Observer = Callable[[int, int], None]  # frames drawn, and how many there are
 
 def check_animation(path: Path, force: bool = False) -> None:
     """Raises InputError if a moving picture cannot have this name or this place, or its program is missing. force: also
-    in place of a file that frb did not write."""
+    replace a file that frb did not write."""
     if path.suffix.lower() not in FORMATS:
         raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
     if path.suffix.lower() == ".mp4" and _ffmpeg() is None:

@@ -1,4 +1,4 @@
-"""Orbits and spectra of a run at chosen moments, one beside the other."""
+"""Orbits and spectra of a run at chosen moments, side by side."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TURNS = 12.0  # revolutions of an orbit
 LONGEST_s, SHORTEST_s = 0.2, 2e-3
 WIDTH, ROW = 7.2, 2.5  # inches
 FINE = 40.0  # points of a revolution: through fewer samples a curve would have corners
-BESIDE = 12  # samples on either side that values between samples need
+MARGIN = 12  # samples on either side that values between samples need
 ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
 AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
 CLEAR = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}  # behind a name: lines of others
@@ -54,8 +54,8 @@ def speeds_figure(
 
 
 def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal") -> None:
-    """The orbit of the last revolutions before a time in s, in its clearance if it is that of a journal and not
-    too small to be seen in it."""
+    """The orbit of the last revolutions before a time in s; with the clearance for a journal whose orbit is not too
+    small to be seen in it."""
     speed = max(abs(speed_at(run, time_s)), 1e-9)
     begin, end = ends(run)
     until = min(max(time_s, begin + SHORTEST_s), end)
@@ -81,14 +81,14 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
 
 
 def between(part: Signal, first: int, last: int, times: int) -> Values:
-    """The samples of a motion from `first` to before `last`, and values between them, `times` as many: those of the
-    motion whose frequencies stay below half of the rate of the samples. At an end of the run, beyond which nothing is
-    known, the last few samples are left out."""
-    whole = part[max(first - BESIDE, 0) : min(last + BESIDE, len(part))]
-    if times <= 1 or len(whole) <= 4 * BESIDE:
+    """The samples of a motion from `first` to before `last`, and `times` as many values between them, interpolated as
+    band-limited to half of the sampling rate. At an end of the run, beyond which nothing is known, the last few samples
+    are left out."""
+    whole = part[max(first - MARGIN, 0) : min(last + MARGIN, len(part))]
+    if times <= 1 or len(whole) <= 4 * MARGIN:
         return part[first:last]
-    rest = BESIDE * times
-    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - BESIDE - 1) * times + 1])
+    rest = MARGIN * times
+    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - MARGIN - 1) * times + 1])
 
 
 def draw_spectrum_at(axes: Axes, run: Run, time_s: float, spectra: Spectrogram, signal: str = "journal") -> None:
