@@ -30,7 +30,7 @@ def require_rising(columns: Columns, name: str, time: Array) -> Array:
     if not np.all(steps > 0.0):
         place = int(np.argmin(steps > 0.0)) + 1
         problem = f'has times in "{name}" that do not rise at {columns.row(place)}.'
-        raise wrong_file(columns.path, problem, "Sort the rows by time, or give --rate in place of --time.")
+        raise wrong_file(columns.path, problem, "Sort the rows by time, or give --rate instead of --time.")
     usual = float(np.median(steps))
     off = np.abs(steps - usual)
     place = int(np.argmax(off))
@@ -38,7 +38,7 @@ def require_rising(columns: Columns, name: str, time: Array) -> Array:
         irregular = f"has a step of {steps[place]:.4g} s"
         problem = f'{irregular} in "{name}" before {columns.row(place + 1)}, and else of {usual:.4g} s.'
         raise wrong_file(
-            columns.path, problem, "Cut the file there; if no sample is missing, give --rate in place of --time."
+            columns.path, problem, "Cut the file there; if no sample is missing, give --rate instead of --time."
         )
     return time
 

@@ -1,7 +1,7 @@
 """Synchronous vectors of a run: what its points move with the rotor, with the phase to the rotor's angle.
 
 A point moves with x = Re(A exp(i alpha)), and y likewise, alpha the angle of the rotor. In a computed run it is 0 at
-the begin, in a measurement 0 at each pulse of the tacho.
+the beginning, in a measurement 0 at each pulse of the tacho.
 """
 
 from __future__ import annotations

@@ -154,7 +154,7 @@ def _moments(
 
 
 def _marches(case: Case, film: _MovingFilm, times: Array) -> Iterator[tuple[Moment, ...]]:
-    """The lands beside each other, time by time."""
+    """The moments of all lands, time by time."""
     marches = [march(each.film, each.path, times, film_at=_film_at(case, each.plan, each.film)) for each in film.lands]
     return zip(*marches, strict=True)
 
@@ -213,7 +213,7 @@ def _error_of_course(
 
 def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: Sequence[MovedFilm]) -> float:
     """The largest error of the periods' largest forces over the largest of all, from a course of half the resolution:
-    of first order, since the steps keep the oil as Euler's do."""
+    of first order, as Euler's steps of the oil are."""
     fine_peaks, coarse_peaks = _peaks(case, times, moments), _peaks(case, times, coarse)
     largest = max(fine_peaks.values())
     worst = max(abs(peak - coarse_peaks[n]) for n, peak in fine_peaks.items() if n in coarse_peaks)
@@ -285,7 +285,7 @@ def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFi
 
 
 def _film_at(case: Case, plan: KinematicPlan, film: VolumeFilm) -> FilmAt:
-    """The film with supply and law of a moment: that of the penalty model follows the eccentricity."""
+    """The film with supply and law of a moment: the law of the penalty model follows the eccentricity."""
 
     def film_at(time: float, motion: Motion) -> VolumeFilm:
         fed = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film

@@ -42,10 +42,10 @@ class KinematicResult:
     status: "ok" | "not-converged", then problem says why. displacement: (2,) over the clearance; loads, field: None if
     there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error,
     moment_error: estimated, relative to force and moment, NaN if not known, the latter of a rotation; history: None for
-    a rotation. Of a squeeze or a whirl, displacement, loads and field are those of the moment of the largest force, and
-    so is the error; with a law that keeps oil it is the worst of the largest forces of the periods. heat: of a case
-    with heat, in a squeeze or whirl of the mean over the last period; all else is that of its viscosity and clearance,
-    as in `plan`. stribeck: of a rotation under a load between rough surfaces.
+    a rotation. Of a squeeze or a whirl, displacement, loads, field and error are at the moment of the largest force;
+    with a mass-conserving law the error is the worst of the largest forces of the periods. heat: of a case with heat,
+    in a squeeze or whirl the mean over the last period; all else is at its viscosity and clearance, as in `plan`. stribeck:
+    of a rotation under a load between rough surfaces.
     """
 
     cavitation: str
@@ -110,7 +110,7 @@ def rotation(
     case : Case
         The machine, see `load_case`, with [motion].
     cavitations : sequence of str
-        Cavitation models; an empty one stands for that of the case.
+        Cavitation models; an empty one means the model of the case.
     observe : callable, optional
         Called with the number of each moment of each model, and how many there are.
 
@@ -207,7 +207,7 @@ def _test(
 
 
 def _reporter(observe: Observer, done: int, plans: Sequence[KinematicPlan], case: Case) -> Report:
-    """A function that observes the moments of one model, numbered on from those of the models before it."""
+    """A function that observes the moments of one model, numbered on from the models before it."""
     counts = [_moment_count(case, plan) for plan in plans]
     before, whole = sum(counts[:done]), sum(counts)
     return lambda number: observe(before + number, whole)

@@ -47,7 +47,7 @@ class FilmField:
 class FilmMoment:
     """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
     errors of force and moment, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked
-    for. The field of a bearing whose lands differ is that of the land at z < 0."""
+    for. The field of a bearing whose lands differ is the one of the land at z < 0."""
 
     field: FilmField | None
     loads: FilmLoads
@@ -139,7 +139,7 @@ def require_gap(section: Section, motion: Motion) -> None:
 
 
 def _whole(parts: Sequence[tuple[Land, FilmMoment]]) -> FilmMoment:
-    """The film of a bearing from those of its lands, whose errors add up at the worst."""
+    """The film of a bearing from its lands, whose errors add up at the worst."""
     whole = summed([(land, each.loads) for land, each in parts])
     if len(parts) == 1:
         return replace(parts[0][1], loads=whole)

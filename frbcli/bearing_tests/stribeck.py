@@ -51,8 +51,8 @@ class _Point(NamedTuple):
 def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
     """The curve of a planned rotation; None without a load, a speed, rough surfaces or a known torque.
 
-    Films on cells have COARSE_CELLS. It ends where a journal rests nowhere. Raises NotConverged if it does not rest at
-    the speed of the test.
+    Finite-volume films have COARSE_CELLS. It ends where a journal has no static equilibrium. Raises NotConverged if it
+    has none at the speed of the test.
     """
     motion = case.motion
     if motion is None or motion.load is None or not motion.speed or not case.contact.rough or not plan.form.solved:

@@ -47,7 +47,7 @@ def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: f
 
 
 def _rubbing(force: ForceOf) -> ForceOf:
-    """The force of a film with that of its summits."""
+    """The force of a film including its summits."""
 
     def whole(
         case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
@@ -59,7 +59,7 @@ def _rubbing(force: ForceOf) -> ForceOf:
 
 
 def _on_summits(case: Case, motion: Motion, film: FilmMoment) -> FilmMoment:
-    """A film with its summits beside it."""
+    """A film including its summits."""
     rubbing = rubbing_of(case)
     whole = rubbing.loads(film.loads, motion)
     return replace(film, loads=whole, force_error=film.force_error * rubbing.share_of_error(film.loads, whole))

@@ -2,7 +2,7 @@
 
 Forces and the ground of a case have known frequencies f or orders k of the rotor speed. With their phase
 theta = 2 pi f t, or k times the angle of the rotor, a signal holds Re(A exp(i theta)) with an amplitude A that changes
-slowly. A is the mean of 2 x exp(-i theta) under a Hann window of PERIODS periods, and what it stands for is subtracted.
+slowly. A is the mean of 2 x exp(-i theta) under a Hann window of PERIODS periods; Re(A exp(i theta)) is subtracted.
 
 A measurement does not say what forces it. Lines that keep one frequency over a large range of rotor speeds, such as
 mains hum or a shaker, are found from its spectrum.
@@ -103,7 +103,7 @@ class WithoutForced:
 
 
 def forced_lines(run: RunLike) -> list[ForcedLine]:
-    """What forces a run beside its unbalance, from its references; order 1 is that of the unbalance."""
+    """What forces a run in addition to its unbalance (order 1), from its references."""
     known = run.references
     lines = [ForcedLine(frequency_Hz=known[name]) for name in known if signals.is_forced(name, "Hz")]
     return lines + [ForcedLine(order=known[name]) for name in known if signals.is_forced(name, "order")]

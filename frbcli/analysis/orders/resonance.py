@@ -21,7 +21,7 @@ REVOLUTIONS = 8  # of the window: a resonance is passed in many more
 WHIRL = 0.5  # order of oil whirl
 WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
 PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
-# The same of the highest peak of a run that begins or ends beside a resonance, or of one that is strongly damped: a
+# The same of the highest peak of a run that begins or ends close to a resonance, or of one that is strongly damped: a
 # known critical speed of the machine, and a phase that turns by LAG between the lowest points of both sides, decide.
 LOW_PROMINENCE = 0.02
 OVER_BACKGROUND = 5.0
@@ -29,7 +29,7 @@ FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a roto
 # By how much the motion falls behind the unbalance from half-way up a peak to half-way down. It is 60 to 130 degrees
 # for critical speeds of rotors in oil films, and next to nothing where a film alone changes, because oil goes or comes.
 LAG = np.radians(30.0)
-NEAR = 0.15  # share of a frequency by which a resonance may lie beside a mode: films are not as full, nor as linear
+NEAR = 0.15  # share of a frequency by which a resonance may differ from a mode: films are not as full, nor as linear
 LATE = 1.5  # a ramp of r Hz/s passes a lightly damped mode by up to this times sqrt(r) before the motion is largest
 
 TURNS_BACK = 0.1  # share of the range of speeds by which a speed goes back where a pass ends
@@ -39,8 +39,8 @@ SAME = 0.02  # share of the speed within which peaks of several points are one r
 # further; its phase turns back between two of these beats.
 BEATS, TURNED = 6.0, np.radians(45.0)
 
-WIDE, NARROW = 4, 32  # revolutions: what the short window sees about the order 1 beside what the long one sees at it
-BESIDE = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
+WIDE, NARROW = 4, 32  # revolutions: windows for what differs from the order 1, and for what is at it
+FURTHEST = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
 BEGINS, ENDS = 0.05, 0.025  # amplitude relative to the clearance, as of whirls
 SUSTAINED_REVOLUTIONS = 20.0  # likewise: what dies sooner is the end of a resonance
 
@@ -63,13 +63,13 @@ def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
     return tuple(Tracked(kind, name, order, REVOLUTIONS) for order in orders)
 
 
-def beside(kind: str, name: str) -> tuple[Tracked, ...]:
-    """The tracks in which vibrations beside the synchronous one are sought: two windows, both senses."""
+def near_synchronous(kind: str, name: str) -> tuple[Tracked, ...]:
+    """The tracks in which vibrations close to the synchronous one are sought: two windows, both senses."""
     return tuple(Tracked(kind, name, order, window) for order in (1.0, -1.0) for window in (WIDE, NARROW))
 
 
 def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
-    """Whether a frequency in Hz is that of one of the modes; late: by how much a ramp may have moved it, Hz."""
+    """Whether a frequency in Hz belongs to one of the modes; late: by how much a ramp may have moved it, Hz."""
     return any(abs(frequency - mode) <= NEAR * mode + late for mode in modes)
 
 
@@ -97,9 +97,9 @@ def critical_steps(
 ) -> list[tuple[int, int]]:
     """Which of the points shows each critical speed the clearest, and at which step of `turns`, in their order.
 
-    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; quiet: spans of time
-    in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
-    that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
+    motions: of each disk, or else journal, tracked by `resonant`, in m; floor: m, less is round-off; quiet: spans of
+    time in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a
+    resonance that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
     """
     chosen: list[_Passage] = []
     modes = None if modes is None else distinct_modes(modes)
@@ -124,7 +124,7 @@ def passes(speed_Hz: Array) -> list[tuple[int, int]]:
 
 
 def distinct_modes(modes: Sequence[float]) -> list[float]:
-    """Critical speeds in Hz, ascending, one of those that a peak does not tell apart."""
+    """Critical speeds in Hz, ascending; of several that share a peak the lowest."""
     kept: list[float] = []
     for mode in modes:
         if not kept or mode > (1.0 + SAME) * kept[-1]:
@@ -141,8 +141,8 @@ def _in_pass(
     modes: Sequence[float] | None,
     vibrations: Sequence[Vibration],
 ) -> Iterator[_Passage]:
-    """The resonances of a point in one pass and one span of time without whirl. numbers: floor, and that of the
-    point; others: see critical_steps."""
+    """The resonances of a point in one pass and one span of time without whirl. numbers: (floor, number of the point);
+    others: see critical_steps."""
     half = REVOLUTIONS * STEPS // 2
     floor, point = numbers
     begins, ends = (int(step) for step in np.searchsorted(turns.time_s, quiet))
@@ -185,7 +185,7 @@ def _distinct(passages: Sequence[_Passage], turns: Revolutions, modes: Sequence[
 
 
 def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
-    """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: those of `resonant`,
+    """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: as by `resonant`,
     whose windows are half of REVOLUTIONS behind."""
     return float(np.abs(motions[0][step - REVOLUTIONS * STEPS // 2]))
 
@@ -205,7 +205,7 @@ class _Resonance:
 
 
 def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[_Resonance]:
-    """The resonances with the unbalance up to a sample; motions (n,): those of `resonant`."""
+    """The resonances with the unbalance up to a sample; motions (n,): as by `resonant`."""
     synchronous, background, whirl = motions
     amplitude: Array = np.abs(synchronous)
     if len(amplitude) == 0:
@@ -283,7 +283,7 @@ def vibrations_beside(
 ) -> Iterator[Vibration]:
     """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
 
-    tracked: those of `beside` in m; clearance: m. A vibration with the frequency of a mode of the machine, see
+    tracked: by `near_synchronous`, in m; clearance: m. A vibration with the frequency of a mode of the machine, see
     critical_steps, is the decay of a resonance.
     """
     half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
@@ -293,7 +293,7 @@ def vibrations_beside(
     speed = turns.speed_Hz[half:-half]
     order = 1.0 + np.sign(speed) * np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
     amplitude = (np.abs(forward) + np.abs(backward)) / clearance  # along the longer axis of the orbit
-    apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
+    apart = np.where(np.abs(order - 1.0) >= FURTHEST, amplitude, 0.0)
     settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
     sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
     for first, last in intervals_above(apart[settled:until], BEGINS, ENDS, sustained):

@@ -30,8 +30,8 @@ MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
 @dataclass(frozen=True)
 class Tacho:
     """speed_Hz, angle: (n,) at the times of the samples, the latter in rad, 0 at the first pulse; missing, double: how
-    many pulses were added and left out; mark: the angle in revolutions, as the speed has it from the first sample on,
-    at which the rotor is at a pulse; None where it differs between them, or there are several in a revolution."""
+    many pulses were added and left out; mark: the angle in revolutions at which the rotor is at a pulse, integrated
+    from the speed since the first sample; None where it differs between pulses, or a revolution has several."""
 
     speed_Hz: Array
     angle: Array
@@ -169,7 +169,7 @@ def _double(steps: Array) -> NDArray[np.int64]:
 
 def _around(steps: Array, apart: int) -> tuple[Array, Array]:
     """The median of three intervals (m,) before each one and of three behind it, as far as there are any; at the ends
-    those of the other side are doubled, so that the first and the last intervals are never too long."""
+    the other side's are doubled, so that the first and the last intervals are never too long."""
     count = len(steps)
     medians = []
     for sense in (-1, 1):

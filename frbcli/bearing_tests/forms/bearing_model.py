@@ -21,7 +21,7 @@ UNKNOWN = math.nan
 
 
 def model_moment(case: Case, plan: KinematicPlan, motion: Motion) -> FilmMoment:
-    """The force for a motion; what a model does not tell is NaN, and there is no field."""
+    """The force for a motion; what a model does not return is NaN, and there is no field."""
     x, y = model_forces(case, plan, [motion])[0].force
     return FilmMoment(None, _loads(float(x), float(y)), UNKNOWN, 0, 0)
 

@@ -1,6 +1,6 @@
 """Kinematic tests of the extended short bearing (appendix B): closed forms, no flow around that the pressure drives.
 
-The torques follow from the motion and the force: Couette's term is that of the gap, and the term of the pressure is
+The torques follow from the motion and the force: Couette's term from the gap; the term of the pressure is
 half the moment of the force about the middle of the shell, with any pressure in the film.
 """
 
@@ -33,7 +33,7 @@ ANGLES = 720  # at which the largest pressure is sought
 
 def short_moment(plan: KinematicPlan, motion: Motion, share: float = 1.0) -> FilmMoment:
     """The film for a motion; what a short bearing does not know of its oil is NaN. share: of the supply pressure. The
-    error is that of the theory, against the film of finite length."""
+    error is the theory's, against the film of finite length."""
     section = _rectangle(plan, share)
     film = _film(plan, section)
     vector = _force(section, film, motion).force
