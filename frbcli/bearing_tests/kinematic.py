@@ -44,8 +44,8 @@ class KinematicResult:
     moment_error: estimated, relative to force and moment, NaN if not known, the latter of a rotation; history: None for
     a rotation. Of a squeeze or a whirl, displacement, loads, field and error are at the moment of the largest force;
     with a mass-conserving law the error is the worst of the largest forces of the periods. heat: of a case with heat,
-    in a squeeze or whirl the mean over the last period; all else is at its viscosity and clearance, as in `plan`. stribeck:
-    of a rotation under a load between rough surfaces.
+    in a squeeze or whirl the mean over the last period; all else is at its viscosity and clearance, as in `plan`.
+    stribeck: of a rotation under a load between rough surfaces.
     """
 
     cavitation: str

@@ -98,7 +98,7 @@ FRICTION_SIGNAL = Column("friction_torque", "N m", "torque with which all films 
 MACHINE_SIGNALS = (
     Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"), *AXIAL_SIGNALS, *DRIVE_SIGNALS, FRICTION_SIGNAL
 )  # fmt: skip
-# Those of one of several films, bearings or disks have its name behind the quantity: eccentricity_inner, disk_left_x_m
+# For one of several films, bearings or disks the name follows the quantity: eccentricity_inner, disk_left_x_m
 PART_SIGNALS = (
     Column("eccentricity", "", "relative eccentricity of a journal"),
     Column("end_eccentricity", "", "larger of the relative eccentricities at both ends of a film whose journal tilts"),

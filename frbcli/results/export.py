@@ -29,8 +29,8 @@ COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
 
 
 def export_run(run: Run, path: str | Path, table_format: str, force: bool = False) -> Path:
-    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also in place of a
-    file that frb did not write.
+    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also replace a file
+    that frb did not write.
 
     Raises InputError for an unknown format, a file that cannot be written, a run in its place, or if Parquet is asked
     for without its library.
@@ -119,8 +119,8 @@ def _refuse(key: str, problem: str, remedy: str) -> InputError:
 
 
 def ross_files(path: Path, films: Sequence[str]) -> dict[str, Path]:
-    """The file of each film: `path` for one alone; for several its name with that of the film, since ROSS loads one
-    bearing from a file and passes over any other."""
+    """The file of each film: `path` for one alone; for several its name with the film's name added, since ROSS loads
+    one bearing from a file and passes over any other."""
     if len(films) == 1:
         return {films[0]: path}
     return {film: path.with_name(f"{path.stem}-{film}{path.suffix}") for film in films}

@@ -25,7 +25,7 @@ REMEDY = 'Run the case again with --set \'output.films={from="0.1 s", to="0.2 s"
 class KeptFilm:
     """One film at n moments. times: (n,) s; angles: (n,) of its grid, rad; places: (n, 2) displacement of the journal
     over the clearance; edges: (m + 1,) boundaries of its cells in rad, in its grid; oil: (n, m, k) oil fractions; gas:
-    (n, m, k) volume of the free gas at the pressure of saturation over that of the oil, None of oil without gas."""
+    (n, m, k) volume of the free gas at saturation pressure over the oil's volume, None of oil without gas."""
 
     name: str
     times: Array

@@ -35,7 +35,7 @@ THIN = 0.99  # eccentricity above which the cause of a film without solution is 
 AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
 SHORTER = 10.0  # divisor of a macro step
 STIFFNESS = "1e9 N/m"  # suggested contact stiffness
-CLOSER = 1.5  # times the smallest gap that was reached, from which on the one that was expected is told
+CLOSER = 1.5  # expected smallest gap over the gap that was reached, from which on both are reported
 FINER, SMALLER = 4.0, 0.7  # divisor of the target; error of the cells, if that is worth it
 
 
@@ -119,7 +119,7 @@ def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
 def forced_advice(case: Case) -> tuple[str, ...]:
     """A sentence on tables over time that shake a machine without distinct frequencies; may be none."""
     names = forcing(case)[1]
-    sentence = f"The motion that {' and '.join(names)} force is not told apart from whirl in the events"
+    sentence = f"The motion that {' and '.join(names)} force is not separated from whirl in the events"
     return (f"{sentence}: the table changes with no distinct frequencies.",) if names else ()
 
 
@@ -223,7 +223,7 @@ def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
 
 
 def _contact_remedies(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
-    """How a run ends in contact in place of being stuck in it or close to it."""
+    """How a run ends in contact instead of being stuck in it or close to it."""
     remedies = []
     if not touching and end.eccentricity >= THIN:
         remedies.append(f"contact.eccentricity = {THIN:g}, with which contact begins earlier")

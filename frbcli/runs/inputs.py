@@ -27,7 +27,7 @@ class MachineInputs:
     """What changes over time in a run, in SI: temperatures of the supplies of films, and of nodes of the heat; absolute
     pressures of the supplies of films, each with the number of the film or node. ambient: Pa; largest: (films,) gauge
     pressures of all supplies, of those that change the largest one, 1 where nothing supplies; limited: films whose
-    supplies give a flow at the most, so that the pressure of their openings changes."""
+    supplies are flow-limited, so that the pressure of their openings changes."""
 
     supplies: tuple[tuple[int, OverTime], ...]
     walls: tuple[tuple[int, OverTime], ...]
@@ -90,7 +90,7 @@ class RunInputs:
 
     @property
     def change_films(self) -> bool:
-        """Whether they change the films, beside the heat."""
+        """Whether they change the films in addition to the heat."""
         return self.machine is not None and bool(self.machine.limited or self.machine.pressures)
 
     def at_start(self, system: System) -> System:
@@ -137,7 +137,7 @@ class RunInputs:
 
     def signals(self, system: System, times: Array, fillings: Array) -> dict[str, Array]:
         """The signals of inputs at times (k,) in s; fillings (k, films): see opening_pressures. The pressure of a
-        supply that gives a flow at the most is that in its openings."""
+        flow-limited supply is the pressure in its openings."""
         by_name = {name: np.interp(times, table.time, table.x) for name, _, table in self._changing_signals()}
         if self.machine is None:
             return by_name
@@ -150,11 +150,11 @@ class RunInputs:
 
     @property
     def limited(self) -> bool:
-        """Whether a supply gives a flow at the most."""
+        """Whether a supply is flow-limited."""
         return self.machine is not None and bool(self.machine.limited)
 
     def _limited(self) -> Sequence[tuple[int, str]]:
-        """The films whose supplies give a flow at the most, and the names of their signals."""
+        """The films with flow-limited supplies, and the names of their signals."""
         films = () if self.machine is None else self.machine.limited
         return tuple((film, signal_of(PRESSURE[0], self.names[film])) for film in films)
 

@@ -1,5 +1,5 @@
-"""The kinds of files that frb writes, and what tells its files from those of others: a text in their metadata, a
-checksum in tables as CSV. A result takes the place of a file of its kind alone.
+"""The kinds of files that frb writes, and what marks them as its own: a text in their metadata, a checksum in tables
+as CSV. A result replaces only a file of its own kind.
 
 A table as CSV has no place for a text that other programs do not take for data. Its checksum stands behind the digits
 of its last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
@@ -18,7 +18,7 @@ from typing import BinaryIO
 
 MARK = "frbcli: written by frb"
 ENDS = 65_536  # bytes at both ends of a file in which the mark is looked for
-ZEROS, DIGITS = 25, 10  # between the digits of the number and those of the checksum; of the checksum
+ZEROS, DIGITS = 25, 10  # between the digits of the number and of the checksum; of the checksum
 PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 # Numbers of fields, their digits and their exponents

@@ -85,7 +85,7 @@ def _remove_parts(path: Path) -> None:
 
 
 def _require_own(descriptor: int, lock: Path) -> None:
-    """Raises InputError if there is a file of the user in place of the lock."""
+    """Raises InputError if a file of the user has the name of the lock."""
     status = os.fstat(descriptor)
     if not stat.S_ISREG(status.st_mode) or (status.st_size and not _text(descriptor).startswith(MARK)):
         raise refused(lock, "is in the way: frb keeps a lock there.", "Rename it, or choose another name with -o.")

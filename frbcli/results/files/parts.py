@@ -88,7 +88,7 @@ def has(inside: h5py.Group, name: str) -> bool:
 
 
 def rest(arrays: Iterable[Stored], length: int) -> int:
-    """How many of the bytes of a file are not those of its arrays; negative where arrays share them."""
+    """How many bytes of a file do not belong to its arrays; negative where arrays share bytes."""
     return length - sum(stored.bytes for stored in arrays)
 
 

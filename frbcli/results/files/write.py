@@ -1,5 +1,5 @@
-"""The one way in which frb writes a file: as a whole beside its place, then moved there in one step. What a file may
-not take the place of is checked before the work and again when it is written.
+"""The one way in which frb writes a file: as a whole next to its place, then moved there in one step. Files that must
+not be replaced are checked before the work and again when it is written.
 
 Whoever reads the place finds either the complete old or the complete new file, also if the process is interrupted or
 killed, or the disk becomes full.
@@ -131,14 +131,14 @@ def written(path: Path, kind: Kind, remedy: str = REMEDY, force: bool = False) -
 
 
 def write(path: Path, kind: Kind, content: bytes | str, force: bool = False) -> None:
-    """Make `content` that of a file, text in UTF-8. Raises InputError as `written` does."""
+    """Write `content` as a whole file, text in UTF-8. Raises InputError as `written` does."""
     with written(path, kind, force=force) as part:
         part.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 @contextmanager
 def _part(path: Path) -> Iterator[Path]:
-    """A new file beside `path` with its permissions, which replaces it, or is removed after an error."""
+    """A new file next to `path` with its permissions, which replaces it, or is removed after an error."""
     part = part_of(path, secrets.token_hex(TOKEN // 2))
     try:
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

@@ -1,7 +1,7 @@
 """Tables of numbers in text, as measuring instruments write them: a head, names, perhaps units, and rows of numbers.
 
 The rows begin at the first whole row: one that has a number, or a word for a missing one, wherever most rows have a
-number. Names and units are sought above it; what else the head holds is left out, except single numbers beside a word,
+number. Names and units are sought above it; what else the head holds is left out, except single numbers after a word,
 such as a sampling interval.
 """
 
@@ -60,7 +60,7 @@ class NoTable(ValueError):
 
 @dataclass(frozen=True)
 class DelimitedTable:
-    """names (k,), those of blank ones are numbers from 1, and units (k,), "" where there is none; values: columns 0 to
+    """names (k,), blank ones replaced by numbers from 1, and units (k,), "" where there is none; values: columns 0 to
     k - 1, text where they hold some; lines: number of the line of each row; numbers: of the head, by their words; mark:
     the decimal mark."""
 
@@ -254,7 +254,7 @@ def _first_row(rows: Sequence[Sequence[str]], whole: Sequence[int], layout: _Lay
 
 
 def _single_names(rows: Sequence[Sequence[str]], names_at: int) -> tuple[str, ...]:
-    """The names of a line; those that stand there several times are taken from the line above, where it has others."""
+    """The names of a line; repeated ones are taken from the line above, where it has others."""
     names = _without_end(rows[names_at])
     above = _without_end(rows[names_at - 1]) if names_at else []
     double = {name for name, count in Counter(names).items() if count > 1}

@@ -27,7 +27,7 @@ MATLAB_CLASS, EMPTY, SPARSE = "MATLAB_class", "MATLAB_empty", "MATLAB_sparse"
 def read_mat(path: Path) -> Columns:
     """Vectors, rows or columns, by their names; the columns of matrices, or their rows where they have more columns
     than rows, as NAME.1, NAME.2; the fields of structs as STRUCT.FIELD, of arrays of structs as STRUCT.1.FIELD, what
-    stands in cells as NAME.1. A single number is one of `numbers`. Raises what scipy and h5py raise."""
+    cells hold as NAME.1. A single number is one of `numbers`. Raises what scipy and h5py raise."""
     values: dict[str, Array] = {}
     numbers: dict[str, float] = {}
     doubtful: dict[str, str] = {}
@@ -76,7 +76,7 @@ def _leaves_5(path: Path) -> Iterator[Leaf]:
     from scipy.io import loadmat
 
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of a variable that stands there twice
+        warnings.simplefilter("error")  # of a variable that occurs twice
         for coming in (DeprecationWarning, FutureWarning):  # of scipy, about what it will return: not of the file
             warnings.simplefilter("ignore", coming)
         variables = loadmat(path)
@@ -130,7 +130,7 @@ def _inside_7_3(name: str, value: Any, file: Any, deeper: int) -> Iterator[Leaf]
         for number, reference in enumerate(value[()].T.ravel(order="F"), start=1):
             if kind == "cell":
                 yield from _inside_7_3(f"{name}.{number}", file[reference], file, deeper - 1)
-            else:  # what stands in an object, or a field of an array of structs without its struct
+            else:  # the content of an object, or a field of an array of structs without its struct
                 yield name, OBJECT
                 return
     elif kind not in ("", "char", "cell") and not _is_matlab_number(kind):

@@ -110,12 +110,12 @@ def _numbers(table: DelimitedTable, place: int) -> tuple[Array, bool]:
 
 
 def _wav(path: Path) -> Columns:
-    """Channels from -1 to 1. Whole numbers of 8 bits have no sign: 128 is zero. Those of 24 bits come as ones of 32."""
+    """Channels from -1 to 1. Whole numbers of 8 bits have no sign: 128 is zero. 24 bits are read as 32 bits."""
     from scipy.io import wavfile
 
     with warnings.catch_warnings():
         warnings.simplefilter("error", wavfile.WavFileWarning)  # a file that ends too early
-        warnings.filterwarnings("ignore", "Chunk .*not understood", wavfile.WavFileWarning)  # notes beside the samples
+        warnings.filterwarnings("ignore", "Chunk .*not understood", wavfile.WavFileWarning)  # notes besides the samples
         rate, samples = wavfile.read(path)
     if not samples.size:
         raise ValueError("it has no samples")
@@ -182,7 +182,7 @@ def _length(factor: float) -> str | None:
 
 
 def _unit_of_kind(kind: int, length: str | None) -> str:
-    """The unit of a data type, "" where it is not known; without data set 164 that of something else than a length."""
+    """The unit of a data type, "" where it is not known or, without data set 164, is not a length."""
     per = RATES.get(kind)
     if per is None:
         return ""

@@ -1,7 +1,7 @@
 """Film signals that a run records on request (`output.signals`), at the samples of its file.
 
 The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
-is that of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
+is the force of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ def film_signals(
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
-    the film through its open ends, m^3/s. Between rough surfaces force, torque and power are those of film and summits;
+    the film through its open ends, m^3/s. Between rough surfaces force, torque and power include film and summits;
     asperity-share: of the summits in both forces; contact-power: of their friction, W. ends: the flows of tabulated
     films (Films.end_flows), if these are asked for their oil; warm: what heat has changed.
     """
@@ -165,7 +165,7 @@ def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
 
 
 def _torques(system: System, films: FilmNumbers, samples: Samples, forces: Array) -> tuple[Array, Array]:
-    """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
+    """(k, films) torque on the journals in N m, as in spin_up of solve/ring_spin.py, and power in W."""
     n, count = system.rotor.size, len(system.names)
     total, slip = (_speeds(system, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]

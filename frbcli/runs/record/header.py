@@ -32,7 +32,7 @@ from frbcli.solve.ring_spin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
-# Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
+# Of a film, by choice: its quantity and unit as in the name, and the unit.
 THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
 SHARE, FRICTION = "asperity-share", "contact-power"  # of rough surfaces, always
 TILT = "tilt"  # of every film whose journal tilts
@@ -67,7 +67,7 @@ def ring_names(system: System) -> dict[str, int]:
 
 
 def signal_names(kind: str, film: str) -> list[str]:
-    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force and of a tilt."""
+    """The signals of a film for a kind of FILM_SIGNALS: x and y of a force and of a tilt."""
     quantity, unit, _ = FILM_SIGNALS[kind]
     ends = (f"_x_{unit}", f"_y_{unit}") if kind in (FORCE, TILT) else (f"_{unit}" if unit else "",)
     return [f"{named(quantity, film)}{end}" for end in ends]
@@ -169,8 +169,8 @@ def _numbered(name: str, times: Sequence[float]) -> dict[str, float]:
 
 
 def forcing(case: Case) -> tuple[list[ForcedLine], list[str]]:
-    """What forces the machine of a case beside its unbalance: harmonics but those of order 1, and the largest lines of
-    tables over time; and the names of tables whose lines do not hold nearly all of their change."""
+    """What forces the machine of a case in addition to its unbalance: harmonics except order 1, and the largest lines
+    of tables over time; and the names of tables whose lines do not hold nearly all of their change."""
     lines, broad = list[ForcedLine](), list[str]()
     for _, load in element_parts(case).loads:
         if isinstance(load, Tabulated):

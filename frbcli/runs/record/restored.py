@@ -49,7 +49,7 @@ def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfil
 
 def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float, is_free: bool) -> None:
     """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one.
-    is_free: whether its speed is, and not that of the profile."""
+    is_free: whether the speed is free, and does not follow the profile."""
     if run.checkpoint_samples != count:
         raise WrongCheckpoint(f"it belongs to {count} samples, not {run.checkpoint_samples}")
     fastest = float(np.max(np.abs(profile.speeds)))
@@ -70,7 +70,7 @@ def number_of(run: Run, name: str, place: int) -> float | None:
         return None
     numbers = np.asarray(run.checkpoint[name])
     if numbers.ndim != 1 or len(numbers) <= place or not abs(numbers[place]) <= LARGEST:
-        raise refuse(run.path, f"has a checkpoint whose {name} are not those of a run.", "Run the case again.")
+        raise refuse(run.path, f"has a checkpoint whose {name} do not belong to a run.", "Run the case again.")
     return float(numbers[place])
 
 
