@@ -118,7 +118,7 @@ def take_shipped_kernels(package: Path) -> None:
     fits = [target for target in targets if all(has.get(feature) for feature in NEEDED[target])]
     if fits:
         os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = fits[0], FEATURES[fits[0]]
-        settings: Any = config  # numba tells no types of it
+        settings: Any = config  # numba gives no types of it
         settings.reload_config()
 
 

@@ -1,4 +1,4 @@
-"""What the compiler of the kernels does while other code runs: counted, and told apart from what that code takes."""
+"""What the compiler of the kernels does while other code runs: counted, with its CPU time apart from that code's."""
 
 from __future__ import annotations
 
@@ -86,7 +86,7 @@ class Clock(NamedTuple):
 
 
 _SO_FAR = Compilations()  # of this process
-_register: Any = register  # numba tells no types of it
+_register: Any = register  # numba gives no types of it
 _register(COMPILE, _SO_FAR)
 
 

@@ -42,7 +42,7 @@ MOST_LISTED = 100  # faults in the text of an error
 
 
 class InputError(FrbError):
-    """The input is wrong. Carries every fault found, and tells the first of them; nothing was run."""
+    """The input is wrong. Carries every fault found, and names the first of them; nothing was run."""
 
     exit_code = 2
 

@@ -44,8 +44,8 @@ class Tabular:
 
 
 def html_table(title: str, columns: Sequence[str], rows: Iterable[Iterable[object]], count: int | None = None) -> str:
-    """A table under its title, with at most MOST_ROWS rows; count: how many there are, where rows are not told at
-    once."""
+    """A table under its title, with at most MOST_ROWS rows; count: how many there are, where `rows` is not a sequence
+    of known length."""
     shown = [[_cell(cell) for cell in row] for _, row in zip(range(MOST_ROWS), rows, strict=False)]
     head = "".join(f"<th style='text-align:left'>{escape(printable(str(name)))}</th>" for name in columns)
     body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in shown)

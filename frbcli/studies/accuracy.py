@@ -114,7 +114,7 @@ def accuracy(
 
 
 def _references(case: Case, own: Rung) -> tuple[Rung, Rung]:
-    """The fine reference of a case with the planned rung `own`, and a coarser one, which tells its error."""
+    """The fine reference of a case with the planned rung `own`, and a coarser one, for the error of the reference."""
     *_, best = _theories(case)
     mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
     fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)

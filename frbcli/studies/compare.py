@@ -45,7 +45,7 @@ UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever th
 
 @dataclass(frozen=True)
 class Variant:
-    """One model of the films, how they are coupled to the rotor, and a model of heat, "" for that of the case."""
+    """One model of the films, how they are coupled to the rotor, and a model of heat, "" for the case's own."""
 
     theory: str
     cavitation: str
@@ -61,14 +61,14 @@ class Variant:
 
     @property
     def coupled(self) -> str:
-        """The coupling that "auto" stands for, too."""
+        """The coupling, also for "auto"."""
         return chosen_coupling(self.coupling, self.cavitation)
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """Deviation of the eccentricities from those of the first variant, the largest and the rms until until_s, in s,
-    where either begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
+    """Deviation of the eccentricities from the first variant, the largest and the rms until until_s, in s, where either
+    begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
 
     largest: float
     rms: float
@@ -91,7 +91,7 @@ class VariantResult:
 
     @property
     def ring_ratios(self) -> dict[str, float]:
-        """Speed of each ring over that of the rotor in the last LAST of the run, by the names of their signals."""
+        """Speed of each ring over the rotor speed in the last LAST of the run, by the names of their signals."""
         rotor = float(np.mean(_last(self.run, "speed_Hz")))
         rings = [name for name in self.run.signals if name.startswith("ring_speed")]
         return {name: float(np.mean(_last(self.run, name))) / rotor for name in rings} if rotor else {}
@@ -154,7 +154,7 @@ def compare(
     case : Case
         The machine, see `load_case`.
     cavitations, theories, couplings, thermals : sequence of str
-        Names of models; an empty one stands for that of the case. With none given, the model of the case is compared
+        Names of models; an empty one means the model of the case. With none given, the model of the case is compared
         with all that have no state and cost little.
     test : {"runup", "rundown"}
         The scene.
@@ -167,7 +167,7 @@ def compare(
     -------
     Comparison
         The runs, their events, deviations and cost. Ctrl-C, or a variant that does not begin, ends the comparison with
-        the runs that there are by then. Long runs go side by side, one on each core; costs are those of each run.
+        the runs so far. Long runs go side by side, one on each core; each has its own cost.
 
     Raises
     ------
@@ -285,7 +285,7 @@ def make_variants(
 
 
 def deviation(run: Run, reference: Run) -> Deviation:
-    """How far the eccentricities of a run are from those of a reference with the same speeds and output times."""
+    """How far the eccentricities of a run are from a reference with the same speeds and output times."""
     ends = [event["t_s"] for one in (run, reference) for event in one.events if event["kind"] in UNTIL]
     until = min([*ends, run.t_end_s, reference.t_end_s])
     count = min(int(np.searchsorted(run["time_s"], until, side="right")), len(run), len(reference))

@@ -3,8 +3,8 @@
 The numbers vary by their logarithms, which makes them of one size and keeps them positive. Every group of residuals
 (synchronous amplitude, frequency and amplitude of the whirl, onset) is divided by its scatter: at first by a share of
 the ridge, so that a start from afar finds the way, then by the scatter of the measured ridge about its own smooth
-course, which its second differences tell. The standard errors follow from the covariance (J^T J)^-1 of these
-residuals; where they scatter more than the measurement does, from that.
+course, judged by its second differences. The standard errors follow from the covariance (J^T J)^-1 of these residuals;
+where the residuals scatter more than the measurement does, from their own scatter.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ STEP = 0.01  # relative change of a number for its derivatives: above what steps
 FIRST_SHARE = 0.05  # of the largest of a ridge: its scatter for the first way
 LEAST_SHARE = 1e-3  # of the same: no ridge is known better
 EDGE = 2  # speeds at both ends of the ridges
-BESIDE = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
+NEAR_ONSET = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
 SECOND = 6.0  # variance of a second difference of independent numbers over theirs
 SETTLED = 1e-3  # relative change of the numbers that ends a fit
 LARGE = 1e3  # residuals of a case that cannot be run
@@ -70,7 +70,7 @@ class Fitted:
 @dataclass(frozen=True, repr=False)
 class Fit(Tabular):
     """case: with the numbers found; numbers: them; correlation: (k, k) of their errors; before, after: ridges of the
-    run with the numbers at first and in the end, measured: those of the measurement; runs: how many were made; chi:
+    run with the numbers at first and in the end, measured: of the measurement; runs: how many were made; chi:
     root mean square of the residuals over their scatter."""
 
     case: Case
@@ -232,12 +232,12 @@ class _Trial:
 
 def _compared(measured: Ridges) -> tuple[Truths, Truths]:
     """(n,) at which speeds synchronous amplitudes and whirls are compared: below and above the measured onset, not
-    beside it."""
+    close to it."""
     known = np.isfinite(measured.synchronous).all(axis=1)
     still, whirls = ~measured.whirls & known, measured.whirls & np.isfinite(measured.whirl_Hz)
     if not np.isfinite(measured.onset_Hz):
         return still, whirls
-    apart = BESIDE * float(np.median(np.diff(measured.speed_Hz)))
+    apart = NEAR_ONSET * float(np.median(np.diff(measured.speed_Hz)))
     after = measured.speed_Hz - measured.onset_Hz
     return still & (after < -apart), whirls & (after > apart)
 

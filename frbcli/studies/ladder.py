@@ -88,9 +88,9 @@ class AccuracyLadder(Tabular):
         return tuple(cheapest)
 
     def above_front(self, quiet: bool = False) -> float:
-        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time. Infinite if that run did not begin, and beside
-        runs that end at once, which cost nothing; NaN if its error is not known."""
+        """Cost of the planned rung over the cost of the cheapest rung that is as close; 1 on the front.
+        quiet: by the counted work instead of the measured CPU time. Infinite if that run did not begin, and among runs
+        that end at once, which cost nothing; NaN if its error is not known."""
         planned = next((item for item in self.ladder if item.planned), None)
         if planned is None:
             return math.inf

@@ -1,4 +1,4 @@
-"""Several runs of cases beside each other, each in a process of its own, with the progress of all of them."""
+"""Several runs of cases side by side, each in a process of its own, with the progress of all of them."""
 
 from __future__ import annotations
 

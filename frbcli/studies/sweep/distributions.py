@@ -1,6 +1,6 @@
 """Keys of a case that scatter: their distributions, and samples of them.
 
-The samples are those of a scrambled Sobol sequence (Owen 1998, as in scipy.stats.qmc), which fill the space of the keys
+The samples are a scrambled Sobol sequence (Owen 1998, as in scipy.stats.qmc), which fills the space of the keys
 more evenly than random ones. Correlated keys are joined by a Gaussian copula: normal variables with the correlations
 given are turned into shares, and these into values of each distribution.
 """
@@ -129,11 +129,11 @@ def _factor(keys: Sequence[str], correlations: Correlations) -> Array:
         if strange or one == other:
             named = strange[0] if strange else one
             remedy = f"Name two of: {', '.join(keys)}."
-            problem = f"names {named}, which does not scatter beside it."
+            problem = f"names {named}, which does not scatter too."
             raise refused("--correlation", f"{one},{other}", problem, remedy)
         matrix[keys.index(one), keys.index(other)] = matrix[keys.index(other), keys.index(one)] = value
     try:
         return np.asarray(np.linalg.cholesky(matrix))
     except np.linalg.LinAlgError:
-        remedy = "Make them smaller, or give those of the other pairs too."
+        remedy = "Make them smaller, or give all other pairs too."
         raise refused("--correlation", "", "contradict each other: no variables have all of them.", remedy) from None

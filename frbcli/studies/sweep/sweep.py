@@ -202,7 +202,7 @@ def _first_here(
 
 
 def write_table(swept: Sweep, path: str | Path, table_format: str = "csv", force: bool = False) -> Path:
-    """Write the table of a sweep as "csv" or "parquet"; force: also in place of a file that frb did not write. Raises
+    """Write the table of a sweep as "csv" or "parquet"; force: also replace a file that frb did not write. Raises
     InputError if that does not work."""
     path = Path(path)
     check_table_format(table_format)

@@ -30,7 +30,7 @@ NO_WHIRL = "No whirl up to"  # begins a message
 class SweepPoint:
     """One point of a sweep and its result.
 
-    number: from 1; settings: key -> value as text; status: that of its run, or "input-error" (no case, or a file that
+    number: from 1; settings: key -> value as text; status: as of its run, or "input-error" (no case, or a file that
     cannot be written), "error" (a bug, or its process died), "interrupted" (not computed yet); message: why, where the
     status is not one of WHOLE, or on which side of the speeds a missing onset or threshold lies; events: as in a run,
     or the one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.

@@ -162,7 +162,7 @@ def _local_client(jobs: int, cluster: ExitStack) -> Any:
 
 
 def _say_nothing() -> None:
-    """In a process of dask, which tells tracebacks of tasks that an interruption cuts short."""
+    """In a process of dask, suppress the tracebacks of tasks that an interruption cuts short."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
