@@ -60,8 +60,8 @@ class Range:
 @click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and, with --over KEY.")
 @click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and, with --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
-              help="Number of values of --and at which diagrams are computed; the curves begin at "
-                   "their points. [3]")  # fmt: skip
+              help="Number of values of --and at which starting diagrams are computed; the curves begin "
+                   "there. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
               help="Compute, too, the whirls that lock in with the unbalance at half the speed.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
