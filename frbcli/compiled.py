@@ -61,7 +61,7 @@ class _Part(_LIBRARY):  # type: ignore[misc]
 
     @property
     def codegen(self) -> Any:
-        """What numba asks to set the environment of a function that Python calls."""
+        """The library for `set_env`, which numba calls for a function that Python calls."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
@@ -78,7 +78,7 @@ class _PartCompiler(Compiler):
     """numba's compiler for a _Part."""
 
     def compile_extra(self, func: Any) -> Any:
-        """See numba's."""
+        """As numba's, with the code of a _Part."""
         part, compile_extra = cast("Any", _Part), cast("Any", super()).compile_extra  # numba gives no types of them
         if _PARTS:
             self.state.library = part(self.state.targetctx.codegen(), func.__qualname__)

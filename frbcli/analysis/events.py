@@ -403,8 +403,8 @@ def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
 
 
 def _turning(run: RunLike) -> Iterator[Event]:
-    """Of a rotor whose speed is free, its highest speed, if it is neither at the start nor held up to the end, and its
-    standstill, up to which it slows down from the last two samples as between them."""
+    """For a rotor of free speed: its highest speed, unless at the start or held up to the end, and its standstill,
+    extrapolated from the last two samples."""
     if DRIVE not in run.signals:
         return
     top, top_s, count = 0.0, 0.0, len(run)

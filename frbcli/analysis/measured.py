@@ -263,7 +263,7 @@ class _Units:
         return np.asarray(values * one)
 
     def _one(self, name: str, stated: str | None, one: float | None, unit: str, option: str) -> float:
-        """What 1 in a column is in SI."""
+        """Value in SI of 1 in a column."""
         in_unit = None if stated is None else _in_si(stated, unit)
         path = self.columns.path
         if stated is not None and unit == "m" and any(_in_si(stated, other) for other in RATE_OF_TIME):

@@ -160,7 +160,7 @@ def _are_near(event: Record, other: Record, times: float = 1.0) -> bool:
 
 
 def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[str, Any]:
-    """What is added to an event that the second run has, too."""
+    """Keys to be added to an event that the second run has, too."""
     if event["kind"] in GIVEN:
         return {"speed_uncertainty_Hz": 0.0, "certain": True}
     step_Hz, line_Hz = resolution(run, event)
@@ -183,7 +183,7 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
 
 
 def _unmatched(event: Record, events: Sequence[Record], second: Sequence[Record]) -> dict[str, Any]:
-    """What is added to an event that the second run does not have."""
+    """Keys to be added to an event that the second run does not have."""
     elsewhere = [other for other in second if _key(other) == _key(event)]
     again = [other for other in events if _key(other) == _key(event) and _are_near(event, other, RETURNS)]
     if reason := _faint(event):

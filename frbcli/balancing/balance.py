@@ -74,7 +74,7 @@ class PlaneCorrection:
 
     @property
     def correction(self) -> complex:
-        """What has to be added, kg m with its angle."""
+        """Unbalance to be added, kg m with its angle."""
         return -self.unbalance
 
 
@@ -327,7 +327,7 @@ def _solved(
 
 
 def _condition(rows: Complex) -> float:
-    """Of the columns at unit length; infinite where one is nothing."""
+    """Condition number of the columns at unit length; infinite where a column is 0."""
     lengths = np.linalg.norm(rows, axis=0)
     return math.inf if not lengths.all() else float(np.linalg.cond(rows / lengths))
 

@@ -32,8 +32,8 @@ SPEEDS, FROM, TO = 8, 0.4, 0.95  # of a ramp: number, and share of its highest s
 
 @dataclass(frozen=True)
 class SynchronousVectors:
-    """Of p points at s speeds. values: (s, p, 2) complex amplitudes of x and y in m; scatter: (s, p, 2) of the windows
-    in m, 0 where it is not known."""
+    """Vectors of p points at s speeds. values: (s, p, 2) complex amplitudes of x and y in m; scatter: (s, p, 2) of the
+    windows in m, 0 where it is not known."""
 
     speeds_Hz: Array
     points: tuple[str, ...]

@@ -51,7 +51,7 @@ class History:
 
 @dataclass(frozen=True)
 class Course:
-    """What a moved film went through: its history; field (None of a bearing model) and loads at the moment of the
+    """Result of a moved film: its history; field (None of a bearing model) and loads at the moment of the
     largest force, and the estimated relative error of that force; cost; why it ended early, or nothing."""
 
     history: History

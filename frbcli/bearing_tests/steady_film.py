@@ -64,7 +64,7 @@ def steady_film(
 ) -> FilmMoment:  # fmt: skip
     """The film for a motion that lasts, solved on half the cells each way, and from there on all.
 
-    cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
+    cells: around and along the whole film; half of them along for a film cut at its plane of symmetry; factor: of the
     torque, for a shell at rest. Raises NotConverged.
     """
     coarse, film = _films(section, law, motion, cells)

@@ -66,7 +66,7 @@ def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
 
 
 def _film_alone(points: Sequence[_Point]) -> bool:
-    """Whether the last one is far beyond those at which summits touch."""
+    """Whether the last speed is far above the speeds at which summits touch."""
     touching = [abs(each.speed) for each in points if each.share > 0.0] or [abs(points[0].speed)]
     return abs(points[-1].speed) > FILM_ALONE * max(touching)
 
@@ -74,7 +74,7 @@ def _film_alone(points: Sequence[_Point]) -> bool:
 def _walk(
     point: Callable[[float], _Point], begun: list[_Point], ratio: float, ends: Callable[[Sequence[_Point]], bool]
 ) -> list[_Point]:
-    """Points and those behind them, at speeds that grow by a ratio, up to one that ends them."""
+    """Given points and further ones, at speeds that grow by a ratio, up to one that ends them."""
     points = list(begun)
     while len(points) < len(begun) + MOST and not ends(points):
         try:

@@ -205,8 +205,8 @@ def _length(cell: str) -> int:
 
 
 def _widened(widths: Sequence[int], wanted: Sequence[int], room: int) -> list[int]:
-    """Widths with more room: those first get all they need that need no more than an equal share, the others in
-    proportion to what they need."""
+    """Widths with more room: columns that need no more than an equal share get all they need, the others a share in
+    proportion to their need."""
     needs, widened = [max(most - least, 0) for most, least in zip(wanted, widths, strict=True)], list(widths)
     order = sorted(range(len(needs)), key=needs.__getitem__)
     for place, number in enumerate(order):

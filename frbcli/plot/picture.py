@@ -123,7 +123,7 @@ def fit(
 
 
 def _along(panels: list[Axes]) -> Iterable[Axes]:
-    """Panels over time, speed or frequency; if there are none, the first one and those named as it is."""
+    """Panels over time, speed or frequency; if there are none, all with the label of the first panel."""
     named = [axes for axes in panels if any(word in axes.get_xlabel() for word in ALONG)]
     return named or [axes for axes in panels if axes.get_xlabel() == panels[0].get_xlabel()]
 

@@ -138,8 +138,8 @@ def events(run: Run) -> list[dict[str, Any]]:
 
 
 def uncertain_times(run: Run) -> list[tuple[float, float]]:
-    """Time in s of each event with an uncertainty, and how much earlier or later it may be, from its uncertainty in the
-    rotor speed; none of those at a constant speed."""
+    """Time in s of each event with an uncertainty in the rotor speed, and how much earlier or later it may be; events
+    at a constant speed are left out."""
     uncertain = []
     for event in run.events[:MOST_MARKED]:
         uncertainty, t = event.get("speed_uncertainty_Hz"), event["t_s"]

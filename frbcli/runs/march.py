@@ -322,7 +322,7 @@ class March:
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:
-        """Raise WrongCheckpoint unless the samples of a run are those before the state that was taken up of it."""
+        """Raise WrongCheckpoint unless the samples of a run lead up to the restored state."""
         is_free = self._system.rotation is not None
         check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step, is_free)
 

@@ -206,8 +206,8 @@ def _with_thresholds(
 
 
 def _threshold(case: Case) -> float:
-    """Threshold in Hz; NaN without one, and for films with cells: those with oil of their own have none, the others
-    take minutes."""
+    """Threshold in Hz; NaN without one, and for finite-volume films: mass-conserving ones have none, the others take
+    minutes."""
     if make_plan(case).cells is not None or not default_speeds(case):
         return math.nan
     threshold = stability(case).threshold

@@ -179,7 +179,7 @@ class _Trial:
         self._known: dict[tuple[float, ...], Ridges] = {}
 
     def case_at(self, x: Array) -> Case:
-        """The case with the numbers that are exp(x) times those at first."""
+        """The case with the numbers at exp(x) times their first values."""
         settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
         return self._case.with_settings(*settings)
 

@@ -34,9 +34,9 @@ class Rung:
 
 @dataclass(frozen=True)
 class RungError:
-    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where a
-    whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor speeds at
-    which the whirl begins, threshold_Hz: of those from which on it grows by linear stability, NaN if either has none;
+    """Error against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s,
+    where a whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor
+    speeds at which the whirl begins; threshold_Hz: difference of the stability thresholds, NaN if either has none;
     force_relative: of the film forces at states of the run, against a finer mesh."""
 
     eccentricity_largest: float

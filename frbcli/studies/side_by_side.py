@@ -53,8 +53,8 @@ def in_turn(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int, End
 
 
 def side_by_side(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int, Ended]]:
-    """As in_turn, all at once: in the order given they get the cores of this machine, one each. Ctrl-C ends those
-    under way as it does a run in this process."""
+    """As in_turn, but several at once, one on each core, begun in the order given. Ctrl-C ends the runs under way as it
+    does a run in this process."""
     over, jobs = Event(), min(len(tasks), joblib.cpu_count())
     with TemporaryDirectory(prefix="frb-progress-") as name, held_back() as interrupt:
         listener = Thread(target=_listen, args=(Path(name), interrupt, over, report))

@@ -243,7 +243,7 @@ def _width(periods: Array, speed: Array, line: ForcedLine) -> int:
 
 
 def _motion(at: Array, amplitude: Complex, periods: Array) -> Array:
-    """What a line moves (n,) at passed periods (n,)."""
+    """Motion (n,) of a line at passed periods (n,)."""
     there = np.interp(periods, at, amplitude)
     return np.asarray((there * np.exp(2j * np.pi * periods)).real)
 

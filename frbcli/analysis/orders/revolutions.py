@@ -1,6 +1,6 @@
 """The motion of a run by orders: how far it moves with a multiple of the rotor speed, exact whatever the speed does.
 
-A motion z of order q, z = A exp(i q phi) with the rotor's angle phi, stands still when it is multiplied by
+A motion z of order q, z = A exp(i q phi) with the rotor's angle phi, is constant when it is multiplied by
 exp(-i q phi). Its mean under a window w of R revolutions is A: with the angle psi = integral of |omega| that the rotor
 has passed, either way,
 
@@ -10,9 +10,9 @@ The samples are even in time. So the integrand is summed up from sample to sampl
 nor loses any of it, and read at even angles: what lies between two of them is a cell, on which w is constant. The
 samples pass piece by piece, and only cells that a window still needs are kept.
 
-A Hann window is blind to the orders q + j/R, |j| >= 2, and all but blind to what lies further off; its square to those
-with |j| >= 3, and far more so to the rest: a whip may move a disk by millimetres where unbalance moves it by
-micrometres.
+A Hann window is blind to the orders q + j/R, |j| >= 2, and nearly blind to what lies further off; its square is blind
+to the orders with |j| >= 3, and suppresses the rest far more: a whip may move a disk by millimetres where unbalance
+moves it by micrometres.
 """
 
 from __future__ import annotations

@@ -61,7 +61,7 @@ def draw_eccentricity(
 
 
 def _groups(run: Run) -> list[tuple[str, list[str]]]:
-    """The films of a panel: those inside of rings, those outside of them, those without."""
+    """The films of each panel: films inside of rings, films outside of rings, and all others."""
     all_films = list(films(run.signals)) or [""]
     groups = [(side, [name for name in all_films if name.split("_")[-1] == side]) for side in SIDES]
     groups.append(("", [name for name in all_films if name.split("_")[-1] not in SIDES]))

@@ -40,7 +40,7 @@ class Panel:
     uncertainty: str = ""
 
     def signals(self, run: Run) -> dict[str, str]:
-        """The signals of a run by what stands between."""
+        """The signals of a run by the name of the film, ring or wall in them."""
         names = (name for name in run.signals if name.startswith(self.begin) and name.endswith(self.end))
         return {name.removeprefix(self.begin).removesuffix(self.end).strip("_"): name for name in names}
 

@@ -1,8 +1,8 @@
 """The kinds of files that frb writes, and what marks them as its own: a text in their metadata, a checksum in tables
 as CSV. A result replaces only a file of its own kind.
 
-A table as CSV has no place for a text that other programs do not take for data. Its checksum stands behind the digits
-of its last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
+A table as CSV has no place for a text that other programs do not take for data. Its checksum follows the digits of its
+last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
 not fit its checksum any more, and is theirs.
 """
 
@@ -80,7 +80,7 @@ def _numbers(tail: bytes) -> Iterator[tuple[int, re.Match[bytes]]]:
 
 
 def _checksum(file: BinaryIO, length: int) -> int:
-    """Of the first bytes of a file."""
+    """Checksum of the first `length` bytes of a file."""
     checksum = 0
     file.seek(0)
     while length and (piece := file.read(min(PIECE, length))):
@@ -115,7 +115,7 @@ def kind(name: str, head: bytes, marked: Callable[[Path], bool] = has_mark, forc
 
 
 def _by_head(_: Path) -> bool:
-    """Of kinds that no other program writes."""
+    """True: no other program writes files of these kinds."""
     return True
 
 

@@ -115,7 +115,7 @@ class _Layout:
 
 @dataclass(frozen=True)
 class _Head:
-    """What stands above the rows. begin: the first row; names and units: (k,); numbers: by their words."""
+    """The lines above the rows. begin: the first row; names and units: (k,); numbers: by their words."""
 
     begin: int
     names: tuple[str, ...]
@@ -299,7 +299,7 @@ def _is_called_units(row: Sequence[str]) -> bool:
 def _units_of(
     rows: Sequence[Sequence[str]], units_at: int | None, names: tuple[str, ...], layout: _Layout
 ) -> tuple[tuple[str, ...], dict[str, float]]:
-    """The units of columns, and the numbers that stand among them in columns without any number."""
+    """The units of columns, and the numbers in the row of units of columns without any other number."""
     if units_at is None:
         return tuple(map(_unit_in, names)), {}
     row = rows[units_at]

@@ -25,9 +25,9 @@ class WrongCheckpoint(Exception):
 
 
 def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfile, output_step: float) -> State:
-    """The state of a checkpoint. fresh: that at the beginning of the run; output_step: of its samples, s.
+    """The state of a checkpoint. fresh: the state at the beginning of the run; output_step: of its samples, s.
 
-    Raises WrongCheckpoint unless all arrays are there, of the shape of those at the beginning, with finite numbers, and
+    Raises WrongCheckpoint unless all arrays are there, of the same shape as at the beginning, with finite numbers, and
     time, piece of the profile and number of samples fit together.
     """
     state = State(*(array(checkpoint, name, part.shape) for name, part in fresh._asdict().items()))

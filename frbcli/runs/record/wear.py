@@ -1,4 +1,4 @@
-"""Wear, and machines that stand.
+"""Wear, and the run that a file holds already.
 
 Wear of rough surfaces over a run, by Archard: an estimate. The gap of the run does not follow it.
 

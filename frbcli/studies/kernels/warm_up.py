@@ -111,8 +111,8 @@ def warm_up(cases: Iterable[Case] = (), jobs: int = -1, observe: Observer | None
 
 
 def _compiled(families: Sequence[Sequence[ShortAnalysis]], jobs: int) -> Generator[list[Compiled], None, None]:
-    """What each analysis compiled, as it is known: family by family from processes, whose kernels are apart, so that no
-    two of them compile the same; one by one in this process, which alone has the bearing models that were added."""
+    """What each analysis compiled, as soon as it is known: by processes, one family each, since processes do not share
+    kernels; or one by one in this process, which alone has the bearing models that were added."""
     models = any(short.case.film.bearing_model for members in families for short in members)
     if jobs == 1 or len(families) == 1 or models:
         for members in families:
