@@ -21,7 +21,7 @@ from frbcli.scene.forms.tables import SHORT
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
-Tell = Callable[[int], None]
+Report = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -29,15 +29,15 @@ class TestedFilm:
     """The film of a planned test of a case, as functions that raise NotConverged.
 
     rest(case, plan, load, omega): (2,) displacement over the clearance in which it carries a load in N along -y at
-    omega rad/s. moment(case, plan, motion): the film for a motion that lasts. course(case, plan, path, times, tell):
-    the film along a path at the times (n,) in s, see film_course; tell: called with the number of each moment.
+    omega rad/s. moment(case, plan, motion): the film for a motion that lasts. course(case, plan, path, times, report):
+    the film along a path at the times (n,) in s, see film_course; report: called with the number of each moment.
     """
 
     __test__ = False  # no test case, whatever its name begins with
 
     rest: Callable[[Case, KinematicPlan, float, float], Array]
     moment: Callable[[Case, KinematicPlan, Motion], FilmMoment]
-    course: Callable[[Case, KinematicPlan, Path, Array, Tell | None], Course]
+    course: Callable[[Case, KinematicPlan, Path, Array, Report | None], Course]
 
 
 def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
@@ -45,7 +45,7 @@ def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: f
 
 
 def _rubbing(force: ForceOf) -> ForceOf:
-    """The force of a film with that of its summits."""
+    """The force of a film including its summits."""
 
     def whole(
         case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
@@ -57,7 +57,7 @@ def _rubbing(force: ForceOf) -> ForceOf:
 
 
 def _on_summits(case: Case, motion: Motion, film: FilmMoment) -> FilmMoment:
-    """A film with its summits beside it."""
+    """A film including its summits."""
     rubbing = rubbing_of(case)
     whole = rubbing.loads(film.loads, motion)
     return replace(film, loads=whole, force_error=film.force_error * rubbing.share_of_error(film.loads, whole))

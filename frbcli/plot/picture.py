@@ -64,8 +64,8 @@ def picture(result: object) -> Picture:
     Examples
     --------
     >>> import frbcli
-    >>> found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
-    >>> figure = frbcli.picture(found)
+    >>> analysis = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
+    >>> figure = frbcli.picture(analysis)
     >>> len(figure.axes)
     2
     """
@@ -75,8 +75,8 @@ def picture(result: object) -> Picture:
         problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
         raise input_error("picture", type(result).__name__, "", problem, remedy)
     module, _, name = place.partition(":")
-    found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
-    return found
+    figure: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
+    return figure
 
 
 SECONDS = 60.0  # of a minute
@@ -123,7 +123,7 @@ def fit(
 
 
 def _along(panels: list[Axes]) -> Iterable[Axes]:
-    """Panels over time, speed or frequency; if there are none, the first one and those named as it is."""
+    """Panels over time, speed or frequency; if there are none, all with the label of the first panel."""
     named = [axes for axes in panels if any(word in axes.get_xlabel() for word in ALONG)]
     return named or [axes for axes in panels if axes.get_xlabel() == panels[0].get_xlabel()]
 

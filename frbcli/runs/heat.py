@@ -154,10 +154,10 @@ class RunHeat:
 
     def balance(self) -> dict[str, float | None]:
         """The dissipated heat that is unaccounted for, relative; empty without heat."""
-        found = self.passed()
-        if not found:
+        energies = self.passed()
+        if not energies:
             return {}
-        whole, *parts = found.values()
+        whole, *parts = energies.values()
         return {"heat_balance_relative": abs(whole - sum(parts)) / abs(whole) if whole != 0.0 else None}
 
 
@@ -166,8 +166,8 @@ def heat_units(case: Case, system: System) -> dict[str, str]:
     if case.heat is None:
         return {}
     nodes = (node.replace(" ", "_") for node in heat_of(case, first).nodes[len(system.names) :])
-    told = {signal_of(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
-    return told | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
+    units = {signal_of(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
+    return units | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
 
 
 def hot_film(run: Run) -> str:

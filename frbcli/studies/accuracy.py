@@ -98,19 +98,19 @@ def accuracy(
 
         exact = run(fine)
         reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
-        found: list[RungResult] = []
+        rung_results: list[RungResult] = []
         failed: list[tuple[Rung, str]] = []
         complete = False
         with suppress(KeyboardInterrupt):
             for rung in rungs:
                 try:
-                    found.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
+                    rung_results.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
                 except NotConverged as problem:
                     failed.append((rung, str(problem)))
-            reference, *found = _with_thresholds(case, reference, coarser, found)
+            reference, *rung_results = _with_thresholds(case, reference, coarser, rung_results)
             complete = True
-    found.sort(key=lambda item: item.cpu_s)
-    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
+    rung_results.sort(key=lambda item: item.cpu_s)
+    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(rung_results), complete, tuple(failed))
 
 
 def _references(own: Rung) -> tuple[Rung, Rung]:
@@ -155,12 +155,12 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
 
 def by_theory(case: Case, theories: Sequence[str] = ()) -> list[Case]:
     """A case by each theory of its ladder that can be modelled: theories have kernels of their own."""
-    found = []
+    variants = []
     for theory in theories or THEORIES:
         with suppress(InputError):
-            found.append(_with(case, f"film.theory={theory}"))
-            make_plan(found[-1])
-    return found
+            variants.append(_with(case, f"film.theory={theory}"))
+            make_plan(variants[-1])
+    return variants
 
 
 def _mesh(own: Rung, theory: str, factor: float) -> tuple[int, int] | None:
@@ -186,27 +186,27 @@ def _result(
 
 
 def _with_thresholds(
-    case: Case, reference: RungResult, coarser: Rung, found: Sequence[RungResult]
+    case: Case, reference: RungResult, coarser: Rung, results: Sequence[RungResult]
 ) -> Iterator[RungResult]:
     """The reference and what was found, with the errors of the thresholds of linear stability over all speeds of the
     case. They depend on theory and mesh alone."""
-    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in found))}
+    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in results))}
     speeds = {film: _threshold(_with_rung(case, rung)) for film, rung in rungs.items()}
 
     def off(one: Rung, other: Rung) -> float:
         return speeds[one.theory, one.mesh] - speeds[other.theory, other.mesh]
 
-    for item, other in ((reference, coarser), *((item, reference.rung) for item in found)):
+    for item, other in ((reference, coarser), *((item, reference.rung) for item in results)):
         yield replace(item, error=replace(item.error, threshold_Hz=off(item.rung, other)))
 
 
 def _threshold(case: Case) -> float:
-    """Threshold in Hz; NaN without one, and for films with cells: those with oil of their own have none, the others
-    take minutes."""
+    """Threshold in Hz; NaN without one, and for finite-volume films: mass-conserving ones have none, the others take
+    minutes."""
     if make_plan(case).cells is not None or not default_speeds(case):
         return math.nan
-    found = stability(case).threshold
-    return math.nan if found is None else found.speed_Hz
+    threshold = stability(case).threshold
+    return math.nan if threshold is None else threshold.speed_Hz
 
 
 def _tabulating(case: Case, rung: Rung) -> float:

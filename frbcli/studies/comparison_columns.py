@@ -22,12 +22,12 @@ def _event(kind: str, key: str) -> Callable[[Any], float]:
 
 
 def _uncertain(kind: str) -> Callable[[Any], tuple[float, float | None] | None]:
-    """The speed of an event with its uncertainty; that of a run with a second one."""
+    """The speed of an event with its uncertainty, where the run has one."""
     return lambda result: None if result.first(kind) is None else uncertain_pair(result.first(kind))
 
 
 def _of(account: str, key: str) -> Callable[[Any], Any]:
-    """From the cost or the error of a run; NaN where it does not tell it."""
+    """From the cost or the error of a run; NaN where the run does not state it."""
     return lambda result: getattr(result.run, account).get(key, math.nan)
 
 
@@ -55,7 +55,7 @@ VARIANT = (
     Column("onset_speed", "Hz", "rotor speed at the onset of whirl", _event("onset", "speed_Hz"), key=""),
     Column("onset_speed", "", "rotor speed at the onset of whirl", _uncertain("onset"), key="", flat=False,
            shown=tuple(uncertain_speed("onset", table=table, unit="Hz") for table in (MODELS, COUPLINGS))),
-    Column("onset_speed_uncertainty", "Hz", "its uncertainty, where the run has it",
+    Column("onset_speed_uncertainty", "Hz", "its uncertainty, if the run states one",
            _event("onset", "speed_uncertainty_Hz"), key=""),
     Column("onset_frequency_ratio", "", "whirl ratio there", _event("onset", "frequency_ratio"), key="",
            shown=(Shown("ratio", ".3f", table=MODELS),)),

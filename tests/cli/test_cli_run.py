@@ -277,7 +277,7 @@ def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
     words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
     assert frb(words) == 0
     assert "steps/rev" not in capsys.readouterr().err
-    monkeypatch.setattr("frbcli.cli.progress.TOLD_EVERY_s", 0.02)
+    monkeypatch.setattr("frbcli.cli.progress.PRINT_EVERY_s", 0.02)
     assert frb(words) == 0
     assert "steps/rev" in capsys.readouterr().err
     assert frb([*words, "--quiet"]) == 0

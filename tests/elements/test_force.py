@@ -290,7 +290,7 @@ def test_the_lines_of_a_table_are_no_whirl(broad: bool, tmp_path: Path, capfd: p
         '[[force]]\nat = "journal"\nfile = "force.csv"\n', encoding="utf-8")  # fmt: skip
     assert frb(["runup", str(tmp_path / "case.toml"), "-o", str(tmp_path / "run.h5")]) == 0
     told = " ".join("".join(capfd.readouterr()).split())
-    assert ("not told apart from whirl" in told) is broad
+    assert ("not separated from whirl" in told) is broad
     if not broad:
         assert {event["kind"] for event in frbcli.read_run(tmp_path / "run.h5").events} == OWN_EVENTS
 

@@ -86,8 +86,8 @@ def draw_coefficient(axes: Axes, sheet: BearingSheet, quantity: str) -> None:
     unit, scale, letter = {"stiffness": ("N/µm", 1e-6, "k"), "damping": ("N s/mm", 1e-3, "c")}[quantity]
     entries = [(f"{letter}{name}", _entry(quantity, i, scale)) for i, name in enumerate(AXES)]
     _curves(axes, sheet, f"{quantity} in {unit}", entries)
-    found = [[float(np.abs(getattr(state, quantity)).max()) for state in sheet.of(film)] for film in sheet.films]
-    sizes = [max(each) for each in found if any(each)]
+    largest = [[float(np.abs(getattr(state, quantity)).max()) for state in sheet.of(film)] for film in sheet.films]
+    sizes = [max(each) for each in largest if any(each)]
     if sizes and max(sizes) > UNLIKE * min(sizes):
         axes.set_yscale("symlog", linthresh=scale * min(sizes))
 
@@ -103,8 +103,8 @@ def _styles(sheet: BearingSheet) -> list[dict[str, Any]]:
 
 def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[str, Reading]]) -> None:
     """Readings over the abscissa of the sheet, without those that are not known of any state."""
-    found = [state for film in sheet.films for state in sheet.of(film)]
-    readings = [each for each in readings if not found or not all(math.isnan(each[1](state)) for state in found)]
+    points = [state for film in sheet.films for state in sheet.of(film)]
+    readings = [each for each in readings if not points or not all(math.isnan(each[1](state)) for state in points)]
     for number, (film, style) in enumerate(zip(sheet.films, _styles(sheet), strict=True)):
         states = sheet.of(film)
         x = [state.eccentricity if sheet.over == ECCENTRICITY else state.speed_Hz for state in states]

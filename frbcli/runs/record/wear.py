@@ -1,4 +1,4 @@
-"""Wear, and machines that stand.
+"""Wear, and the run that a file holds already.
 
 Wear of rough surfaces over a run, by Archard: an estimate. The gap of the run does not follow it.
 
@@ -7,7 +7,7 @@ specific wear rate k, volume over force and path. A shell that turns, a ring, an
 
 Source: Archard: Contact and rubbing of flat surfaces. J. Appl. Phys. 24 (1953), 981-988.
 
-The run that stands in a file already: it is gone on with, returned, replaced or kept, by one rule.
+A run that the file holds already: it is continued, returned, replaced or kept, by one rule.
 """
 
 from __future__ import annotations
@@ -66,7 +66,7 @@ class RunWear:
                 raise WrongCheckpoint("wear holds depths that no shell has")
             self._depths = depths
 
-    def told(self) -> dict[str, float]:
+    def deepest(self) -> dict[str, float]:
         """The largest depth in m and phi of its place in degrees, 0 all around a shell that turns."""
         if not len(self._depths):
             return {}

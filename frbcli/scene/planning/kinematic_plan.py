@@ -22,7 +22,6 @@ from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
 from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.cell_choice import given_cells
-from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films

@@ -50,8 +50,8 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
         return  # thrust and ball bearings alone need no kernels
     if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
         make_plan(case)  # raises the faults of a machine
-    found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
-    for analysis in found:
+    applicable = [analysis for analysis in ANALYSES if _applies(case, analysis)]
+    for analysis in applicable:
         machine = analysis not in KINEMATIC
         plan = make_plan(case) if machine else kinematic_plan(case, test=analysis)
         kind = analysis, *(machine_kernels(case, plan.decisions) if machine else _film_kernels(case, plan.decisions))
