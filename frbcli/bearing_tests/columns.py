@@ -60,8 +60,8 @@ def _angle(result: Any) -> float:
 
 
 HEAD = (
-    Column("cavitation", "", "cavitation model, none of a bearing model", lambda result: result.cavitation or None),
-    Column("theory", "", "`finite`, or the bearing model"),
+    Column("cavitation", "", "cavitation model"),
+    Column("theory", "", "of the film: `finite` or `short`"),
     Column("status", "", "`ok` or `not-converged`"),
 )
 

@@ -51,11 +51,11 @@ class History:
 
 @dataclass(frozen=True)
 class Course:
-    """Result of a moved film: its history; field (None of a bearing model) and loads at the moment of the
+    """Result of a moved film: its history; field and loads at the moment of the
     largest force, and the estimated relative error of that force; cost; why it ended early, or nothing."""
 
     history: History
-    field: FilmField | None
+    field: FilmField
     loads: FilmLoads
     force_error: float
     unknowns: int

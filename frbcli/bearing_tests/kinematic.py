@@ -37,10 +37,10 @@ FEWEST_TIMES = 8
 
 @dataclass(frozen=True)
 class KinematicResult:
-    """What one cavitation model says, or the bearing model, then cavitation is empty.
+    """Result of one cavitation model.
 
     status: "ok" | "not-converged", then problem says why. displacement: (2,) over the clearance; loads, field: None if
-    there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error,
+    there is no solution; force_error,
     moment_error: estimated, relative to force and moment, NaN if not known, the latter of a rotation; history: None for
     a rotation. Of a squeeze or a whirl, displacement, loads, field and error are at the moment of the largest force;
     with a mass-conserving law the error is the worst of the largest forces of the periods. heat: of a case with heat,
@@ -67,13 +67,9 @@ class KinematicResult:
 
     @property
     def theory(self) -> str:
-        """ "finite", or the name of a bearing model."""
+        """ "finite" or "short"."""
         return self.plan.theory
 
-    @property
-    def name(self) -> str:
-        """Name of the cavitation model or bearing model."""
-        return self.cavitation or self.theory
 
 
 @dataclass(frozen=True, repr=False)

@@ -45,11 +45,11 @@ class FilmField:
 
 @dataclass(frozen=True)
 class FilmMoment:
-    """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
+    """A film at one moment: its field, the loads on the whole bearing, the estimated relative
     errors of force and moment, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked
     for. The field of a bearing whose lands differ is the one of the land at z < 0."""
 
-    field: FilmField | None
+    field: FilmField
     loads: FilmLoads
     force_error: float
     unknowns: int

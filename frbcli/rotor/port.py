@@ -78,7 +78,7 @@ class ForceLaw(ABC):
             if self.has_derivatives():
                 self.force(self.numbers, self.memory.copy(), motion, answer)
             else:
-                by_differences(self.push, self, self.length, motion, answer)
+                by_differences(self.push, self, self.length, motion.tolist(), answer)
         except (ArithmeticError, ValueError):  # compiled, these are infinities and NaN
             answer[:] = np.nan
         return answer

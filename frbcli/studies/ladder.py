@@ -124,7 +124,7 @@ def _difference(value: float) -> str:
 RUNG = (
     Column("theory", "", "theory of the films"),
     Column("cavitation", "", "cavitation model"),
-    Column("mesh", "", "elements or cells along and around, none of the short bearing and of bearing models"),
+    Column("mesh", "", "elements or cells along and around, none of the short bearing"),
     Column("tolerance", "", "local error of a step", shown=(Shown("tol.", _tolerance),)),
     Column("coupling", "", "coupling of rotor and films"),
 )

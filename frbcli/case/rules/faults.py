@@ -30,8 +30,7 @@ _FORMS = {
 }
 
 
-# Keys that take names which are added from Python, and the functions that add them.
-OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
+CAVITATION: Path = ("film", "cavitation")  # which takes names that are added from Python
 
 # Names that engineers know and a case does not have: a part of the name, and what takes its place
 KINDS_ELSEWHERE = {
@@ -132,8 +131,8 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         return Breach((*path, "kind"), problem, elsewhere or _one_of(tag, _kinds(loc)))
     if kind == "literal_error":
         remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
-        if path in OWN:
-            remedy += f" One of your own is added in this process before the case is read: {OWN[path]}."
+        if path == CAVITATION:
+            remedy += " A law of your own is added in this process before the case is read: frbcli.add_law."
         return Breach(path, UNKNOWN, remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):

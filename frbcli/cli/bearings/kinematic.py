@@ -60,21 +60,12 @@ def run_test(
     head = {"command": "compare", "case": case.name, "test": test} if compared else {"command": test, "case": case.name}
     whole = {} if outcome.complete else {"status": "interrupted"}
     terminal.emit({**head, **whole, "results": [_document(outcome, result) for result in outcome.results]})
-    if not _can_draw(outcome, terminal):
+    if all(result.loads is None for result in outcome.results):
         outputs = replace(outputs, picture=None)
     outputs.write(terminal, outcome)
     if not outcome.complete:
         return INTERRUPTED
     return NotConverged.exit_code if any(result.status != "ok" for result in outcome.results) else None
-
-
-def _can_draw(test: KinematicTest, terminal: Terminal) -> bool:
-    if all(result.loads is None for result in test.results):
-        return False
-    if test.test == "rotation" and all(result.field is None for result in test.results):
-        terminal.remark("No picture: a bearing model has no pressure.")
-        return False
-    return True
 
 
 def _report(test: KinematicTest, terminal: Terminal) -> None:
@@ -99,16 +90,16 @@ def _report(test: KinematicTest, terminal: Terminal) -> None:
         terminal.sentence(f"{table.legend(GASES)}.")
     for result in test.results:
         if result.heat is not None:
-            show_film(terminal, result.heat, f"{result.name}: the film when it is warm")
+            show_film(terminal, result.heat, f"{result.cavitation}: the film when it is warm")
         if result.stribeck is not None:
             coefficient, speed = result.stribeck.least
             minimum = f"the least coefficient of friction is {coefficient:.3g}, at {terminal.speeds.words(speed)}."
-            terminal.sentence(f"{result.name}: {minimum}")
+            terminal.sentence(f"{result.cavitation}: {minimum}")
     if test.test != "rotation":
         terminal.result(LARGEST)
     for result in test.results:
         if result.problem:
-            terminal.result(f"{result.name}: {result.status}: {result.problem}")
+            terminal.result(f"{result.cavitation}: {result.status}: {result.problem}")
     if not test.complete:
         terminal.result("Interrupted: the other models were not computed.")
 

@@ -48,12 +48,8 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
         for panel in panels[2]:
-            if panel.lines:
-                panel.set_yscale("log")
-                plain_numbers(panel.yaxis)
-            else:
-                panel.set_yticks([])
-                panel.text(0.5, 0.5, "not known of a bearing model", transform=panel.transAxes, ha="center")
+            panel.set_yscale("log")
+            plain_numbers(panel.yaxis)
         if chart:
             panels[0, 0].set_yscale("log")
             plain_numbers(panels[0, 0].yaxis)

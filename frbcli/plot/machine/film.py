@@ -159,11 +159,11 @@ def kinematic_figure(test: KinematicTest) -> Figure:
 
 
 def history_figure(test: KinematicTest) -> Figure:
-    """F_y of a squeeze and of a bearing model, the pressure at the probe of another whirl, over time for all models;
-    below, the gap at phi = pi."""
+    """F_y of a squeeze, or the pressure at the probe of a whirl, over time for all models; below, the gap at the
+    probe's angle, phi = pi."""
     motion = test.case.motion
     assert motion is not None
-    pressures = test.test == "whirl" and all(result.plan.form.solved for result in test.results)
+    pressures = test.test == "whirl"
     with styled():
         words = f"{test.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
