@@ -39,8 +39,8 @@ def _largest(films: Sequence[str]) -> Column:
 
 def _largest_uncertainty(films: Sequence[str]) -> Column:
     def by_name(point: Any) -> dict[str, Any] | None:
-        found = point.eccentricity_max_uncertainty
-        return None if found is None else by_film(films, found)
+        uncertainty = point.eccentricity_max_uncertainty
+        return None if uncertainty is None else by_film(films, uncertainty)
 
     return Column("eccentricity_max_uncertainty", "", "uncertainty of the largest eccentricity, by film", by_name,
                   flat=False)  # fmt: skip
@@ -147,8 +147,8 @@ def _in_last_digits(head: str, digits: int, value: str, uncertainty: Callable[[S
 
 def _largest_shown(point: SpecialPoint) -> str:
     film = int(point.eccentricity_max.argmax())
-    found = point.eccentricity_max_uncertainty
-    return with_uncertainty(float(point.eccentricity_max[film]), None if found is None else float(found[film]), 4)
+    error = point.eccentricity_max_uncertainty
+    return with_uncertainty(float(point.eccentricity_max[film]), None if error is None else float(error[film]), 4)
 
 
 def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -> tuple[Column, ...]:
@@ -290,10 +290,10 @@ def _number(name: str, place: int | None = None, at_rest: str = "") -> Callable[
     RestingPoint, if that is another."""
 
     def value(point: Any) -> float:
-        found = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
-        if found is None:
+        number = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
+        if number is None:
             return math.nan
-        return float(found if place is None else found[place])
+        return float(number if place is None else number[place])
 
     return value
 

@@ -76,27 +76,27 @@ def limit_cycles(
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     _check_asked(case, asked, slowest, fastest)
     if by_shooting(case):
-        found = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
-        return _with_missing(of_no_whirl(found) if with_unbalance else found, speeds_Hz)
+        computed = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
+        return _with_missing(of_no_whirl(computed) if with_unbalance else computed, speeds_Hz)
     system = make_system(case, make_plan(case))
     try:
         with advised(case):
             walk = _walk(case, system, slowest / fastest, fastest, [speed / fastest for speed in asked])
     except Unreachable:
         raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
-    found = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
+    computed = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
     if case.heat is not None:
-        found = with_hopf_errors(found, walk)
-    elif found.of(HOPF):
-        found = replace(found, special=_with_errors(case, fastest, found.special))
+        computed = with_hopf_errors(computed, walk)
+    elif computed.of(HOPF):
+        computed = replace(computed, special=_with_errors(case, fastest, computed.special))
     if with_unbalance:
-        found = whirls_with_unbalance(found, walk.course, observe)
+        computed = whirls_with_unbalance(computed, walk.course, observe)
     rotor = system.rotor
     if rotor.over_speed is None and (rotor.loads or rotor.unbalance_cos.any() or rotor.unbalance_sin.any()):
         response = synchronous_response(Synchronous(walk.course, slowest / fastest), walk.resting.points[-1])
-        found = with_response(found, walk, response)
-    found = replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
-    return of_no_whirl(found) if with_unbalance else found
+        computed = with_response(computed, walk, response)
+    computed = replace(computed, cost=replace(computed.cost, cpu_s=working_time().cpu_s - begun))
+    return of_no_whirl(computed) if with_unbalance else computed
 
 
 def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: float) -> None:
@@ -146,18 +146,18 @@ def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) ->
 
 def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:
     try:
-        found = threshold_at(machines, point.speed_Hz, point.frequency_Hz)
+        threshold = threshold_at(machines, point.speed_Hz, point.frequency_Hz)
     except NotConverged:
         return point
     return replace(
         point,
-        value_uncertainty=found.speed_uncertainty_Hz,
-        frequency_uncertainty_Hz=found.frequency_uncertainty_Hz,
+        value_uncertainty=threshold.speed_uncertainty_Hz,
+        frequency_uncertainty_Hz=threshold.frequency_uncertainty_Hz,
     )
 
 
-def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
+def _with_missing(computed: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
     """With a note on each speed at which there is no cycle."""
-    met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
+    met = {round(point.speed_Hz, 6) for branch in computed.branches for point in branch.points}
     missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
-    return replace(found, notes=(*found.notes, *missing))
+    return replace(computed, notes=(*computed.notes, *missing))

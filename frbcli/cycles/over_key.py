@@ -78,8 +78,8 @@ def limit_cycles_over(
         for number, other in enumerate(other_films(plan))
     )
     walk = Walk(resting, Follower(family, lowest), meshes, why_no_error(plan))
-    found = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
-    return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
+    computed = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
+    return replace(computed, cost=replace(computed.cost, cpu_s=working_time().cpu_s - begun))
 
 
 def resting_over(family: Family, lowest: float) -> Resting:

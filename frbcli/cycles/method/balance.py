@@ -133,8 +133,8 @@ def _derivative(loads: Loads, h: int, nu: float) -> Complex:
     by_u, by_v = _both_signs(loads.by_u, 2 * h), _both_signs(loads.by_v, 2 * h)
     k, order = np.arange(h + 1)[:, None], np.arange(-h, h + 1)[None, :]
     place = k - order + 2 * h
-    found = by_u[place] + (1j * nu * order)[..., None, None] * by_v[place]
-    return np.ascontiguousarray(found.transpose(0, 2, 1, 3))
+    tensor = by_u[place] + (1j * nu * order)[..., None, None] * by_v[place]
+    return np.ascontiguousarray(tensor.transpose(0, 2, 1, 3))
 
 
 def _both_signs(samples: Array, h: int) -> Complex:

@@ -90,10 +90,10 @@ class MachineCourse:
         """Those of its states whose multipliers those of its cycles are."""
         return self._seen_states
 
-    def multipliers(self, found: Multipliers, _y: Array, _slope: Callable[[Machine], Array]) -> Multipliers:
+    def multipliers(self, fast: Multipliers, _y: Array, _slope: Callable[[Machine], Array]) -> Multipliers:
         """The multipliers of a cycle y with those of what follows its mean, as temperatures do. slope: (n, n) of a
         machine, that of its equations by the motion."""
-        return found
+        return fast
 
     @cached_property
     def _states(self) -> StateSpace:

@@ -145,8 +145,8 @@ def settled(course: MachineCourse, near: Array, value: float) -> Equilibrium:
 
 def hopf_points(course: MachineCourse, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
     """The Hopf points between resting positions in the order of their course. Raises Unreachable."""
-    found = hopf.hopf_points(partial(_between, course), points, SHARP)
-    return tuple(hopf_at(each.here, each.rising) for each in found)
+    crossings = hopf.hopf_points(partial(_between, course), points, SHARP)
+    return tuple(hopf_at(each.here, each.rising) for each in crossings)
 
 
 def _between(course: MachineCourse, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:

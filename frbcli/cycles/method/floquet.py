@@ -82,15 +82,15 @@ def multipliers(
         matrix = monodromy(machine, space, y, intervals)
         return replace(_parted(_sorted(matrix), matrix, machine, space, y), intervals=intervals, floor=floor)
 
-    found = at(count)
-    known = FAR * TRIVIAL < floor < ALIKE * found.defect and found.defect < ALIKE * floor
-    while not known and found.defect > enough and 2 * count <= MOST_INTERVALS:
+    result = at(count)
+    known = FAR * TRIVIAL < floor < ALIKE * result.defect and result.defect < ALIKE * floor
+    while not known and result.defect > enough and 2 * count <= MOST_INTERVALS:
         count *= 2
         finer = at(count)
-        if finer.defect > HELPS * found.defect:  # not of the integration, but of the harmonics
-            return replace(finer, intervals=found.intervals, floor=finer.defect)
-        found = finer
-    return found
+        if finer.defect > HELPS * result.defect:  # not of the integration, but of the harmonics
+            return replace(finer, intervals=result.intervals, floor=finer.defect)
+        result = finer
+    return result
 
 
 def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
@@ -148,23 +148,23 @@ def _sorted(matrix: Array) -> Multipliers:
     return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), float(abs(values[trivial] - 1.0)))
 
 
-def _parted(found: Multipliers, matrix: Array, machine: Machine, space: StateSpace, y: Array) -> Multipliers:
+def _parted(fast: Multipliers, matrix: Array, machine: Machine, space: StateSpace, y: Array) -> Multipliers:
     """The multipliers with a pair about 1 told by its sum and by what becomes of the motion along the cycle.
 
     At a fold two multipliers are 1, with one disturbance for both: an error of the matrix then enters each with its
     root, and their sum as it is.
     """
-    if len(found.others) == 0:
-        return found
-    near = int(np.argmin(np.abs(found.others - 1.0)))
-    if abs(found.others[near] - 1.0) > DOUBLE:
-        return found
+    if len(fast.others) == 0:
+        return fast
+    near = int(np.argmin(np.abs(fast.others - 1.0)))
+    if abs(fast.others[near] - 1.0) > DOUBLE:
+        return fast
     along = _along(machine, space, y)
     trivial = float(along @ (matrix @ along))
-    other = found.values[0] + found.others[near] - trivial
+    other = fast.values[0] + fast.others[near] - trivial
     if abs(other.imag) > TRIVIAL:
-        return found
-    others = np.concatenate([np.delete(found.others, near), [other.real]])
+        return fast
+    others = np.concatenate([np.delete(fast.others, near), [other.real]])
     others = others[largest_first(others)]
     return Multipliers(np.concatenate([[trivial + 0.0j], others]), float(np.linalg.norm(matrix @ along - along)))
 

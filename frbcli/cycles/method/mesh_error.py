@@ -113,10 +113,10 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
     number. own: the follower of its branch."""
     here = np.array([*cycle.place.y[[-1, -2]], *cycle.eccentricity_max])
     errors = [LEAST * here]
-    for found in _found_again(own, [mesh.follower for mesh in meshes], cycle):
-        if found is None:
+    for place in _found_again(own, [mesh.follower for mesh in meshes], cycle):
+        if place is None:
             return CycleError(np.nan, np.nan, np.full(cycle.machine.film_count, np.nan))
-        there = np.array([*found.y[[-1, -2]], *eccentricities(cycle.machine, found.y)])
+        there = np.array([*place.y[[-1, -2]], *eccentricities(cycle.machine, place.y)])
         errors.append(meshes[len(errors) - 1].share * np.abs(there - here))
     last, frequency, *eccentricity = np.max(errors, axis=0)
     return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
@@ -162,13 +162,13 @@ def _in_stages(seek: Seek, here: Equations, there: Equations, near: Place, machi
     """The sought place on other films. Films that differ much, such as those of two theories, are changed into each
     other in stages."""
     for stages in (1, STAGES):
-        found: Place | None = near
+        place: Place | None = near
         for stage in range(1, stages + 1):
-            if found is not None:
-                before, found = found, seek(_between(here, there, stage / stages), found)
-                found = None if found is None or passed_rest(machine, before, found) else found
-        if found is not None:
-            return found
+            if place is not None:
+                before, place = place, seek(_between(here, there, stage / stages), place)
+                place = None if place is None or passed_rest(machine, before, place) else place
+        if place is not None:
+            return place
     return None
 
 
@@ -192,8 +192,8 @@ def _with_side(equations: Equations, place: Place) -> Place:
 
 
 def _same_speed(equations: Equations, near: Place) -> Place | None:
-    found = corrected(equations, near.y, unit_vector(len(near.y)))
-    return found if found is not None and found.side == near.side else None
+    place = corrected(equations, near.y, unit_vector(len(near.y)))
+    return place if place is not None and place.side == near.side else None
 
 
 def _fold(equations: Equations, near: Place) -> Place | None:
@@ -202,7 +202,7 @@ def _fold(equations: Equations, near: Place) -> Place | None:
         return None
     for reach in REACHES:
         for along in (near.tangent, -near.tangent):
-            found = fold_between(equations, oriented(start, along), reach, LOCATED)
-            if found is not None:
-                return found
+            fold = fold_between(equations, oriented(start, along), reach, LOCATED)
+            if fold is not None:
+                return fold
     return None

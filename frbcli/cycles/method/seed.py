@@ -75,8 +75,8 @@ def _stabilised(course: _Stiffening, resting: Equilibrium) -> HopfPoint | None:
     for place, _ in follow(asked, start, RISE):
         high = equilibrium(course, place)
         if high.growth_of(0) < 0.0:
-            found = hopf_points(course, (low, high))
-            return found[-1] if found else None
+            crossings = hopf_points(course, (low, high))
+            return crossings[-1] if crossings else None
         if high.value > MOST:
             return None
         low = high

@@ -56,12 +56,12 @@ def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array,
     if planes is None:
         return (_part(np.array(matrices, dtype=complex), shapes, loads),)
     x, y = planes
-    found = []
+    parts = []
     for turn in (1j, -1j):
         own = np.array([matrix[np.ix_(x, x)] - turn * matrix[np.ix_(x, y)] for matrix in matrices])
         seen, given = shapes[:, x] - turn * shapes[:, y], loads[x] + turn * loads[y]
-        found.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
-    return tuple(found)
+        parts.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
+    return tuple(parts)
 
 
 def _part(

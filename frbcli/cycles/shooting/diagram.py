@@ -59,10 +59,10 @@ def limit_cycles_by_shooting(
     if not rests:
         raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
     hopf = thresholds(shooting, rests)
-    told = CycleCount(observe)
+    count = CycleCount(observe)
 
     def tell(shot: Shot) -> None:
-        told(shooting.speed_Hz(shot), shot.eccentricity_max)
+        count(shooting.speed_Hz(shot), shot.eccentricity_max)
 
     other = other_cells(case, shooting)
     branches: list[CycleBranch] = []
@@ -90,7 +90,7 @@ def limit_cycles_by_shooting(
         branches=tuple(branches),
         special=(*special, *special_cycles(branches, response)),
         notes=(*_notes(shooting, other, rests, hopf), *remarks),
-        cost=Cost(working_time().cpu_s - begun, told.count),
+        cost=Cost(working_time().cpu_s - begun, count.count),
         synchronous=response,
     )
 
@@ -131,14 +131,14 @@ def _branch(
 
 def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
     """The note of a branch, which says where the mean of a cycle lacks places of its cells, and where these hold it."""
-    told, places = [note], 1 + len(flow.places)
+    remarks, places = [note], 1 + len(flow.places)
     lacking = sum(len(shot.others) < len(flow.places) for shot in shots)
     if lacking > 0:
-        told.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
+        remarks.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
     held = max((shot.multipliers.defect for shot in shots), default=0.0)
     if held > HELD:
-        told.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
-    return " ".join(told).strip()
+        remarks.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
+    return " ".join(remarks).strip()
 
 
 def _notes(

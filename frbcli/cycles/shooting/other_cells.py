@@ -74,17 +74,17 @@ def threshold_errors(own: Shooting, other: OtherCells, first: Shot) -> tuple[flo
 
 def shot_errors(own: Shooting, other: OtherCells, shots: Sequence[Shot]) -> tuple[ShotError, ...]:
     """The errors of the cycles of a branch in their order, but of folds at least BESIDE of those of neighbours."""
-    found = [
+    shot_error = [
         _fold_error(own, other, shots[i - 1 : i + 2]) if shot.kind == FOLD else _cycle_error(own, other, shot)
         for i, shot in enumerate(shots)
     ]
     cycles = [i for i, shot in enumerate(shots) if shot.kind != FOLD]
-    errors = np.array([[found[i].frequency, *found[i].eccentricity] for i in cycles])
+    errors = np.array([[shot_error[i].frequency, *shot_error[i].eccentricity] for i in cycles])
     beside = np.fmax(np.roll(errors, 1, axis=0), np.roll(errors, -1, axis=0))[1:-1]
     errors[1:-1] = np.maximum(errors[1:-1], np.nan_to_num(BESIDE * beside))
     for i, (frequency, *eccentricity) in zip(cycles, errors, strict=True):
-        found[i] = ShotError(np.nan, frequency, np.array(eccentricity))
-    return tuple(found)
+        shot_error[i] = ShotError(np.nan, frequency, np.array(eccentricity))
+    return tuple(shot_error)
 
 
 def _cycle_error(own: Shooting, other: OtherCells, shot: Shot) -> ShotError:
@@ -111,8 +111,8 @@ def _again(own: Shooting, other: OtherCells, shot: Shot, held: Array) -> Array:
         return np.full(len(_own(own, shot)), np.nan)
     across = np.append(flow.states_on(twin.flow, held[:size, None])[:, 0], held[size:])
     conditions = both(twin.held(near), across)
-    found = twin.again(near, shot.mean_p, _space_on(own, other, shot.space), conditions, shot.steps, NOISE)
-    return _mean(twin.flow, found) if found else np.full(len(_own(own, shot)), np.nan)
+    cycles = twin.again(near, shot.mean_p, _space_on(own, other, shot.space), conditions, shot.steps, NOISE)
+    return _mean(twin.flow, cycles) if cycles else np.full(len(_own(own, shot)), np.nan)
 
 
 def _space_on(own: Shooting, other: OtherCells, space: SlowSpace) -> SlowSpace:
@@ -134,10 +134,10 @@ def _turned(at: Array, z: Array, apart: Array) -> Array:
     _, along, _ = np.linalg.solve(np.vander(at, increasing=True), z)
     slopes = (apart[[0, 2]] - apart[1]) / ends[:, None]
     turns = -0.5 * slopes[:, :1] / bend
-    found = apart[1] + turns * (along + slopes)
-    found[:, 0] = apart[1, 0] + 0.5 * turns[:, 0] * slopes[:, 0]
+    apart_at = apart[1] + turns * (along + slopes)
+    apart_at[:, 0] = apart[1, 0] + 0.5 * turns[:, 0] * slopes[:, 0]
     between = (at.min() <= turns) & (turns <= at.max())
-    return np.asarray(np.where(between.all(), np.abs(found).max(axis=0), np.nan))
+    return np.asarray(np.where(between.all(), np.abs(apart_at).max(axis=0), np.nan))
 
 
 def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> ShotError:
@@ -156,9 +156,9 @@ def _places(shot: Shot) -> list[tuple[Array, Array]]:
     return [(shot.p, shot.displacements), *shot.others]
 
 
-def _mean(flow: PeriodMap, found: Sequence[tuple[Array, Array]]) -> Array:
+def _mean(flow: PeriodMap, places: Sequence[tuple[Array, Array]]) -> Array:
     """z, the mean over places of the cells."""
-    return np.asarray(np.mean([_told(flow, *each) for each in found], axis=0))
+    return np.asarray(np.mean([_told(flow, *each) for each in places], axis=0))
 
 
 def _told(flow: PeriodMap, p: Array, displacements: Array) -> Array:

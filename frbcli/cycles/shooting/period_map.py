@@ -229,9 +229,9 @@ class PeriodMap:
 
     def _slow(self, v: Array, omega: float) -> Array:
         """Velocities over half of the speed; of displacements over their units, too."""
-        told = 2.0 * v / omega
-        told[self._kept] /= self.lengths
-        return np.asarray(told)
+        slow = 2.0 * v / omega
+        slow[self._kept] /= self.lengths
+        return np.asarray(slow)
 
     def _gaps(self, q: Array, bodies: Array) -> Array:
         """H in the cells of films between rotor and rings at angles (1 + rings,), see Films.gaps."""
@@ -303,14 +303,14 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     )
 
 
-def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
+def wet_at(flow: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
     """A machine with displacements q and velocities v whose films have settled there. Raises Unreachable."""
     try:
-        state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
+        state = state_at(flow.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
     except NotConverged:
         raise Unreachable from None
-    content, rate = content_of(state.wet, found._gaps(q, found.begun))
-    return Wet(state.q, state.v, state.a, content, rate, state.wet[W], found._filling(state))
+    content, rate = content_of(state.wet, flow._gaps(q, flow.begun))
+    return Wet(state.q, state.v, state.a, content, rate, state.wet[W], flow._filling(state))
 
 
 def content_of(wet: Array, gaps: Array) -> tuple[Array, Array]:

@@ -40,22 +40,22 @@ class RestThreshold:
 
 def resting(shooting: Shooting, slowest: float, fastest: float) -> list[Rest]:
     """Resting positions in ascending order of the speed, sought from the fastest on; speeds in rad/s."""
-    found: list[Rest] = []
+    rests: list[Rest] = []
     for omega in np.linspace(fastest, slowest, RESTS):
         rest = settled(shooting, float(omega))
-        if rest is None and found:
-            rest = shooting.rest(found[-1].wet, float(omega))
+        if rest is None and rests:
+            rest = shooting.rest(rests[-1].wet, float(omega))
         if rest is not None:
-            found.append(rest)
-    return found[::-1]
+            rests.append(rest)
+    return rests[::-1]
 
 
 def settled(shooting: Shooting, omega: float) -> Rest | None:
     """The resting position next to that of films whose oil is at rest, too; None if none is found."""
     system = shooting.flow.system
     try:
-        found = resting_position(system, omega)
-        return shooting.rest(wet_at(shooting.flow, found.displacements, found.velocities(system), omega), omega)
+        static = resting_position(system, omega)
+        return shooting.rest(wet_at(shooting.flow, static.displacements, static.velocities(system), omega), omega)
     except (NotConverged, Unreachable):
         return None
 

@@ -171,12 +171,12 @@ class Shooting:
             x = self.flow.packed(near, self.unit)
             space = slow_space(mapped, x, none, self._first(x), difference)
             free = Conditions(np.zeros((0, len(x))), np.zeros((0, 0)))
-            found = fixed_point(mapped, x, none, space, free)
-            if found is None:
+            fixed = fixed_point(mapped, x, none, space, free)
+            if fixed is None:
                 return None
-            x, passage = found.x, asked.passage
+            x, passage = fixed.x, asked.passage
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x, found.space), difference)
+            space = slow_space(mapped, x, none, self._first(x, fixed.space), difference)
         except Unreachable:
             return None
         values, states = ritz(space)
@@ -205,9 +205,9 @@ class Shooting:
         share = (math.log(omega / self.unit) - shot.p[1]) / (other.p[1] - shot.p[1])
         x, p = shot.x + share * (other.x - shot.x), shot.p + share * (other.p - shot.p)
         for one in (shot, other) if share < 0.5 else (other, shot):
-            found = self._found(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
-            if found is not None:
-                return found
+            cycle = self._found(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
+            if cycle is not None:
+                return cycle
         return None
 
     def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
@@ -221,8 +221,8 @@ class Shooting:
         tangent = np.concatenate([along, np.zeros(2)])
         rows = np.stack([np.append(across / np.linalg.norm(across), np.zeros(2)), tangent])
         start = self._near(rest.wet, p, tangent, steps)
-        found = self.begun(start, guess, both(*rows))
-        return None if found is None else replace(found, tangent=self.direction(start, found))
+        cycle = self.begun(start, guess, both(*rows))
+        return None if cycle is None else replace(cycle, tangent=self.direction(start, cycle))
 
     def with_unbalance(self, rest: Rest) -> Shot | None:
         """The synchronous motion at the speed of a resting position, the tangent to lower speeds; None if it is not
@@ -230,19 +230,19 @@ class Shooting:
         size, speed = len(rest.x), math.log(rest.omega / self.unit)
         p = np.array([math.log(2.0 * math.pi) - speed, speed])
         down = np.append(np.zeros(size), [1.0, -1.0]) / math.sqrt(2.0)
-        found, share = self._near(rest.wet, p, down, STEPS_PER_REVOLUTION), 0.0
+        cycle, share = self._near(rest.wet, p, down, STEPS_PER_REVOLUTION), 0.0
 
         def raised(by: float) -> Shot | None:
             partly = Shooting(replace(self.flow, driven=(share + by) * self.flow.driven), self.unit)
-            held = both(self.held(found.wet), unit_vector(size + 2))
-            return partly.begun(found, found.x, held)
+            held = both(self.held(cycle.wet), unit_vector(size + 2))
+            return partly.begun(cycle, cycle.x, held)
 
         while share < 1.0:
             there, step = halved_until(raised, 1.0 - share, SMALLEST_SHARE)
             if there is None:
                 return None
-            found, share = there, share + step
-        return found
+            cycle, share = there, share + step
+        return cycle
 
     def _near(self, wet: Wet, p: Array, tangent: Array, steps: int) -> Shot:
         """A machine as a motion of which nothing is known."""
@@ -271,15 +271,15 @@ class Shooting:
     def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
         asked = _Asked(self, shot.wet, shot.steps)
         try:
-            found = fixed_point(asked.at, x, p, shot.space, conditions)
-            if found is None:
+            fixed = fixed_point(asked.at, x, p, shot.space, conditions)
+            if fixed is None:
                 return None
-            x, p = found.x, found.p
+            x, p = fixed.x, fixed.p
             asked.settle(x)
             passage, wet = asked.passage, asked.near
             gap = 1.0 - float(np.hypot(passage.displacements[:, :, 0], passage.displacements[:, :, 1]).max())
             by = DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
-            space = slow_space(asked.at, x, p, self._first(x, found.space), by)
+            space = slow_space(asked.at, x, p, self._first(x, fixed.space), by)
         except Unreachable:
             return None
         held = self.held(wet)
@@ -298,14 +298,14 @@ class Shooting:
         not in the first. steps: of the period; close: see fixed_point."""
         asked = _Asked(self, near, steps)
         try:
-            found = fixed_point(asked.at, self.flow.packed(near, self.unit), p, space, conditions, close)
+            fixed = fixed_point(asked.at, self.flow.packed(near, self.unit), p, space, conditions, close)
         except Unreachable:
-            found = None
-        if found is None:
+            fixed = None
+        if fixed is None:
             return ()
-        asked.settle(found.x)
-        first = found.p, asked.passage.displacements
-        others = (self._elsewhere(place, asked, found.p, found.space, conditions, close) for place in self.flow.places)
+        asked.settle(fixed.x)
+        first = fixed.p, asked.passage.displacements
+        others = (self._elsewhere(place, asked, fixed.p, fixed.space, conditions, close) for place in self.flow.places)
         return (first, *(each for each in others if each is not None))
 
     def _elsewhere(
@@ -315,18 +315,18 @@ class Shooting:
         there = self.flow.moved(here.near, place)
         asked = _Asked(self, there, here.steps, self.flow.lying(place))
         try:
-            found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions, close)
+            fixed = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions, close)
         except Unreachable:
             return None
-        return None if found is None else (found.p, asked.passage.displacements)
+        return None if fixed is None else (fixed.p, asked.passage.displacements)
 
     def held(self, wet: Wet) -> Array:
         """(N + 2,) what holds a motion in time: nothing along the direction in which its state moves, of the rotor
         alone; with the unbalance no change of T Omega."""
         if not self.free:
             return np.append(np.zeros(self.flow.size), np.ones(2))
-        found = self.flow.motion_of(wet, self.unit)
-        return np.append(found / float(np.linalg.norm(found)), np.zeros(2))
+        motion = self.flow.motion_of(wet, self.unit)
+        return np.append(motion / float(np.linalg.norm(motion)), np.zeros(2))
 
     def _first(self, x: Array, known: SlowSpace | None = None) -> Array:
         """(N, j) unit states of the rotor and of fillings, and the slow motions that are known already, oil that stays

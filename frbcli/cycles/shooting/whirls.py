@@ -109,11 +109,11 @@ def _locked(driven: Shooting, run: HeldRun) -> Shot | None:
     """The motion of two periods of the rotor that a run of a cycle ends in; None if it does not."""
     if run.moved[1] > REPEATS:
         return None
-    found = driven.locked_in(run.wet, run.omega)
-    if found is None or not found.multipliers.stable:
+    locked = driven.locked_in(run.wet, run.omega)
+    if locked is None or not locked.multipliers.stable:
         return None
-    half = np.fft.rfft(found.displacements[:-1], axis=0, norm="forward")[1::2]
-    return found if float(np.abs(half).max()) > WHIRLS else None
+    half = np.fft.rfft(locked.displacements[:-1], axis=0, norm="forward")[1::2]
+    return locked if float(np.abs(half).max()) > WHIRLS else None
 
 
 def _whirl(driven: Shooting, shot: Shot) -> UnbalancedWhirl:

@@ -89,8 +89,8 @@ def synchronous_response(follower: Synchronous, resting: Equilibrium) -> Branch 
     place = follower.refitted(oriented(start, along))
     if place is None:
         return None
-    found = follow_branch(follower, place)
-    return replace(found, cycles=(follower.cycle(place), *found.cycles))
+    branch = follow_branch(follower, place)
+    return replace(branch, cycles=(follower.cycle(place), *branch.cycles))
 
 
 def driven_motion(machine: Machine, harmonics: int, periods: int, share: float, theta: float = 0.0) -> Array:

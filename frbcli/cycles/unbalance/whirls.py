@@ -40,14 +40,14 @@ NOT_FOUND = "no stable motion of half the speed was found"
 UNSETTLED = "its temperatures do not settle"
 
 
-def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
+def whirls_with_unbalance(diagram: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
     """A diagram over the speed with the whirls that its stable cycles lock in with.
 
     course: which the diagram goes over; observe: called with the number of motions so far, the speed in Hz and the
     largest eccentricity of the latest one.
     """
-    speeds, branches, count = [point.speed_Hz for point in found.equilibria], [], 0
-    for branch in found.branches:
+    speeds, branches, count = [point.speed_Hz for point in diagram.equilibria], [], 0
+    for branch in diagram.branches:
         near: Cycle | None = None
         whirls, missing = list[UnbalancedWhirl](), list[MissingWhirl]()
         for point in (branch.points[place] for place in taken(branch, APART * (max(speeds) - min(speeds)))):
@@ -62,7 +62,7 @@ def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Ob
             if observe is not None:
                 observe(count, point.speed_Hz, float(whirls[-1].eccentricity_max.max()))
         branches.append(replace(branch, with_unbalance=tuple(whirls), missing=tuple(missing)))
-    return replace(found, branches=tuple(branches))
+    return replace(diagram, branches=tuple(branches))
 
 
 def taken(branch: CycleBranch, apart: float) -> list[int]:
@@ -119,11 +119,11 @@ def _locked_at(machine: Machine, motion: Complex, point: CyclePoint, near: Cycle
     """The motion that a cycle with harmonics (H + 1, c) locks in with at the temperatures of a machine. Raises
     Unreachable where none is found."""
     nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
-    found = None if near is None else locked_near(machine, unpacked(near.y[:-2], machine.size), omega)
-    found = found or locked_whirl(machine, motion, nu, omega)
-    if found is None:
+    locked = None if near is None else locked_near(machine, unpacked(near.y[:-2], machine.size), omega)
+    locked = locked or locked_whirl(machine, motion, nu, omega)
+    if locked is None:
         raise Unreachable(NOT_FOUND)
-    return found
+    return locked
 
 
 def _motion_of(machine: Machine, point: CyclePoint) -> Complex:
@@ -163,25 +163,25 @@ def _multiple_of_half(order: int) -> str:
     return "Omega / 2" if order == 1 else f"{order} Omega / 2"
 
 
-def of_no_whirl(found: LimitCycles) -> LimitCycles:
+def of_no_whirl(diagram: LimitCycles) -> LimitCycles:
     """A diagram whose whirls with the unbalance were asked for, with what is to be said where none was sought, and
     where the synchronous motion is stable."""
-    notes = list(found.notes)
-    if not any(branch.with_unbalance or branch.missing for branch in found.branches):
+    notes = list(diagram.notes)
+    if not any(branch.with_unbalance or branch.missing for branch in diagram.branches):
         notes.append("With unbalance: no branch has a stable cycle, from which a whirl is sought.")
-    return replace(found, notes=(*notes, *_synchronous(found)))
+    return replace(diagram, notes=(*notes, *_synchronous(diagram)))
 
 
-def _synchronous(found: LimitCycles) -> list[str]:
+def _synchronous(diagram: LimitCycles) -> list[str]:
     """Where the synchronous motion is stable, in words: each of the branches between its folds by itself."""
-    pieces = between_folds(found.synchronous)
+    pieces = between_folds(diagram.synchronous)
     if not pieces:
         return []
     if len(pieces) == 1:
         return [f"The synchronous motion is {_stability(pieces[0])}, where it was computed."]
-    folds = " and ".join(f"{point.speed_Hz:.6g} Hz" for point in found.synchronous if point.kind == FOLD)
-    told = [f"The synchronous motion has {len(pieces)} branches, which meet in folds at {folds}."]
-    return told + [
+    folds = " and ".join(f"{point.speed_Hz:.6g} Hz" for point in diagram.synchronous if point.kind == FOLD)
+    notes = [f"The synchronous motion has {len(pieces)} branches, which meet in folds at {folds}."]
+    return notes + [
         f"Branch {number} of the synchronous motion is {_stability(piece)}, with eccentricities of "
         f"{min(sizes):.3g} to {max(sizes):.3g}."
         for number, piece in enumerate(pieces, start=1)
