@@ -50,9 +50,9 @@ def kept_beside(kernel: Callable[..., object]) -> Callable[[Callable[Arguments, 
             if folder is None:
                 return make(*given, **named)
             file = folder / f"{make.__name__}-{name}{SUFFIX}"
-            found = _read(file)
-            if found is not None:
-                return found
+            values = _read(file)
+            if values is not None:
+                return values
             array = make(*given, **named)
             with suppress(OSError):
                 _write(file, array)

@@ -76,9 +76,9 @@ def addresses(law: Law) -> tuple[int, int]:
 
 def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
     """(LARGEST_PARAMETERS,) parameters of a law, filled up with zeros."""
-    found = np.zeros(LARGEST_PARAMETERS)
-    found[: len(law.parameters)] = law.parameters
-    return found
+    parameters = np.zeros(LARGEST_PARAMETERS)
+    parameters[: len(law.parameters)] = law.parameters
+    return parameters
 
 
 def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: Scales) -> CellState:

@@ -76,8 +76,8 @@ def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> Dynamic
     rights: list[Array] = []
     lefts: list[Array] = []
     for s in (0.0j, *(1j * frequency for frequency in frequencies)):
-        for found, kept in zip(_changes(film, s), (rights, lefts), strict=True):
-            kept += [found.real] if s == 0.0 else [found.real, found.imag]
+        for change, kept in zip(_changes(film, s), (rights, lefts), strict=True):
+            kept += [change.real] if s == 0.0 else [change.real, change.imag]
     right, left = (_span(np.concatenate(kept, axis=1)) for kept in (rights, lefts))
     right, left = _filled(right, left), _filled(left, right)
     flow = left.T @ (film.flow @ right)

@@ -114,9 +114,9 @@ def linear_film(
     solution = solver.steady(motion, start, upwind=True)
     weights = shear_weights(at, motion, factor)
     if at.law.carries_gas:
-        found = linear_states(at, motion, solution, weights)
-        moved = found.by_place / clearance, found.by_rate / clearance, found.by_total
-        return LinearFilm(found.flow, found.storage, *moved, found.push, found.sheared, solution.field, ordered=True)
+        terms = linear_states(at, motion, solution, weights)
+        moved = terms.by_place / clearance, terms.by_rate / clearance, terms.by_total
+        return LinearFilm(terms.flow, terms.storage, *moved, terms.push, terms.sheared, solution.field, ordered=True)
     settled = _SettledCells(solver, motion, solution, weights)
     return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
 
@@ -164,16 +164,16 @@ class _SettledCells:
         )
 
     def at_flow(self) -> LinearFilm:
-        """The film with the filling of its supply's line as its last state: line filling' + taken = given. What the
+        """The film with the filling of its supply's line as its last state: line filling' + outflow = given. What the
         openings take is what the cells get without flowing out at open ends."""
         from scipy.sparse import block_diag, bmat
 
         film, open_ = self.at_pressure(), self._parts[-1][UNKNOWN].ravel() != 0.0
         flow, by_place, *_ = self._balances(without_ends(self._parts[0]))
-        taken, clearance = -(open_ @ flow), self._solver.film.section.clearance
-        by_filling, taken_by_filling, push = self._by_filling()
+        outflow, clearance = -(open_ @ flow), self._solver.film.section.clearance
+        by_filling, outflow_by_filling, push = self._by_filling()
         return LinearFilm(
-            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [taken.reshape(1, -1), [[taken_by_filling]]]], "csc"),
+            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[outflow_by_filling]]]], "csc"),
             storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
             by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
             by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
@@ -211,8 +211,8 @@ class _SettledCells:
             left = -fields[:, :, k + BY_ITSELF].ravel()
             return left, flows[SUPPLY_NET : SUPPLY_NET + 1], self._pushed(self._states[PRESSURE]).sum(axis=(1, 2))
 
-        left, taken, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
-        return left, float(taken[0]), push
+        left, outflow, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
+        return left, float(outflow[0]), push
 
     def _pushed(self, pressure: Array) -> Array:
         """(2, m, k) forces in N of the cells with scaled gauge pressures, or their derivatives."""

@@ -184,8 +184,8 @@ class FilmSolver:
         for number in range(1, repeated + 1):
             self._before = before_upstream(solution.state.fraction, motion.omega)
             near = self._taken(begun[number]) if number < len(begun) else solution.w
-            found = self._solve(motion, near, storage, closes[number])
-            solution = replace(found, iterations=solution.iterations + found.iterations)
+            refined = self._solve(motion, near, storage, closes[number])
+            solution = replace(refined, iterations=solution.iterations + refined.iterations)
             stages.append(self._stage(solution))
         return replace(solution, stages=np.array(stages))
 
@@ -221,8 +221,8 @@ class FilmSolver:
         self, motion: Motion, solution: VolumeSolution, storage: Storage, close: float = CLOSE
     ) -> VolumeSolution:
         """The solution that follows one of the same motion, with the iterations of both."""
-        found = self._solve(motion, solution.w, storage, close)
-        return replace(found, iterations=solution.iterations + found.iterations)
+        refined = self._solve(motion, solution.w, storage, close)
+        return replace(refined, iterations=solution.iterations + refined.iterations)
 
     def _settle_gas(self) -> None:
         """Gas in equilibrium, as it is at once in oil that is not replaced."""
@@ -351,13 +351,13 @@ class FilmSolver:
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:
         """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""
-        found = []
+        passed = []
         for slope in (PRESSURE_SLOPE, FRACTION_SLOPE):
             self._states[:CARRIED_GAS] = self._states[BEFORE_UPSTREAM] = 0.0
             self._states[slope] = 1.0
             self._flow(motion, np.zeros(self.film.grid.shape))
-            found.append(self._stencil[CENTRE].copy())
-        return found[0], found[1]
+            passed.append(self._stencil[CENTRE].copy())
+        return passed[0], passed[1]
 
     def _terms(self, passed: tuple[Array, Array], w: Array, storage: Storage) -> Array:
         """(m, k) size of the terms that the residual is the sum of: it is round-off of theirs."""

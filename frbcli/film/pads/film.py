@@ -150,10 +150,10 @@ def _pressure(mesh: PadMesh, matrix: csc_matrix, source: Array, oil: PadOil) -> 
         if oil.law != REYNOLDS:
             return pressure, factor, solved
         holds = matrix @ pressure - source  # positive in a cavity: it keeps the pressure from falling
-        found = is_free & (holds - scale * (pressure - oil.cavitation_pressure) > 0.0)
-        if np.array_equal(found, cavity):
+        free = is_free & (holds - scale * (pressure - oil.cavitation_pressure) > 0.0)
+        if np.array_equal(free, cavity):
             return pressure, factor, solved
-        cavity = found
+        cavity = free
     raise NotConverged("The boundary of the cavity in a film of a thrust bearing was not found.")
 
 

@@ -54,9 +54,9 @@ class GapTable:
 
     def at(self, gap: float) -> ScaledPads:
         """The films at a gap in m between thin and wide."""
-        found = chebyshev.chebval(self._scaled(gap), self.coefficients)
-        load, torque, side_flow, stiffness, damping, inverse_gap = np.exp(found[:6]).tolist()
-        direct, cross, turning = (found[6:] * self.radius**2).tolist()
+        series = chebyshev.chebval(self._scaled(gap), self.coefficients)
+        load, torque, side_flow, stiffness, damping, inverse_gap = np.exp(series[:6]).tolist()
+        direct, cross, turning = (series[6:] * self.radius**2).tolist()
         return ScaledPads(
             load,
             torque,

@@ -108,11 +108,11 @@ def _along_all_axes(values: Array, of: Callable[[Array, int, Callable[[Array], N
 
 def _every_other(values: Array, axis: int, ends: Callable[[Array], None]) -> Array:
     """Values between which every other one, from the last one on, is taken from the spline through the rest."""
-    found = np.moveaxis(values, axis, 0).copy()
-    first = (len(found) - 1) % 2
-    c = _coefficients(found[first::2], 0, ends)
-    found[first + 1 :: 2] = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
-    return np.moveaxis(found, 0, axis)
+    refined = np.moveaxis(values, axis, 0).copy()
+    first = (len(refined) - 1) % 2
+    c = _coefficients(refined[first::2], 0, ends)
+    refined[first + 1 :: 2] = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
+    return np.moveaxis(refined, 0, axis)
 
 
 def _coefficients(values: Array, axis: int, ends: Callable[[Array], None]) -> Array:

@@ -36,9 +36,9 @@ class Rubbing:
         if self.surfaces is None:
             return none_of(2)
         (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
-        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
-        by_place, by_rate = (np.array(found[first : first + 4]).reshape(2, 2) for first in (2, 6))
-        return FilmForce(np.array(found[:2]), by_place, by_rate)
+        rubbed = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
+        by_place, by_rate = (np.array(rubbed[first : first + 4]).reshape(2, 2) for first in (2, 6))
+        return FilmForce(np.array(rubbed[:2]), by_place, by_rate)
 
     def beside(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
         """A film and its summits, see force."""
@@ -52,8 +52,8 @@ class Rubbing:
         if self.surfaces is None:
             return 0.0, 0.0, 0.0
         e_x, e_y = place[:2].tolist()
-        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
-        return found.torque, found.shell_torque, e_x * found.f_y - e_y * found.f_x
+        rubbed = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
+        return rubbed.torque, rubbed.shell_torque, e_x * rubbed.f_y - e_y * rubbed.f_x
 
     def power(self, place: Array, total: float, slip: float) -> float:
         """Heat in W that friction makes while the journal rests at `place` (2,) in m; total, slip: omega_J + omega_S
@@ -85,10 +85,10 @@ class Rubbing:
             return film
         c, (d_x, d_y), (v_x, v_y) = self.clearance, motion.d, motion.v
         slip = motion.omega + 2.0 * turning
-        found = rub(self.surfaces, self.film, c, c * d_x, c * d_y, c * v_x, c * v_y, slip, -turning)
+        rubbed = rub(self.surfaces, self.film, c, c * d_x, c * d_y, c * v_x, c * v_y, slip, -turning)
         x, y = film.force
-        torque = replace(film.torque, summits=(found.torque, -found.shell_torque))
-        return replace(film, force=(x + found.f_x, y + found.f_y), torque=torque)
+        torque = replace(film.torque, summits=(rubbed.torque, -rubbed.shell_torque))
+        return replace(film, force=(x + rubbed.f_x, y + rubbed.f_y), torque=torque)
 
     def share_of_error(self, film: FilmLoads, whole: FilmLoads) -> float:
         """Relative error of the force with the summits over that of the film alone."""
@@ -132,9 +132,9 @@ def rub_slopes(asperities: Asperities, f: int, clearance: float, motions: Array)
 
     def by_friction(size: Array, by_e: Array) -> Array:
         """(k, COLUMNS) of the coefficient of friction times a size, which the eccentricity changes."""
-        found = size[:, None] * coefficient
-        found[:, BY_X : BY_Y + 1] += (coefficient[:, VALUE] * by_e)[:, None] * away
-        return found
+        forces = size[:, None] * coefficient
+        forces[:, BY_X : BY_Y + 1] += (coefficient[:, VALUE] * by_e)[:, None] * away
+        return forces
 
     friction = by_friction(radial, radial_slope)
     still = np.zeros_like(e)

@@ -180,7 +180,7 @@ def _flow_around(
     bored, half, roughness = film.bored, 0.5 * omega, film.roughness
     sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
     forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
-    taken = 0.0  # by the openings in cells that are film in part
+    outflow = 0.0  # by the openings in cells that are film in part
     diffuses = film.diffuses
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -225,7 +225,7 @@ def _flow_around(
                 other = swept * next_ * states[FRACTION_SLOPE, n, j]
             pressed, drawn = through * fall, swept * theta
             by_own, by_next = through * slope, through * slope_n
-            taken += (share - share_n) * drawn
+            outflow += (share - share_n) * drawn
             right[i, j, k + BY_ITSELF] -= pressed + share * drawn
             right[n, j, k + BY_ITSELF] += pressed + share_n * drawn
             by_x, by_y = g * by_x * fall, g * by_y * fall
@@ -238,17 +238,17 @@ def _flow_around(
             stencil[BEHIND, i, j] += share * other - by_next
             stencil[CENTRE, n, j] += by_next - share_n * other
             stencil[BEFORE, n, j] -= by_own + share_n * own
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled()
-def take(taken: float, flows: Array) -> None:
+def take(outflow: float, flows: Array) -> None:
     """Openings take oil out of a film, or give it to it where it is less than 0."""
-    flows[SUPPLY_NET] -= taken
-    if taken > 0.0:
-        flows[OUTFLOW] += taken
+    flows[SUPPLY_NET] -= outflow
+    if outflow > 0.0:
+        flows[OUTFLOW] += outflow
     else:
-        flows[INFLOW] -= taken
+        flows[INFLOW] -= outflow
 
 
 @compiled()
@@ -258,7 +258,7 @@ def _carry_out_of_excess(
     """Oil that the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    half, taken = 0.5 * omega, 0.0
+    half, outflow = 0.5 * omega, 0.0
     for i in range(m):
         b = i - 1 if i > 0 else m - 1
         s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
@@ -267,12 +267,12 @@ def _carry_out_of_excess(
             excess = cells[EXCESS, i, j]
             if excess != 0.0:
                 oil = excess * states[FRACTION, i, j]
-                taken += oil * rise
+                outflow += oil * rise
                 right[i, j, k + BY_ITSELF] -= oil * rise
                 right[i, j, k + BY_X] -= g * oil * s
                 right[i, j, k + BY_Y] += g * oil * c
                 stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled()

@@ -70,10 +70,10 @@ def limited(film: VolumeFilm, solve: Solve) -> VolumeSolution:
 
     def tried(filling: float, near: VolumeSolution) -> tuple[VolumeSolution, float]:
         try:
-            found = solve(filling, near)
+            trial = solve(filling, near)
         except FilmUnsolved:  # it runs dry, and takes nothing
             return near, -1.0
-        return found, found.flows.supply / given - 1.0
+        return trial, trial.flows.supply / given - 1.0
 
     solution = solve(ALL, None)
     if (excess := solution.flows.supply / given - 1.0) <= 0.0:
@@ -132,13 +132,13 @@ class SupplyLine(NamedTuple):
     line: float
     lowest: float
 
-    def filled(self, filling: float, taken: float, dt: float) -> float:
+    def filled(self, filling: float, outflow: float, dt: float) -> float:
         """The filling after a step of dt in s in which the openings took a flow, 1/s."""
-        return min(max(filling + dt * (self.given - taken) / self.line, self.lowest), ALL)
+        return min(max(filling + dt * (self.given - outflow) / self.line, self.lowest), ALL)
 
 
 def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
-    """The line of the supply of a film, of which the oil is the state: filling' = (given - taken) / line.
+    """The line of the supply of a film, of which the oil is the state: filling' = (given - outflow) / line.
 
     response: s; the line holds what the film may take in it at the most, so that steps as short as that are stable."""
     section, scales = film.section, film.scales
@@ -146,8 +146,8 @@ def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
         return SupplyLine(0.0, 0.0, 0.0)
     given, rise = given_flow(section), supply_pressure(section) / section.pressure_scale - scales.cavitation
     openings = len(section.grooves) + len(section.holes)
-    taken = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
-    return SupplyLine(given, response * max(given, EAGER * taken), _lowest(film))
+    demand = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
+    return SupplyLine(given, response * max(given, EAGER * demand), _lowest(film))
 
 
 def is_limited(section: Section) -> bool:

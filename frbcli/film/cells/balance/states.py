@@ -145,8 +145,8 @@ def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
     smooth = a * b > 0.0
     size = np.where(smooth, a * a + b * b, 1.0)
     rise = a * b * (a + b)
-    found = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
-    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in found)
+    terms = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
+    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in terms)
     return value, by_a, by_b
 
 

@@ -78,8 +78,8 @@ class _Code:
 
     def less(self, x: list[Any], factor: Any, y: list[Any]) -> list[Any]:
         """x - factor y."""
-        taken = [self.builder.fmul(factor, b, flags=_FUSED) for b in y]
-        return [self.builder.fsub(a, b, flags=_FUSED) for a, b in zip(x, taken, strict=True)]
+        products = [self.builder.fmul(factor, b, flags=_FUSED) for b in y]
+        return [self.builder.fsub(a, b, flags=_FUSED) for a, b in zip(x, products, strict=True)]
 
     def eliminate(self, rows: Iterable[list[Any]]) -> Iterator[list[Any]]:
         """Rows that begin with a square matrix: its inverse, and the inverse times the rest (Gauss and Jordan).

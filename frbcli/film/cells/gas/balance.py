@@ -211,10 +211,10 @@ def path_layers(paths: OilPaths, layers: Array) -> None:
 
 def brought(paths: OilPaths, free: Array) -> Array:
     """(m, k) gas that other cells bring to each one, sum_in q c_up."""
-    found = np.roll(paths.onward * free, 1, axis=0) + paths.backward * np.roll(free, -1, axis=0)
-    found[:, 1:] += paths.upward * free[:, :-1]
-    found[:, :-1] += paths.downward * free[:, 1:]
-    return np.asarray(found)
+    arriving = np.roll(paths.onward * free, 1, axis=0) + paths.backward * np.roll(free, -1, axis=0)
+    arriving[:, 1:] += paths.upward * free[:, :-1]
+    arriving[:, :-1] += paths.downward * free[:, 1:]
+    return np.asarray(arriving)
 
 
 MEMORY = 5  # iterations

@@ -254,8 +254,8 @@ def _renew_along(
             others += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1] if j + 1 < k else 0.0
         own, passed = paths[OWN, i, j], states[PASSED_ON, i, j]
         least, largest = max(own, 0.0), min(own + passed * most_gas, most_gas)
-        taken = passed * per_kept
-        free = (own + taken * others) + (taken * flow) * last
+        arriving = passed * per_kept
+        free = (own + arriving * others) + (arriving * flow) * last
         states[CARRIED_GAS, i, j] = min(max(per_kept * others + (per_kept * flow) * last, 0.0), most_gas)
         last = states[FREE_GAS, i, j] = min(max(free, least), largest)
         most = max(most, abs(last - before))

@@ -104,9 +104,9 @@ def linear_states(
 
     def matrix(parts: Sequence[Entries]) -> csc_matrix:
         values, rows, columns = (np.concatenate(each) for each in zip(*parts, strict=True))
-        found = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
-        found.eliminate_zeros()  # nothing comes back against the flow
-        return found
+        sparse = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        sparse.eliminate_zeros()  # nothing comes back against the flow
+        return sparse
 
     return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, by_total, push, sheared)
 
@@ -159,11 +159,11 @@ class _Settled:
         cell_states(own, cells, self._law, 0.0, np.ascontiguousarray(w), states)
         paths = self._paths(states, motion)
         comes = brought(paths, np.ones_like(free)) + paths.given
-        taken = comes * free - brought(paths, free) - paths.given * law.supplied_gas
+        net = comes * free - brought(paths, free) - paths.given * law.supplied_gas
         target, _ = law.exchanged(states[PRESSURE], free, film.scales)
         held = film.grid.area * self.gap(motion) * states[FRACTION]
         open_ = np.where(film.grid.fixed, 0.0, 1.0)
-        gas = open_ * self.rated * (self.time * taken - held * (target - free))
+        gas = open_ * self.rated * (self.time * net - held * (target - free))
         return open_ * (paths.out - comes), gas
 
     def _paths(self, states: Array, motion: Motion) -> OilPaths:
@@ -190,10 +190,10 @@ def _nearest(cells: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.in
     """Which cells (m, k) are cells of a set of _apart or next to one, and the numbers of these."""
     numbers = np.where(cells, np.arange(cells.size).reshape(cells.shape), -1)
     numbers = np.maximum(numbers, np.maximum(np.roll(numbers, 1, axis=0), np.roll(numbers, -1, axis=0)))
-    found = numbers.copy()
-    found[:, 1:] = np.maximum(found[:, 1:], numbers[:, :-1])
-    found[:, :-1] = np.maximum(found[:, :-1], numbers[:, 1:])
-    return found >= 0, found[found >= 0]
+    marks = numbers.copy()
+    marks[:, 1:] = np.maximum(marks[:, 1:], numbers[:, :-1])
+    marks[:, :-1] = np.maximum(marks[:, :-1], numbers[:, 1:])
+    return marks >= 0, marks[marks >= 0]
 
 
 def _moved(motion: Motion, axis: int, step: float) -> Motion:

@@ -246,8 +246,8 @@ def _cut_cell(patch: Patch, x: Array, y: Array) -> Array:
             (np.clip(np.where(chord > 0.0, chord, y[1]), *y), np.full_like(place, y[1])),
         ):
             line = 0.5 * ((start + end)[:, None] + (end - start)[:, None] * NODES)
-            found = solutions(place[:, None] + 0.0 * line, line, a, patch.mirrored)[_chosen(patch)]
-            part = np.asarray(found @ WEIGHTS) @ (0.5 * (end - start) * weight)
+            integrands = solutions(place[:, None] + 0.0 * line, line, a, patch.mirrored)[_chosen(patch)]
+            part = np.asarray(integrands @ WEIGHTS) @ (0.5 * (end - start) * weight)
             total = part if not total.size else total + part
     return total
 
@@ -284,7 +284,7 @@ def around_bores(
     hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without.
     """
     around, along, at, area, load = (values.copy() for values in plain)
-    found: dict[bytes, BoreFit] = {}
+    fits: dict[bytes, BoreFit] = {}
     width = section.width / section.radius
     for number in range(len(section.holes)):
         place = _place(section, phi, z, height, number, inside[number], cover)
@@ -295,9 +295,9 @@ def around_bores(
         dx, dy = patch.dx[:, None], patch.dy[None, :]
         at[faces] = _gap_places(at[faces], 0.5 * patch.dx, around[faces], patch.held)
         key = np.round(np.concatenate([patch.x, patch.y, patch.open_.ravel(), patch.held.ravel()]), 9).tobytes()
-        if key not in found:  # the bores of a ring often lie alike
-            found[key] = fit(patch, _over(dy, around[faces]), _over(dx, width * along[between]))
-        near = found[key]
+        if key not in fits:  # the bores of a ring often lie alike
+            fits[key] = fit(patch, _over(dy, around[faces]), _over(dx, width * along[between]))
+        near = fits[key]
         around[faces], along[between] = _over(dy, near.around), _over(dx, width * near.along)
         area[cells] = np.where(patch.held, area[cells], near.source / width)
         load[cells] = near.load / (dx * dy)
@@ -358,14 +358,14 @@ def _is_bore(section: Section, hole: Hole) -> bool:
 def _distance_to_next(section: Section, number: int) -> float:
     """Distance from the edge of a hole to that of the nearest other groove or hole, over R."""
     hole = section.holes[number]
-    found = [math.pi - hole.half_angle]
+    distances = [math.pi - hole.half_angle]
     for groove in section.grooves:
-        found.append(_between(groove.position, hole.position) - 0.5 * groove.opening - hole.half_angle)
+        distances.append(_between(groove.position, hole.position) - 0.5 * groove.opening - hole.half_angle)
     for other in section.holes[:number] + section.holes[number + 1 :]:
         across = max(_between(other.position, hole.position) - other.half_angle, 0.0)
         above = max(abs(other.axial - hole.axial) - other.half_width, 0.0) / section.radius
-        found.append(math.hypot(across, above) - hole.half_angle)
-    return max(min(found), 0.0)
+        distances.append(math.hypot(across, above) - hole.half_angle)
+    return max(min(distances), 0.0)
 
 
 def _between(one: float, other: float) -> float:

@@ -94,11 +94,11 @@ def _ellipse_cover(phi: Array, z: Array, hole: Hole, middle: float, half: float)
     """(m, k) share of each cell within an ellipse, exact."""
     first = phi[0] + math.fmod(hole.position - phi[0], 2.0 * math.pi)
     v = np.clip((z - middle) / half, -1.0, 1.0)
-    taken = np.zeros((len(phi) - 1, len(z) - 1))
+    area = np.zeros((len(phi) - 1, len(z) - 1))
     for turn in (-1, 0, 1):
         u = np.clip((phi - first - 2.0 * math.pi * turn) / hole.half_angle, -1.0, 1.0)
-        taken += np.diff(np.diff(_disk_corner(u[:, None], v[None, :]), axis=0), axis=1)
-    return taken * hole.half_angle * half / (np.diff(phi)[:, None] * np.diff(z))
+        area += np.diff(np.diff(_disk_corner(u[:, None], v[None, :]), axis=0), axis=1)
+    return area * hole.half_angle * half / (np.diff(phi)[:, None] * np.diff(z))
 
 
 def _disk_corner(u: Array, v: Array) -> Array:

@@ -174,12 +174,12 @@ def _flow_around(
         cells[AROUND, own], gaps, others, growth, OwnAndNext(states[PRESSURE, own], states[PRESSURE, next_]),
         OwnAndNext(states[PRESSURE_SLOPE, own], states[PRESSURE_SLOPE, next_]), _flows_in(rows, PRESSED, to),
     )  # fmt: skip
-    taken: float = drawn(
+    outflow: float = drawn(
         gaps, rows[PULL, by], motion.omega >= 0.0, g, OwnAndNext(states[FRACTION, own], states[FRACTION, next_]),
         states[BEFORE_UPSTREAM, own], OwnAndNext(states[FRACTION_SLOPE, own], states[FRACTION_SLOPE, next_]),
         OwnAndNext(cells[SHARE, own], cells[SHARE, next_]), _flows_in(rows, DRAWN, to),
     )  # fmt: skip
-    return taken
+    return outflow
 
 
 @compiled()
@@ -292,7 +292,7 @@ def _carry_out_of_excess(
     flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
-    d, g, half, taken = motion.d, motion.g, 0.5 * motion.omega, 0.0
+    d, g, half, outflow = motion.d, motion.g, 0.5 * motion.omega, 0.0
     for i in range(m):
         b = i - 1 if i > 0 else m - 1
         s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
@@ -301,11 +301,11 @@ def _carry_out_of_excess(
             excess, z = cells[EXCESS, i, j], places[MIDDLES, j]
             if excess != 0.0:
                 oil, grows = excess * states[FRACTION, i, j], near + z * rise
-                taken += oil * grows
+                outflow += oil * grows
                 right[i, j, k + BY_ITSELF] -= oil * grows
                 add_by_ends(right, i, j, z, -g * oil * s, g * oil * c)
                 stencil[CENTRE, i, j] += excess * grows * states[FRACTION_SLOPE, i, j]
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled(makes_arrays=True)
@@ -365,7 +365,7 @@ def land_balances(
         flows[flow] = 0.0
     _meet_gaps(ring, places, motion, bored, m - 1, m, k, rows)
     _flow_around(bored, of, at, motion, m - 1, m, k, 0, rows)
-    taken, first, n = 0.0, 0, k
+    outflow, first, n = 0.0, 0, k
     while first < m:
         for layer in range(RAISED):  # the flows into the first of these columns
             for j in range(k):
@@ -375,13 +375,13 @@ def land_balances(
         _meet_gaps(ring, places, motion, bored, first, last, k, rows)
         inner = min(last, m - 1)
         if inner > first:
-            taken += _flow_around(bored, of, at, motion, first, inner, k, 0, rows)
+            outflow += _flow_around(bored, of, at, motion, first, inner, k, 0, rows)
         if last == m:
-            taken += _flow_around(bored, of, at, motion, m - 1, m, k, n - k, rows)
+            outflow += _flow_around(bored, of, at, motion, m - 1, m, k, n - k, rows)
         _balance(of, at, motion, past.reshape(-1), first, last, k, rows, sums)
         _share_between_ends(ring, places, first, last, rows, right)
         first = last
-    take(taken, flows)
+    take(outflow, flows)
     if total(of[EDGE]) > 0.0:
         _flow_past_edges(cells, places, states, motion, stencil, right)
     if bored:
