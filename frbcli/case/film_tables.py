@@ -45,9 +45,9 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]
     for of in _with_keys():
-        told = None if isinstance(of, BearingModel) else f"keys of the model {of.label}"
+        description = None if isinstance(of, BearingModel) else f"keys of the model {of.label}"
         alias = None if attribute(of) == of.name else of.name
-        made = Field(default=_table(of)(), alias=alias, description=told)
+        made = Field(default=_table(of)(), alias=alias, description=description)
         fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
     theories: Any = Literal[(*THEORIES, *(model.name for model in models()))]
     fields[THEORY].annotation = theories

@@ -62,8 +62,8 @@ class Quantity:
             (self.most is not None and value > self.most, "at most", self.most),
         ):
             if bad and bound is not None:
-                told = "0" if bound == 0.0 else display(bound, self.unit)
-                raise ValueFault(f"is {self._beside(value, bound)}, but must be {words} {told}.", self.as_remedy())
+                limit = "0" if bound == 0.0 else display(bound, self.unit)
+                raise ValueFault(f"is {self._beside(value, bound)}, but must be {words} {limit}.", self.as_remedy())
         return value
 
     def _beside(self, value: float, bound: float) -> str:

@@ -151,8 +151,8 @@ class Case(Model):
         """In a notebook: its values in SI and as they are written."""
         from frbcli.case.reading.listing import values  # it is made of cases
 
-        told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
-        return html_table(self.heading, ("key", "SI", "", "reads"), told, len(told))
+        rows = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
+        return html_table(self.heading, ("key", "SI", "", "reads"), rows, len(rows))
 
     def with_settings(self, *settings: str | Mapping[str, object]) -> Case:
         """This case with other values of some keys, checked as a case file is; this case itself stays.

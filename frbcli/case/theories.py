@@ -31,8 +31,8 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
         for name, field in film.model_fields.items()
         if not isinstance(field.default, FilmTable)
     }  # fmt: skip
-    taken = {*THEORIES, *law_names(), *others, *(field.alias for field in others.values())}
-    if {model.name, attribute(model)} & taken:
+    reserved = {*THEORIES, *law_names(), *others, *(field.alias for field in others.values())}
+    if {model.name, attribute(model)} & reserved:
         raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
     if not isinstance(model.label, str) or not model.label.isprintable():
         raise wrong(model, "label", "is not text.", "Write the name of the model in pictures.")

@@ -105,8 +105,8 @@ class _Points:
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         pair = {"type": "array", "minItems": 2, "maxItems": 2}
-        told = "speeds or times with torques"
-        return {"type": "array", "items": pair, "minItems": 2, "description": told,
+        description = "speeds or times with torques"
+        return {"type": "array", "items": pair, "minItems": 2, "description": description,
                 "examples": [[["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]]]}  # fmt: skip
 
 

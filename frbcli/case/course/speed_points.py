@@ -38,11 +38,11 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
     except Refused as fault:
         return data, [Breach(("speed", *given), *fault.args)]
     follows = {"from": speeds[0], "to": max(speeds, key=abs), "duration": times[-1]}
-    found = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
+    clashes = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
     kept = {key: value for key, value in speed.items() if key not in ("points", "file", "tacho", "pulses")}
     ramp = {key: f"{value!r} {RAMP[key]}" for key, value in follows.items() if key not in kept}
     columns = dict(zip((TIMES, SPEEDS), written, strict=True))
-    return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in found if breach]
+    return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in clashes if breach]
 
 
 def _differs(key: str, given: object, follows: float) -> Breach | None:
@@ -60,8 +60,8 @@ def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
     if isinstance(speed.get("file"), str):
         tacho = speed.get("tacho")
         path = folder / str(speed["file"])
-        found = read_tacho(path, str(tacho), speed.get("pulses", 1)) if tacho else read_table(path, MEASURED)
-        return found["time"], found["x"]
+        columns = read_tacho(path, str(tacho), speed.get("pulses", 1)) if tacho else read_table(path, MEASURED)
+        return columns["time"], columns["x"]
     if TIMES in speed or SPEEDS in speed:
         return speed.get(TIMES), speed.get(SPEEDS)
     points = speed.get("points")

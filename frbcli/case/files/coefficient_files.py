@@ -40,13 +40,13 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
     def joined(name: str, kept: dict[str, Any]) -> dict[str, Any]:
         return {**kept, "over_speed": {"source": name, **_with_units(_checked(_read(folder / name)))}}
 
-    found = list[Breach]()
+    breaches = list[Breach]()
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
             beside = ("stiffness", "damping", "mass", "over_speed")
             data, faults = with_file(data, path, joined, beside, "Keep the file, or the coefficients themselves.")
-            found += faults
-    return data, found
+            breaches += faults
+    return data, breaches
 
 
 def _with_units(columns: Columns) -> dict[str, list[str]]:
@@ -82,8 +82,8 @@ def _of_ross(text: str, is_json: bool) -> Columns:
     items = data.items() if isinstance(data, dict) else ()
     elements = [(name, item) for name, item in items if name.startswith(BEARINGS) and isinstance(item, dict)]
     if len(elements) != 1:
-        told = "no bearing" if not elements else f"{len(elements)} bearings"
-        raise Refused(f"holds {told}, not one.", WRITE)
+        count = "no bearing" if not elements else f"{len(elements)} bearings"
+        raise Refused(f"holds {count}, not one.", WRITE)
     name, element = elements[0]
     over = [key for key in OVER if element.get(key) is not None]
     if len(over) > 1:

@@ -98,9 +98,9 @@ def _rotor(elements: Sequence[RossElement], carried: bool) -> tuple[list[dict[st
     return [_with_units(section) for section in shaft_tables], [_with_units(disk) for disk in disks]
 
 
-def _with_units(found: dict[str, Any]) -> dict[str, Any]:
+def _with_units(entries: dict[str, Any]) -> dict[str, Any]:
     """A table with units, so that SI values of the file do not look like numbers without a unit."""
-    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in found.items()}
+    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in entries.items()}
 
 
 def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
@@ -131,10 +131,10 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
         }
 
 
-def _refuse_others(element: RossElement, taken: Sequence[str]) -> None:
+def _refuse_others(element: RossElement, supported: Sequence[str]) -> None:
     """Raises Refused for a value beside those that are taken, unless it is what frb models or none at all."""
     for key, value in element.values.items():
-        if key in taken or key in LABELS:
+        if key in supported or key in LABELS:
             continue
         if key in ALWAYS:
             if value != ALWAYS[key]:

@@ -23,8 +23,8 @@ OF_FILMS = (
 
 def has_films(data: Mapping[str, Any]) -> bool:
     """Whether a bearing of the tables may have a film: true for tables that cannot be read."""
-    found = tables(data, "bearing")
-    return not found or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in found)
+    listed = tables(data, "bearing")
+    return not listed or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in listed)
 
 
 def balls_alone(data: Mapping[str, Any]) -> bool:
@@ -118,11 +118,11 @@ def _matrix(given: object) -> tuple[float, ...] | None:
     if given is None:
         return tuple(entry for row in EMPTY_MATRIX for entry in row)
     if isinstance(given, list | tuple) and len(given) == 2 and all(isinstance(r, list | tuple) for r in given):
-        found = [number({"": entry}, "", "kg") for row in given for entry in row]
+        entries = [number({"": entry}, "", "kg") for row in given for entry in row]
     else:
-        found = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
-    known = tuple(entry for entry in found if entry is not None)
-    return known if len(known) == len(found) == 4 else None
+        entries = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
+    known = tuple(entry for entry in entries if entry is not None)
+    return known if len(known) == len(entries) == 4 else None
 
 
 def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:

@@ -218,10 +218,10 @@ def _half(value: object) -> str:
         return ""
 
 
-def _one_of(found: str, choices: Sequence[str]) -> str:
-    return did_you_mean(found, choices)
+def _one_of(name: str, choices: Sequence[str]) -> str:
+    return did_you_mean(name, choices)
 
 
-def _close(found: str, choices: Sequence[str]) -> str:
+def _close(name: str, choices: Sequence[str]) -> str:
     """The choice nearest to what was found, or nothing."""
-    return next(iter(nearest(found, choices)), "")
+    return next(iter(nearest(name, choices)), "")

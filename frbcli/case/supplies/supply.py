@@ -149,8 +149,8 @@ class OilSupply(Model):
         """Its outlines as holes with its pressure."""
         gauge = self.gauge(ambient)
         return tuple(
-            Hole(found.position, found.axial, found.half_angle, found.half_width, gauge, found.round)
-            for found in self.outlines(radius, width)
+            Hole(outline.position, outline.axial, outline.half_angle, outline.half_width, gauge, outline.round)
+            for outline in self.outlines(radius, width)
         )
 
     @property
@@ -215,8 +215,8 @@ class PressureSupply(OilSupply):
     @property
     def words(self) -> str:
         up_to = "" if self.over_time is None else "up to "
-        told = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
-        return told if self.flow is None else f"{told}, at most {display(self.flow, 'm^3/s')}"
+        text = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
+        return text if self.flow is None else f"{text}, at most {display(self.flow, 'm^3/s')}"
 
 
 class SpacedSupply(PressureSupply):

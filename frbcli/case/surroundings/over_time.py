@@ -120,8 +120,8 @@ class Input:
         points = {"type": "array", "items": pair, "minItems": 2, "description": "times with values"}
         file = {"type": "object", "description": "a file with the columns time and value: { file = ... }"}
         table = {"description": OVER_TIME, "anyOf": [points, file]}
-        told, examples = f"{one['description']}, or {OVER_TIME}", [self.quantity.example]
-        return {"description": told, "examples": examples, "anyOf": [one, table]}
+        description, examples = f"{one['description']}, or {OVER_TIME}", [self.quantity.example]
+        return {"description": description, "examples": examples, "anyOf": [one, table]}
 
 
 def _numbers(given: object) -> list[float]:
