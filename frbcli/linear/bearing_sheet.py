@@ -125,17 +125,17 @@ def bearing_sheet(
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
     machines = StaticMachines(case, load, speeds[-1])
     near: MachineAtRest | None = None
-    found: list[list[FilmState]] = []
+    rows: list[list[FilmState]] = []
     for number, speed in enumerate(reversed(speeds)):  # from near the centre, where a fast journal rests, outwards
         try:
             with advised(case):
                 near = machines.at(2.0 * math.pi * speed, near)
-                found.append(_states(near))
+                rows.append(_states(near))
         except NotConverged as error:
-            found.append([no_state(place.name, speed, str(error)) for place in bearing_films(case)])
+            rows.append([no_state(place.name, speed, str(error)) for place in bearing_films(case)])
         if observe is not None:
             observe(number + 1, len(speeds))
-    points = tuple(point for states in reversed(found) for point in states)
+    points = tuple(point for states in reversed(rows) for point in states)
     return _sheet(case, SPEED, points)
 
 

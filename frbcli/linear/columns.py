@@ -203,26 +203,26 @@ REDUCTION = (
            lambda modes: None if modes.error is None else modes.error.missing_flexibility),
 )
 
-_SPEEDS = replace(SPEED, value=lambda found: found.speeds_Hz[:, None])
+_SPEEDS = replace(SPEED, value=lambda sweep: sweep.speeds_Hz[:, None])
 
 # Of a Response, over speeds and points
 RESPONSE_POINTS = (
     _SPEEDS,
     Column("point", "", "point of the rotor", attrgetter("points"), key="node"),
     Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
-    Column("amplitude_error", "m", "expected error of the amplitude", lambda found: found.amplitude_error,
+    Column("amplitude_error", "m", "expected error of the amplitude", lambda sweep: sweep.amplitude_error,
            more="by the mesh of the films", key="error.amplitude_m"),
     Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
            shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
-    Column("x", "m", "amplitude along x", lambda found: _size(found.motion[:, :, 0])),
-    Column("y", "m", "amplitude along y", lambda found: _size(found.motion[:, :, 1])),
-    Column("forward", "m", "amplitude of the forward part", lambda found: abs(found.forward)),
-    Column("backward", "m", "amplitude of the backward part", lambda found: abs(found.backward)),
-    replace(GROWTH, value=lambda found: found.growth[:, None]),
+    Column("x", "m", "amplitude along x", lambda sweep: _size(sweep.motion[:, :, 0])),
+    Column("y", "m", "amplitude along y", lambda sweep: _size(sweep.motion[:, :, 1])),
+    Column("forward", "m", "amplitude of the forward part", lambda sweep: abs(sweep.forward)),
+    Column("backward", "m", "amplitude of the backward part", lambda sweep: abs(sweep.backward)),
+    replace(GROWTH, value=lambda sweep: sweep.growth[:, None]),
     Column("eccentricity_max", "", "largest eccentricity of a journal on its orbit",
-           lambda found: found.eccentricity_max.max(axis=1, initial=0.0)[:, None],
+           lambda sweep: sweep.eccentricity_max.max(axis=1, initial=0.0)[:, None],
            shown=(Shown("eps", ".3g", table=RESPONSE),)),
-    Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda found: np.array(found.validity)[:, None]),
+    Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda sweep: np.array(sweep.validity)[:, None]),
 )  # fmt: skip
 
 # Of a CriticalSpeed
@@ -251,8 +251,8 @@ _NAMES = replace(NAME, value=attrgetter("films"))
 RESPONSE_FORCES = (
     _SPEEDS,
     replace(NAME, value=attrgetter("bearings")),
-    Column("force_x", "N", "amplitude of the force on the journal along x", lambda found: _size(found.forces[:, :, 0])),
-    Column("force_y", "N", "amplitude of the force on the journal along y", lambda found: _size(found.forces[:, :, 1])),
+    Column("force_x", "N", "amplitude of the force on the journal along x", lambda sweep: _size(sweep.forces[:, :, 0])),
+    Column("force_y", "N", "amplitude of the force on the journal along y", lambda sweep: _size(sweep.forces[:, :, 1])),
 )
 RESPONSE_FILMS = (
     _SPEEDS,

@@ -158,16 +158,16 @@ class SpeedModel:
         if self.frequency(low) == self.frequency(high):
             return np.zeros(0, dtype=complex)  # a load of a frequency of its own: no mode crosses it but by its change
         if self._beside is None and self._rotor.over_speed is None:
-            found = self._poles_near(0.5 * (low + high), 0.5 * (high - low))
+            roots = self._poles_near(0.5 * (low + high), 0.5 * (high - low))
         else:
             edges = self.omegas if len(self.omegas) < 4 else self.omegas[::2]
             edges = np.unique(np.append(edges, high))
             middles, halves = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
             spans = zip(middles.tolist(), halves.tolist(), strict=True)
-            found = np.array([self._settled(pole) for span in spans for pole in self._poles_near(*span)])
-        found = found[np.argsort(found.real, kind="stable")]
-        apart = np.append(True, np.abs(np.diff(found)) > ALIKE * np.abs(found[1:])) if len(found) else found == 0.0
-        return np.asarray(found[apart], dtype=complex)
+            roots = np.array([self._settled(pole) for span in spans for pole in self._poles_near(*span)])
+        roots = roots[np.argsort(roots.real, kind="stable")]
+        apart = np.append(True, np.abs(np.diff(roots)) > ALIKE * np.abs(roots[1:])) if len(roots) else roots == 0.0
+        return np.asarray(roots[apart], dtype=complex)
 
     def _poles_near(self, middle: float, half: float, reach: float = 1.0 + ALIKE) -> Complex:
         """The poles within `half` of a speed, both in rad/s, of the quadratic through the matrices there: they are
@@ -175,9 +175,9 @@ class SpeedModel:
         below, here, above = (self.dynamic(middle + share * half) for share in (-1.0, 0.0, 1.0))
         n, linear, square = len(here), 0.5 * (above - below), 0.5 * (above + below) - here
         companion = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(square, np.hstack([here, linear]))]])
-        found = np.linalg.eigvals(companion)
-        found = middle + half * found[np.abs(found.real) <= reach]
-        return np.asarray(found[(np.abs(found.imag) < DAMPED * np.abs(found)) & (found.real > 0.0)])
+        roots = np.linalg.eigvals(companion)
+        roots = middle + half * roots[np.abs(roots.real) <= reach]
+        return np.asarray(roots[(np.abs(roots.imag) < DAMPED * np.abs(roots)) & (roots.real > 0.0)])
 
     def half_width(self, pole: complex) -> float:
         """Half of the width of a peak in rad/s, of a slender one by the work of the damping on the undamped motion:
@@ -219,7 +219,7 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
     low, high = float(model.omegas[0]), float(model.omegas[-1])
     poles = model.poles() if high > low else np.zeros(0, dtype=complex)
     undamped = np.array([model.half_width(pole) <= UNDAMPED * pole.real for pole in poles.tolist()], dtype=bool)
-    found = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
+    near_axis = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
     around = poles[~undamped, None].real + np.abs(poles[~undamped, None].imag) * WIDTHS
     beside = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))
     grid = np.unique(np.concatenate([np.linspace(low, high, PLACES), model.omegas, around.ravel(), beside.ravel()]))
@@ -238,7 +238,7 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
             known = bounded[pole].amplitude if pole in bounded else 0.0
             if distance[pole] <= REACH * abs(poles[pole].imag) and size[i] > known:
                 bounded[pole] = _refined(model, point, complex(poles[pole]), grid[i - 1 : i + 2].tolist())
-    return sorted([*found, *bounded.values()], key=lambda peak: peak.omega)
+    return sorted([*near_axis, *bounded.values()], key=lambda peak: peak.omega)
 
 
 def _unbounded(model: SpeedModel, pole: complex) -> ResponsePeak | None:
@@ -259,8 +259,8 @@ def _refined(model: SpeedModel, point: int, pole: complex, bracket: Sequence[flo
         return -float(model.amplitudes(np.array([omega]))[0, point])
 
     low, _, high = bracket
-    found = minimize_scalar(off, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * (high - low)})
-    return ResponsePeak(point, float(found.x), -float(found.fun), pole)
+    minimum = minimize_scalar(off, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * (high - low)})
+    return ResponsePeak(point, float(minimum.x), -float(minimum.fun), pole)
 
 
 def moved(model: SpeedModel, peak: ResponsePeak) -> float:
@@ -269,8 +269,8 @@ def moved(model: SpeedModel, peak: ResponsePeak) -> float:
         return math.nan
     aside = max(REACH * abs(peak.pole.imag), 1e2 * CLOSE * peak.omega)
     low, high = max(peak.omega - aside, model.omegas[0]), min(peak.omega + aside, model.omegas[-1])
-    found = _refined(model, peak.point, peak.pole, (low, peak.omega, high)).omega
-    return math.nan if min(found - low, high - found) < 1e-3 * (high - low) else found
+    omega = _refined(model, peak.point, peak.pole, (low, peak.omega, high)).omega
+    return math.nan if min(omega - low, high - omega) < 1e-3 * (high - low) else omega
 
 
 def amplification_factor(model: SpeedModel, peak: ResponsePeak) -> float | None:
@@ -317,8 +317,8 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
         return None
     sweep = np.geomspace(top, LOWEST * top, SPEEDS).tolist() if top > 0.0 else []
     points = list(_modes(machines, sweep))
-    found = (_crossings(below, above) for above, below in itertools.pairwise(points))
-    return tuple(sorted(itertools.chain(*found))) if len(points) > 1 else None
+    crossings = (_crossings(below, above) for above, below in itertools.pairwise(points))
+    return tuple(sorted(itertools.chain(*crossings))) if len(points) > 1 else None
 
 
 def _modes(machines: StaticMachines, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:

@@ -132,8 +132,8 @@ class Response(Tabular):
     @property
     def _eccentricity(self) -> Array:
         """(n, f) at rest."""
-        found = np.array([[film.eccentricity for film in point.films] for point in self.resting])
-        return found.reshape(self.clearances.shape)
+        ratios = np.array([[film.eccentricity for film in point.films] for point in self.resting])
+        return ratios.reshape(self.clearances.shape)
 
     @property
     def _pressed(self) -> Truths:
@@ -278,8 +278,8 @@ def _response(
 ) -> Response:
     """The motion at the points of a machine that rest."""
     rotors = [point.rotor for point in resting if point.rotor is not None]
-    found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
-    motions, forces, journals = zip(*found, strict=True)
+    solved = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
+    motions, forces, journals = zip(*solved, strict=True)
     clearances = np.array([(point.warm.system if point.warm else system).clearances for point in resting])
     motion = np.array(motions)
     return Response(
@@ -359,19 +359,19 @@ def critical_speeds_of(
     without films the points of a curve around each peak are."""
     known, rounds = list(points), ROUNDS if points[0].films else 0
     model = _model(known, excitation)
-    found = peaks(model)
+    maxima = peaks(model)
     for _ in range(rounds):
-        far = [peak.omega for peak in found if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
+        far = [peak.omega for peak in maxima if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
         more = solved([omega / TURN for omega in far]) if far else []
         if not more:
             break
         known = sorted([*known, *more], key=attrgetter("speed_Hz"))
         model = _model(known, excitation)
-        found = peaks(model)
+        maxima = peaks(model)
     others = [(_model(known, excitation, number), share) for number, share in _shares(known)]
-    critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in found)
+    critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in maxima)
     if not points[0].films:
-        bounded = [peak for peak in found if math.isfinite(peak.amplitude)]
+        bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
         curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded])
         inside = curve[(curve > model.omegas[0]) & (curve < model.omegas[-1])] / TURN
         known = sorted([*known, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
@@ -452,15 +452,15 @@ def _on_others(
     share of the difference that is the error; none where a mesh is missing at a speed."""
     if len({len(point.others) for point in points}) > 1:
         return []
-    found = []
+    results = []
     for number in range(len(points[0].others)):
         motion = []
         for rotor, point in zip(rotors, points, strict=True):
             omega = 2.0 * math.pi * point.speed_Hz
             q = forced_motion(rotor, omega, excited(rotor, omega, excitation), *point.others[number][:2])
             motion.append([place @ q for _, place in rotor.points])
-        found.append((np.array(motion), points[0].others[number][2]))
-    return found
+        results.append((np.array(motion), points[0].others[number][2]))
+    return results
 
 
 def _amplitude_error(motion: Complex, others: Sequence[tuple[Complex, float]]) -> Array:

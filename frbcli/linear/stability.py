@@ -161,9 +161,9 @@ def _stability(
     check_machine(case, speeds)
     machines = StaticMachines(case, memory=True)
     sweep = _sweep(case, machines, speeds, observe)
-    found = {point.speed_Hz: point for point in sweep}
+    by_speed = {point.speed_Hz: point for point in sweep}
     threshold, note = find_threshold(case, machines, sweep) if with_threshold else (None, NOT_SOUGHT)
-    return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
+    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, threshold, note)
 
 
 def stability_points(
@@ -224,16 +224,16 @@ def _none_rests(
     """The points at descending speeds, ascending, if there is no rest at the fastest one nor at others between it and
     the slowest, TRIED in all; () if there is rest at one of them. To seek in vain takes long, and is not done at all
     speeds."""
-    found = {fastest.speed_Hz: fastest}
+    by_speed = {fastest.speed_Hz: fastest}
     for i in np.linspace(0, len(speeds) - 1, TRIED).round().astype(int)[:0:-1].tolist():
         point, _ = seek(speeds[i])
         if point.rests:
             return ()
-        found[point.speed_Hz] = point
+        by_speed[point.speed_Hz] = point
     span = unit.span(speeds[-1], speeds[0])
     why = f"Sought at {TRIED} speeds from {span} only, since there is none at these."
     reason = f"{fastest.problem} {why}"
-    left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
+    left = (by_speed.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
     slowest, *others = tuple(left)[::-1]
     return replace(slowest, problem=f"{slowest.problem} {why}"), *others
 

@@ -88,8 +88,8 @@ class StabilityPoint:
         decay, the slowest first."""
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
-        told: Complex = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
-        return told[fastest_first(told)]
+        shown: Complex = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
+        return shown[fastest_first(shown)]
 
     @property
     def modes_with_errors(self) -> list[Eigenvalue]:
@@ -231,9 +231,9 @@ def _check_known(films: Sequence[RestingFilm]) -> None:
         )
 
 
-def _both(found: Sequence[tuple[complex, Complex]]) -> Complex:
+def _both(pairs: Sequence[tuple[complex, Complex]]) -> Complex:
     """The eigenvalues of modes, both of each pair, in the order of `eigenvalues`."""
-    values = np.array([value for value, _ in found]).astype(complex)
+    values = np.array([value for value, _ in pairs]).astype(complex)
     return _ordered(np.concatenate([values, values[hopf.oscillating(values)].conj()]))
 
 

@@ -92,11 +92,11 @@ def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float
 
 def _one_speed(point: StabilityPoint, speed: str, tried: int) -> str:
     """Why a single speed has no threshold."""
-    found = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
+    state = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
     if tried > 1:
-        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
+        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {state}."
     return (
-        f"No threshold is sought: there is one speed only, {speed}, where {found}. "
+        f"No threshold is sought: there is one speed only, {speed}, where {state}. "
         "Widen the range of speed.from and speed.to."
     )
 
@@ -122,11 +122,11 @@ def _crossing(
     try:
         with advised(case):
             scatters = machines.system.remembers
-            found = hopf.located(point, low, high, 0, NEAR if scatters else THRESHOLD_TOLERANCE, guess)
-            near = next((each for each in known if each.omega == 2 * math.pi * found.speed_Hz), None)
+            bracket = hopf.located(point, low, high, 0, NEAR if scatters else THRESHOLD_TOLERANCE, guess)
+            near = next((each for each in known if each.omega == 2 * math.pi * bracket.speed_Hz), None)
             if scatters:
-                return _fitted(machines, found, near), ""
-            return threshold_at(machines, found.speed_Hz, near=near), ""
+                return _fitted(machines, bracket, near), ""
+            return threshold_at(machines, bracket.speed_Hz, near=near), ""
     except NotConverged as error:
         between = case.speed_unit.span(low.speed_Hz, high.speed_Hz, "and")
         return None, f"A threshold lies between {between}, but was not found: {error}"

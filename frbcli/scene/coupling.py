@@ -115,8 +115,8 @@ def coupling_of(case: Case) -> Coupling:
 
 def plan_coupling(case: Case) -> tuple[str, str]:
     """The coupling of a case, one of COUPLINGS, and why it is chosen."""
-    found = coupling_of(case)
-    return found.name, found.reason if case.film.coupling == "auto" else f"set in the case; {found.reason}"
+    known = coupling_of(case)
+    return known.name, known.reason if case.film.coupling == "auto" else f"set in the case; {known.reason}"
 
 
 def _deciding(case: Case) -> str:

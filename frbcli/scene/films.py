@@ -116,8 +116,8 @@ def full_films(case: Case) -> Case:
 def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:
     """The stiffness of each bearing with a film out of that of its films, in their order: in series around a ring."""
     single = iter(films)
-    found = ([next(single) for _ in bearing.films] for bearing in case.bearings)
-    return tuple(own[0] if len(own) == 1 else 1.0 / sum(1.0 / each for each in own) for own in found)
+    groups = ([next(single) for _ in bearing.films] for bearing in case.bearings)
+    return tuple(own[0] if len(own) == 1 else 1.0 / sum(1.0 / each for each in own) for own in groups)
 
 
 def is_plain(film: FilmGeometry) -> bool:

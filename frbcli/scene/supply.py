@@ -50,7 +50,7 @@ class UnfedFilm:
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
-    found: list[UnfedFilm] = []
+    unfed: list[UnfedFilm] = []
     form = form_of(case)
     if not form.solved:
         return ()
@@ -60,8 +60,8 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
         if is_unfed(section, law_named(cavitation)):
             keeps = law_named(cavitation).keeps_oil and section.diffusion is None
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
-            found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
-    return tuple(found)
+            unfed.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
+    return tuple(unfed)
 
 
 def _cause(film: FilmGeometry, oil: Oil) -> str:

@@ -122,12 +122,12 @@ def read_grade(given: str | float) -> float:
     """A grade in mm/s: "G6.3", "G 2.5" or "1". Raises ValueFault for anything else."""
     parts = GRADE.fullmatch(str(given))
     try:
-        found = float(parts[1]) if parts else math.nan
+        grade = float(parts[1]) if parts else math.nan
     except ValueError:
-        found = math.nan
-    if not 0.0 < found <= LARGEST:
+        grade = math.nan
+    if not 0.0 < grade <= LARGEST:
         raise ValueFault("is no balance quality grade.", "Write e.g. G6.3, G2.5, G1 or 0.4, in mm/s.")
-    return found
+    return grade
 
 
 def permissible_unbalance(grade_mm_s: float, mass: float, speed_Hz: float) -> float:

@@ -182,13 +182,13 @@ class VibrationLimits(Tabular):
         return table_of((*API_POINTS, Column("zone", "", "zone of ISO 20816-3", lambda it: zones[it].zone)), self.api)
 
 
-def vibration_limits(found: Response, operating_Hz: tuple[float, float]) -> VibrationLimits:
+def vibration_limits(response: Response, operating_Hz: tuple[float, float]) -> VibrationLimits:
     """Compare a response with the limits of API 617 and ISO 20816-3.
 
     Parameters
     ----------
-    found : Response
-        Of `response` with the same range of operation, so that it has the ends of it.
+    response : Response
+        Response over the same range of operation, including its ends.
     operating_Hz : tuple of float
         Lowest and highest speed of operation in Hz.
 
@@ -201,31 +201,31 @@ def vibration_limits(found: Response, operating_Hz: tuple[float, float]) -> Vibr
     --------
     >>> import frbcli
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
-    >>> found = frbcli.response(case, [60.0, 80.0], operating_Hz=(50.0, 100.0))
-    >>> [point.zone for point in frbcli.vibration_limits(found, (50.0, 100.0)).iso]
+    >>> response = frbcli.response(case, [60.0, 80.0], operating_Hz=(50.0, 100.0))
+    >>> [point.zone for point in frbcli.vibration_limits(response, (50.0, 100.0)).iso]
     ['A', 'A']
     """
     low, high = operating_Hz
-    inside = (found.speeds_Hz >= low * (1.0 - 1e-9)) & (found.speeds_Hz <= high * (1.0 + 1e-9))
-    speeds = found.speeds_Hz[inside]
-    points = [number for number, name in enumerate(found.points) if name.partition("_")[0] in OF_SHAFT]
+    inside = (response.speeds_Hz >= low * (1.0 - 1e-9)) & (response.speeds_Hz <= high * (1.0 + 1e-9))
+    speeds = response.speeds_Hz[inside]
+    points = [number for number, name in enumerate(response.points) if name.partition("_")[0] in OF_SHAFT]
     places = list(itertools.compress(range(len(inside)), inside))
 
     def worst(standard: str, limits: Array) -> Iterable[PointVibration]:
-        """limits: (boundaries, speeds)."""
+        """limits: (bounds, speeds)."""
         for point in points if len(speeds) else ():
-            size = 2.0 * found.amplitude[inside, point]
+            size = 2.0 * response.amplitude[inside, point]
             at = int(np.argmax(size / limits[0]))
-            boundaries: Sequence[float] = limits[:, at].tolist()
-            yield PointVibration(standard, found.points[point], float(speeds[at]), float(size[at]), tuple(boundaries),
-                                 found.validity[places[at]])  # fmt: skip
+            bounds: Sequence[float] = limits[:, at].tolist()
+            yield PointVibration(standard, response.points[point], float(speeds[at]), float(size[at]), tuple(bounds),
+                                 response.validity[places[at]])  # fmt: skip
 
     covered = (float(speeds[0]), float(speeds[-1])) if len(speeds) else None
     margins = (SpeedMargin(peak, required_margin(peak.speed_Hz, peak.amplification_factor, operating_Hz))
-               for peak in found.critical_speeds)  # fmt: skip
+               for peak in response.critical_speeds)  # fmt: skip
     api, iso = worst(API, api_limit(speeds)[None]), worst(ISO, zone_limits(speeds))
-    whirling = tuple(speeds[found.growth[inside] > 0.0].tolist())
-    return VibrationLimits(found.case, (low, high), covered, tuple(api), tuple(iso), tuple(margins), whirling)
+    whirling = tuple(speeds[response.growth[inside] > 0.0].tolist())
+    return VibrationLimits(response.case, (low, high), covered, tuple(api), tuple(iso), tuple(margins), whirling)
 
 
 def beyond_iso(operating_Hz: tuple[float, float]) -> bool:

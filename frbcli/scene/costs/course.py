@@ -135,10 +135,10 @@ def _dry_laws(case: Case) -> tuple[type[Law], ...]:
     """The laws of the films that run nearly dry."""
     if not form_of(case).solved:
         return ()
-    found = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
+    laws = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
     return tuple(
         law
-        for law, place in found
+        for law, place in laws
         if law.keeps_oil and law.starves and no_inflow(film_section(case, place.geometry, place.feed_holes))
     )
 
@@ -160,8 +160,8 @@ def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_tu
     if turning_rings(case) and not any(law_named(name).keeps_oil for name in case.cavitations):
         return np.full_like(per_turn, RING_SOLVES)
     turning = any(turns_with_oil(case, place) for place in film_places(case))
-    found = plan.form.solves_of_a_stage(plan, per_turn, turning)
-    return np.where(whirls, work.whirling, work.quiet) if found is None else found
+    solves = plan.form.solves_of_a_stage(plan, per_turn, turning)
+    return np.where(whirls, work.whirling, work.quiet) if solves is None else solves
 
 
 def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArray[np.bool_]) -> Array:

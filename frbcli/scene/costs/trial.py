@@ -48,8 +48,8 @@ def planned_trial(case: Case, plan: Plan, profile: SpeedProfile) -> Trial | None
     trial = Trial(plan, _finer(plan), profile.with_stops([end]).until(end))
     costs = [expected_cost(case, each, trial.profile) for each in (trial.plan, trial.finer)]
     share = BEGINNING if rings(case) else 1.0
-    taken = sum(cost.before_s + share * cost.cpu_s for cost in costs)
-    return trial if taken <= min(SHARE * cost_of_run(case, plan, profile).total_s, LONGEST_s) else None
+    spent_s = sum(cost.before_s + share * cost.cpu_s for cost in costs)
+    return trial if spent_s <= min(SHARE * cost_of_run(case, plan, profile).total_s, LONGEST_s) else None
 
 
 def end_of_trial(profile: SpeedProfile) -> float:

@@ -80,8 +80,8 @@ class CellForm(FilmForm):
         return float(fronts * plan.tolerance ** (-1.0 / FRONT_ORDER) * coarse**FRONT_CELLS)
 
     def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
-        found = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
-        return None if found is None else self.of_whole(found)
+        cells = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
+        return None if cells is None else self.of_whole(cells)
 
     def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
         """Cells (around, along) of a plan, of those of a section."""
@@ -90,22 +90,22 @@ class CellForm(FilmForm):
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         assert films.cells is not None
         around, along = films.cells
-        told = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
+        rows = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
         if films.eccentricity is not None:
-            told.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
+            rows.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
         if is_published(case) and (transport := self.transport(case)) is not None:
-            told += [("form", "published", PUBLISHED), transport]
-        return tuple(told)
+            rows += [("form", "published", PUBLISHED), transport]
+        return tuple(rows)
 
     def remedies(self, case: Case) -> tuple[str, ...]:
         if not is_published(case):
             return ()
-        two_phase, found = case.film.two_phase, ['film.two-phase.form = "conservative"']
+        two_phase, changes = case.film.two_phase, ['film.two-phase.form = "conservative"']
         if two_phase.diffusion != "consistent":
-            found.append('film.two-phase.diffusion = "consistent"')
+            changes.append('film.two-phase.diffusion = "consistent"')
         if two_phase.steepness > GENTLE:
-            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
-        return tuple(found)
+            changes.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
+        return tuple(changes)
 
 
 def cells_of(plan: Plan) -> tuple[int, int]:

@@ -113,9 +113,9 @@ class FilmForm:
 
     def memory_B(self, plan: Plan, films: int) -> float:
         """Bytes that the films take, of tables the finer ones for the error, too."""
-        found = 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
+        needed = 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
         rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
-        return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+        return needed + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
 
     def solves_of_a_stage(self, plan: Plan, per_turn: Array, turning: bool) -> Array | None:
         """(n,) film solves, where they do not follow from `work`. per_turn (n,): steps per revolution; turning: whether
@@ -136,13 +136,13 @@ class FilmForm:
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         """What a plan says of the films: choice, value, reason."""
-        told = [("film", self.name, self.why)]
+        rows = [("film", self.name, self.why)]
         if films.theory == "finite":
             meshes = [mesh for _, mesh in films.films] or [films.mesh]
             meshes = meshes[:1] if len(set(meshes)) == 1 else meshes
             sizes = ", ".join(f"{mesh.axial} x {mesh.circumferential}" for mesh in meshes)
-            told.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
-        return tuple(told)
+            rows.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
+        return tuple(rows)
 
     def about_oil(self, case: Case, law: type[Law]) -> str:
         """What a law makes of the oil."""

@@ -42,8 +42,8 @@ def supply_faults(case: Case) -> Iterator[Fault]:
         if not law_named(case.cavitation(place.geometry)).keeps_oil:  # it makes its oil, and cannot run dry
             section = ends_at_ambient(section)
         at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
-        for found in section_faults(section):
-            yield Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy)
+        for fault in section_faults(section):
+            yield Fault(at, value, None, f"cannot be solved: {fault.problem}.", fault.remedy)
 
 
 def limited_supply_faults(case: Case) -> Iterator[Fault]:

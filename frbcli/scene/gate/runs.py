@@ -36,8 +36,8 @@ def form_faults(case: Case) -> Iterator[Fault]:
         return
     cells = form.by_cells
     chained = any(place.geometry.supply.divides for place in film_places(case))
-    if (found := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
-        yield found
+    if (fault := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
+        yield fault
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
         yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")

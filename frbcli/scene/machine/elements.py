@@ -49,13 +49,13 @@ def site_of(case: Case) -> Site:
 def element_parts(case: Case) -> Parts:
     """What all elements of a case add to the machine."""
     site = site_of(case)
-    found = [element.parts(site) for element in elements_of(case)]
+    added = [element.parts(site) for element in elements_of(case)]
     return Parts(
-        bodies=tuple(body for parts in found for body in parts.bodies),
-        links=tuple(link for parts in found for link in parts.links),
-        forces=tuple(force for parts in found for force in parts.forces),
-        loads=tuple(load for parts in found for load in parts.loads),
-        ports=tuple(port for parts in found for port in parts.ports),
+        bodies=tuple(body for parts in added for body in parts.bodies),
+        links=tuple(link for parts in added for link in parts.links),
+        forces=tuple(force for parts in added for force in parts.forces),
+        loads=tuple(load for parts in added for load in parts.loads),
+        ports=tuple(port for parts in added for port in parts.ports),
     )
 
 
@@ -118,13 +118,13 @@ def element_forces(
         return np.asarray(nodes[link.inside] @ q - outside)
 
     def force(parts: Parts) -> NDArray[np.complex128]:
-        found = np.zeros(2, dtype=np.complex128)
+        total = np.zeros(2, dtype=np.complex128)
         for link, part in parts.links:
             stiffness, damping, mass = part.at(omega)
-            found -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
+            total -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
         for name, link, _ in parts.ports:
-            found += (slopes[name].by_displacement + 1j * frequency * slopes[name].by_velocity) @ motion(link)
-        return found
+            total += (slopes[name].by_displacement + 1j * frequency * slopes[name].by_velocity) @ motion(link)
+        return total
 
     return np.array([force(element.parts(site)) for element in _bearing_elements(case)]).reshape(-1, 2)
 
@@ -197,12 +197,12 @@ def speed_dependent(case: Case, what: str) -> list[Fault]:
     """The faults of elements whose coefficients depend on the speed, where `what` needs constant ones."""
     problem = f"depends on the speed, and {what}."
     remedy = "Give constant stiffness, damping and mass, those at the speed of interest."
-    found = [
+    refusals = [
         Fault(f"{element.key}.over_speed", element.given.name, None, problem, remedy)
         for element in GivenCoefficients.of(case)
         if not element.linear.constant
     ]
     if shaft_of(case).internally_damped:
         turns = f"turns with the shaft, so that its force depends on the speed, and {what}."
-        found.append(Fault("rotor.internal_damping", "", None, turns, "Write 0, or take a run-up."))
-    return found
+        refusals.append(Fault("rotor.internal_damping", "", None, turns, "Write 0, or take a run-up."))
+    return refusals

@@ -81,8 +81,8 @@ def static_loads(case: Case) -> tuple[float, ...]:
         loads = held_rotor(rotor).load.reshape(-1, 2) / rotor.multiplicity[:, None]
     except NotConverged:
         return ()
-    found = np.hypot(*loads.T)
-    return tuple(found.tolist()) if np.isfinite(found).all() else ()
+    loads_N = np.hypot(*loads.T)
+    return tuple(loads_N.tolist()) if np.isfinite(loads_N).all() else ()
 
 
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
@@ -94,11 +94,11 @@ def remarks(case: Case) -> tuple[str, ...]:
     """What a case has that contradicts itself or is probably not meant, a sentence each."""
     if case.given_rotor is None:
         return ()
-    found: list[str] = []
+    sentences: list[str] = []
     shaft = shaft_of(case)
     if not (shaft.eccentricity or shaft.bow) and not case.forces and not case.bases:
-        found.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
-    return (*found, *_journals_off_the_shaft(case), *_names_off_their_place(case))
+        sentences.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
+    return (*sentences, *_journals_off_the_shaft(case), *_names_off_their_place(case))
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:

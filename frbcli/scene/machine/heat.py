@@ -140,14 +140,14 @@ class _Builder:
     def _inlets(self) -> list[int]:
         """The film that feeds each film: an outer film that coupled channels join to the inner one, unless they open to
         its groove, whose oil is that of the supply."""
-        found: list[int] = []
+        inlets: list[int] = []
         for bearing in self._case.bearings:
             if isinstance(bearing, FloatingRingBearing):
                 through = coupled(bearing) and not opens_to_groove(bearing)
-                found += [len(found) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
+                inlets += [len(inlets) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
             else:
-                found.append(FROM_SUPPLY)
-        return found + [FROM_SUPPLY] * len(self._dampers)
+                inlets.append(FROM_SUPPLY)
+        return inlets + [FROM_SUPPLY] * len(self._dampers)
 
     def _single(self, bearing: SingleFilmBearing, film: int) -> None:
         shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())

@@ -193,5 +193,5 @@ def model_record(case: Case) -> dict[str, str]:
         return {}
     rectangles = (film_rectangle(film_section(case, place.geometry)) for place in film_places(case))
     omega = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
-    forces = ", ".join(fingerprint(bearing_film(case, found), omega) for found in rectangles if found is not None)
+    forces = ", ".join(fingerprint(bearing_film(case, law), omega) for law in rectangles if law is not None)
     return {RECORD: f"{model.name}, added from Python; forces {forces}"[:200]}

@@ -96,8 +96,8 @@ class System:
     def eccentricities(self, q: Array) -> Array:
         """(films, ...) largest eccentricity along each film, of displacements q (n, ...)."""
         ends = self.films.seen(self.journals_of(q))
-        found = np.hypot(ends[:, 0], ends[:, 1]).reshape(len(self.names), self.films.stations, *q.shape[1:])
-        return np.asarray(found.max(axis=1) / np.reshape(self.clearances, (-1, *(1,) * (q.ndim - 1))))
+        ratios = np.hypot(ends[:, 0], ends[:, 1]).reshape(len(self.names), self.films.stations, *q.shape[1:])
+        return np.asarray(ratios.max(axis=1) / np.reshape(self.clearances, (-1, *(1,) * (q.ndim - 1))))
 
     @property
     def remembering(self) -> tuple[bool, ...]:

@@ -126,8 +126,8 @@ def worst_film(case: Case, eccentricity: float | None) -> WorstFilm:
     places = film_places(case)
     kinds = (_kind(case, place) for place in places)
     around = (least_around(film_section(case, place.geometry, place.feed_holes)) for place in places)
-    found = tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds)
-    return WorstFilm(found, max(FEWEST[0], *around))
+    limited = tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds)
+    return WorstFilm(limited, max(FEWEST[0], *around))
 
 
 def gap_ratio(expected: float, reached: float) -> float:
@@ -156,10 +156,10 @@ def fewest_cells(
 def given_cells(mesh: tuple[int, int], fewest: int = FEWEST[0]) -> tuple[tuple[int, int], str]:
     """Cells (around, along) for a mesh (along, around) that a case sets, and why. fewest: around."""
     along, around = mesh
-    found = max(around, fewest), max(along, FEWEST[1])
-    if found == (around, along):
-        return found, "set in the case"
-    return found, f"[{along}, {around}] is set in the case, fewer than a film needs"
+    cells = max(around, fewest), max(along, FEWEST[1])
+    if cells == (around, along):
+        return cells, "set in the case"
+    return cells, f"[{along}, {around}] is set in the case, fewer than a film needs"
 
 
 def cells_time(around: int, along: int, fast: tuple[int, ...] = FAST) -> float:

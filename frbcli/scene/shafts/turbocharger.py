@@ -250,8 +250,8 @@ class TurbochargerShaft(Shaft):
 
     @property
     def bow_words(self) -> tuple[str, str]:
-        told = (f"{display(bow.offset, 'm')} at {display(bow.position, 'm')}" for bow in self.case.bows)
-        return ", ".join(told), "off the line through the outermost bearings; between, as a shaft loaded there bends"
+        bends = (f"{display(bow.offset, 'm')} at {display(bow.position, 'm')}" for bow in self.case.bows)
+        return ", ".join(bends), "off the line through the outermost bearings; between, as a shaft loaded there bends"
 
     @property
     def disk_count(self) -> int:
