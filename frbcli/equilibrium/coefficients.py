@@ -88,9 +88,9 @@ def settled_force(
     """Force and derivatives of film i with its journal at rest at `place` (c,) in m, of a film that keeps oil when this
     has settled in each of two neighbouring motions. total: omega_J + omega_S; slip: see System.force. Raises
     NotConverged."""
-    found = system.force(i, place, np.zeros_like(place), total, near, slip)
+    force = system.force(i, place, np.zeros_like(place), total, near, slip)
     if not system.remembering[i]:
-        return found
+        return force
     size = len(place)
 
     def moved(motion: Array) -> Array:
@@ -111,7 +111,7 @@ def settled_force(
             system.force(i, place, side * pace * unit, total, None, slip).force for side in (1.0, -1.0)
         )
         by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
-    return replace(found, by_displacement=by_displacement, by_velocity=by_velocity)
+    return replace(force, by_displacement=by_displacement, by_velocity=by_velocity)
 
 
 @dataclass(frozen=True)

@@ -193,7 +193,7 @@ def modes(
 
     own: the films' dynamic stiffness. None of the machine are eigenvalues at which the projections are not to be
     trusted, at which the films of the two meshes are not the same, and those far from where the iteration began."""
-    found: list[tuple[complex, Complex]] = []
+    pairs: list[tuple[complex, Complex]] = []
     for start, shape in machine.starts([film.one for film in films]):
         if start.imag < -NEARLY_REAL * abs(start) or start.real < -DAMPED * abs(omega):
             continue
@@ -202,21 +202,21 @@ def modes(
             value, vector = value.conjugate(), vector.conj()
         if not abs(value - start) < MOVED * max(abs(start), abs(omega)) or value.real < -DAMPED * abs(omega):
             continue
-        if any(abs(value - other) < EQUAL * abs(value) for other, _ in found):
+        if any(abs(value - other) < EQUAL * abs(value) for other, _ in pairs):
             continue
         if any((np.abs(1.0 + value * film.delays) < POLE).any() for film in own):
             continue
         if all(_trusted(film, value) and _known(film, value) for film in films):
-            found.append((value, vector))
-    return found
+            pairs.append((value, vector))
+    return pairs
 
 
 def followed(
     machine: Oscillator, films: Sequence[DynamicStiffness], known: Sequence[tuple[complex, Complex]]
 ) -> list[tuple[complex, Complex]]:
     """The eigenvalues of `modes` on other films, those that are known leading to them."""
-    found = [_iterated(machine, films, value, shape) for value, shape in known]
-    return [each for each in found if math.isfinite(each[0].real)]
+    refined = [_iterated(machine, films, value, shape) for value, shape in known]
+    return [each for each in refined if math.isfinite(each[0].real)]
 
 
 def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Complex) -> Array:
@@ -226,7 +226,7 @@ def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Comp
     passes into the next cell. The mean over P places misses that by J (1/2 - x) / P, with x as likely anywhere from 0
     to 1: in the square by J^2 / (12 P^2). Neighbours among the places differ by J / P, or by J (1 - 1 / P) across the
     jump: the sum of their squares is J^2 (1 - 1 / P). Several fronts add up in the square."""
-    own, found = [film.own for film in films], np.zeros(len(values))
+    own, errors = [film.own for film in films], np.zeros(len(values))
     for number, s in enumerate(values.tolist()):
         matrix, slope = machine.at(s, own)
         left, _, right = np.linalg.svd(matrix)
@@ -239,8 +239,8 @@ def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Comp
                 shifts = np.array([balance @ push @ part.at(s)[0] @ journal @ moved for part in places]) / scale
                 count = len(places)
                 square += float(np.sum(np.abs(shifts - np.roll(shifts, 1)) ** 2)) / (12.0 * count * max(count - 1, 1))
-        found[number] = SPREAD * math.sqrt(square)
-    return found
+        errors[number] = SPREAD * math.sqrt(square)
+    return errors
 
 
 def _iterated(

@@ -110,8 +110,8 @@ def small_motions(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]
     """As eigenpairs, of mass, damping and stiffness (n, n). turning: see LinearRotor."""
     values, vectors = np.linalg.eig(states(matrices, turning))
     motions = vectors[-len(matrices[0]) :].astype(complex)  # velocities, of which each degree of freedom has one
-    found = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
-    return found, motions
+    corrected = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
+    return corrected, motions
 
 
 def _sensitivity(vectors: Complex, mass: Array) -> Array:
@@ -145,13 +145,13 @@ def _grown_by_work(
     exactly 0 of an undamped motion, where the real part that a solver finds is round-off of the largest eigenvalue. A
     motion without stiffness and damping, of a free body, has a double eigenvalue 0, of which a solver finds the root of
     its round-off."""
-    found, (mass, damping, stiffness) = values.copy(), matrices
+    corrected, (mass, damping, stiffness) = values.copy(), matrices
     size, noise = float(np.max(np.abs(values), initial=0.0)), len(values) * float(np.finfo(float).eps)
 
     def work(matrix: Array) -> tuple[Complex, Array]:
         """x^H A x of all motions, and its round-off."""
-        taken = np.einsum("in,ij,jn->n", motions.conj(), matrix, motions)
-        return taken, noise * np.einsum("in,ij,jn->n", *(np.abs(each) for each in (motions, matrix, motions)))
+        done = np.einsum("in,ij,jn->n", motions.conj(), matrix, motions)
+        return done, noise * np.einsum("in,ij,jn->n", *(np.abs(each) for each in (motions, matrix, motions)))
 
     (m, _), (d, off_d), (k, off_k) = map(work, (mass, damping, stiffness))
     frequency, slow = values.imag, math.sqrt(noise) * size
@@ -161,10 +161,10 @@ def _grown_by_work(
         growth = -(frequency * d.real + k.imag) / inertia
         least = (np.abs(frequency) * off_d + off_k) / np.abs(inertia)
     none = (np.abs(growth) <= least) | ((growth > 0.0) & (growth <= noise * size * sensitivity))
-    found.real[doubtful] = np.where(none, 0.0, growth)[doubtful]
+    corrected.real[doubtful] = np.where(none, 0.0, growth)[doubtful]
     free = (np.abs(k) <= noise * size**2 * m.real) & (np.abs(d) <= noise * size * m.real + off_d)
-    found[(np.abs(values) <= slow) & free | (np.abs(values) <= noise * size)] = 0.0
-    return found
+    corrected[(np.abs(values) <= slow) & free | (np.abs(values) <= noise * size)] = 0.0
+    return corrected
 
 
 def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:

@@ -83,13 +83,13 @@ def search_rest(
     still = ends(np.zeros_like(start))
     since = stuck = 0
     for _ in range(ITERATIONS):
-        found = here.balance
-        if found.left < search.force:
+        current = here.balance
+        if current.left < search.force:
             return replace(here, settled=True)
-        slope = found.slope + here.lacking
+        slope = current.slope + here.lacking
         if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
-        solved = np.asarray(np.linalg.solve(slope, -found.residual), dtype=np.float64)
+        solved = np.asarray(np.linalg.solve(slope, -current.residual), dtype=np.float64)
         step = solved.reshape(*here.position.shape)
         there, moved = ends(here.position), ends(step) - still
         if _leaves(there, moved, search.gap):
@@ -100,28 +100,28 @@ def search_rest(
         arrives = size < search.step
         while True:
             following = here.position + share * step
-            new = balance(following, found)
-            if arrives or new.left < found.left or SHORTER * share <= search.share:
+            new = balance(following, current)
+            if arrives or new.left < current.left or SHORTER * share <= search.share:
                 break
             share *= SHORTER
         settled = arrives and share == 1.0
-        lacks = here.lacking if settled else _lacking(here.lacking, found, new, share * solved)
+        lacks = here.lacking if settled else _lacking(here.lacking, current, new, share * solved)
         here = SearchEnd(following, new, settled, lacks)
         since = 0 if arrives or new.left < best.balance.left else since + 1
         best = here if since == 0 else best
-        stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * found.left else 0
+        stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * current.left else 0
         if here.settled or since > search.patience or stuck == STUCK:
             break
     return best
 
 
-def _lacking(before: Array, found: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
+def _lacking(before: Array, current: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
     """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): as the
     change of what is left over tells it along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
-    if not 0.0 < new.left < NEAR * found.left:
+    if not 0.0 < new.left < NEAR * current.left:
         return np.zeros_like(before)
-    told = 0.5 * (found.slope + new.slope) @ step + before @ step
-    return before + np.outer(new.residual - found.residual - told, step) / (step @ step)
+    predicted = 0.5 * (current.slope + new.slope) @ step + before @ step
+    return before + np.outer(new.residual - current.residual - predicted, step) / (step @ step)
 
 
 def _leaves(places: Array, moved: Array, gap: float) -> bool:

@@ -58,9 +58,9 @@ class RestingPosition:
 
     def velocities(self, system: System) -> Array:
         """(n,) those of all degrees of freedom: the rings turn."""
-        found = np.zeros_like(self.displacements)
-        found[list(system.spins)] = self.ring_speeds
-        return found
+        speeds = np.zeros_like(self.displacements)
+        speeds[list(system.spins)] = self.ring_speeds
+        return speeds
 
 
 def resting_position(
@@ -108,11 +108,11 @@ def resting_position(
             tries.insert(0, (near, reach))
     left = np.inf
     for first, reach in (each for each in tries if _outmost(system, held, each[1], each[0]) < 1.0):
-        found = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
-        if found.settled and _outmost(system, held, reach, found.position) < LARGEST_ECCENTRICITY:
-            displacements = held.shape + held.following @ found.position.ravel()
-            return replace(_position(system, held, omega, displacements, found.balance.films), lacking=found.lacking)
-        left = min(left, found.balance.left)
+        end = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
+        if end.settled and _outmost(system, held, reach, end.position) < LARGEST_ECCENTRICITY:
+            displacements = held.shape + held.following @ end.position.ravel()
+            return replace(_position(system, held, omega, displacements, end.balance.films), lacking=end.lacking)
+        left = min(left, end.balance.left)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
         return _position(system, held, omega, held.shape, ())
     raise NotConverged(
@@ -128,8 +128,8 @@ def _at_ports(
     port over its length: a stop that nothing touches holds nothing."""
 
     def rest(flat: LinearRotor, q: Array) -> tuple[Array, RestingPosition]:
-        found = resting_position(replace(system, rotor=flat), omega, q, search, None, beside)
-        return found.displacements, found
+        position = resting_position(replace(system, rotor=flat), omega, q, search, None, beside)
+        return position.displacements, position
 
     starts = [] if start is None else [start]
     starts += [np.zeros(system.rotor.size), pushed(system.rotor)]
@@ -227,7 +227,7 @@ def _by_rubbed_rings(
 ) -> Array:
     """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
     summits, less that as of a film. following: see _following."""
-    found, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
+    by_rings, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
 
     def summits(speeds: Array) -> list[FilmForce]:
         totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
@@ -237,7 +237,7 @@ def _by_rubbed_rings(
         ]
 
     for i, own in enumerate(summits(ring_speeds(system, held, omega, position, near))):
-        found[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
+        by_rings[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
     for column in range(position.size):
         step = np.zeros(position.size)
         step[column] = NUDGE * system.clearances[column // 2]
@@ -245,8 +245,8 @@ def _by_rubbed_rings(
             np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved, near))])
             for moved in (step.reshape(-1, 2), -step.reshape(-1, 2))
         )
-        found[:, column] += (ahead - behind) / (2.0 * step[column])
-    return many[:, None] * found
+        by_rings[:, column] += (ahead - behind) / (2.0 * step[column])
+    return many[:, None] * by_rings
 
 
 def _whole_balance(
@@ -277,8 +277,8 @@ def _whole_balance(
 
 def _places(system: System, held: HeldRotor, position: Array) -> Array:
     """(films, c) coordinates of the journals in their shells; position: the unknowns of the rotor."""
-    found = held.places(position, len(system.names))
-    return found if held.journals is None else found + system.films.standing
+    coordinates = held.places(position, len(system.names))
+    return coordinates if held.journals is None else coordinates + system.films.standing
 
 
 def _ends(system: System, held: HeldRotor, reach: float, position: Array) -> Array:
@@ -301,15 +301,15 @@ def _on_shells(
 ) -> list[Array]:
     """The starts with the journals of films that do not turn, and so carry nothing, pressed into their elastic shells;
     loads: (films, 2) N that the rotor puts on its films. None where all films turn."""
-    found = []
+    starts_ = []
     for start in starts if still.any() else ():
         pressed = start.copy()
         for i in np.flatnonzero(still):
             carried = loads[i] / system.rotor.multiplicity[i]
             size = max(float(np.hypot(*carried)), np.finfo(float).tiny)
             pressed[i] = shell.pressed(size, system.clearances[i]) * carried / size
-        found.append(pressed)
-    return found
+        starts_.append(pressed)
+    return starts_
 
 
 def _foreseen(films: tuple[FilmForce, ...], position: Array) -> tuple[FilmForce, ...]:
@@ -344,8 +344,8 @@ def _following(
     off = at(position, drag) - speeds
     by_rings = system.turning[:, SUM, 1:]
     by_speeds = (by_drag * by_total) @ by_rings
-    found = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
-    return by_rings @ found[:, 0], by_rings @ found[:, 1:]
+    solution = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
+    return by_rings @ solution[:, 0], by_rings @ solution[:, 1:]
 
 
 def _drag_slopes(

@@ -153,15 +153,15 @@ class StaticMachines:
             coarse = static.others if with_error else static.others[:1]
             start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
         position = resting_position(static.system, omega, start, self._search, held, beside)
-        found = films_at_rest(static.system, omega, position, settled)
+        at_rest = films_at_rest(static.system, omega, position, settled)
         if with_error and others is None:
             search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, held)
             _, others = _on_others(static.others, omega, position.displacements, search, held, settled, near)
         counted = others if with_error and others else []
-        films = tuple(_resting_film(static, omega, i, found, counted) for i in range(len(found.forces)))
-        dynamic = _dynamic(static.system, omega, found) if self._memory else ()
+        films = tuple(_resting_film(static, omega, i, at_rest, counted) for i in range(len(at_rest.forces)))
+        dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
         changes = _by_omega(near, omega, position.displacements)
-        return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic, changes)
+        return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, changes)
 
 
 def _nearly(system: System, held: HeldRotor) -> Search:
@@ -183,12 +183,12 @@ def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) ->
 
 
 def _resting_film(
-    static: StaticFilms, omega: float, i: int, found: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
+    static: StaticFilms, omega: float, i: int, at_rest: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
 ) -> RestingFilm:
     """Film i of a machine at rest at omega rad/s, with its errors from the other meshes, NaN without any."""
     system, plan = static.system, static.own.plan
-    force, clearance = found.forces[i], system.clearances[i]
-    at = found.position.journals[i]
+    force, clearance = at_rest.forces[i], system.clearances[i]
+    at = at_rest.position.journals[i]
     place, tilt = at[:2] / clearance, at[2:] if len(at) > 2 else None
     forces = [(other.forces[i], share) for other, share in others]
     places = [(other.position.journals[i][:2] / clearance, share) for other, share in others]
@@ -198,18 +198,18 @@ def _resting_film(
     return resting_film(system.names[i], force, place, error, place_error(place, places), tilt=tilt)
 
 
-def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
+def _dynamic(system: System, omega: float, at_rest: FilmsAtRest) -> tuple[DynamicFilm, ...]:
     """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
-    places, totals, turns = found.position.journals, found.totals.tolist(), system.ring_count > 0
+    places, totals, turns = at_rest.position.journals, at_rest.totals.tolist(), system.ring_count > 0
 
     def film(i: int, keeps: bool) -> DynamicFilm:
         if keeps:
             own = dynamic_film(partial(system.films.linear, i), places[i], totals[i], omega, turns)
         if system.asperities is None:
-            return own if keeps else constant_film(found.forces[i], places[i], turns)
-        slip = float(found.slips[i])
+            return own if keeps else constant_film(at_rest.forces[i], places[i], turns)
+        slip = float(at_rest.slips[i])
         summits = system.rubbing(i).force(places[i], np.zeros(2), slip, 0.5 * (totals[i] - slip))
-        own = own if keeps else constant_film(found.forces[i].plus(summits, -1.0), places[i], turns)
+        own = own if keeps else constant_film(at_rest.forces[i].plus(summits, -1.0), places[i], turns)
         return own.on(summits)
 
     return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
@@ -222,7 +222,7 @@ def _on_others(
     """The displacements on the last of several meshes, each sought from those on the one before, or where the machine
     `near` has the same meshes, from `start` as far off and with the films as there; and the films of all; meshes on
     which no position is found are left out."""
-    found, same = [], near is not None and len(near.others) == len(meshes)
+    others, same = [], near is not None and len(near.others) == len(meshes)
     for number, mesh in enumerate(meshes):
         beside, begun = None, start
         if near is not None and same and start is not None:
@@ -230,8 +230,8 @@ def _on_others(
             begun = start + beside.displacements - near.at_rest.position.displacements
         try:
             position = resting_position(mesh.system, omega, begun, search, held, beside)
-            found.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
+            others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
             start = start if same else position.displacements
         except NotConverged:
             continue
-    return start, found
+    return start, others

@@ -103,10 +103,10 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)
 
 
-def film_temperatures(found: SteadyHeat, names: Sequence[str]) -> tuple[FilmTemperature, ...]:
+def film_temperatures(balance: SteadyHeat, names: Sequence[str]) -> tuple[FilmTemperature, ...]:
     """The films of these names, "" for a film that is alone, in a balance of heat."""
-    heat = found.films
-    rows = zip(found.temperatures, found.viscosities, found.clearances, heat.power, heat.flow, strict=False)
+    heat = balance.films
+    rows = zip(balance.temperatures, balance.viscosities, balance.clearances, heat.power, heat.flow, strict=False)
     return tuple(FilmTemperature(name or "film", *map(float, row)) for name, row in zip(names, rows, strict=True))
 
 
@@ -140,14 +140,14 @@ class WarmMachines:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
 
-        found = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
+        steady = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None
-        return self._machine(system, resting, found, near)
+        return self._machine(system, resting, steady, near)
 
     def _machine(
-        self, system: System, resting: RestingPosition, found: SteadyHeat, near: WarmMachine | None
+        self, system: System, resting: RestingPosition, steady: SteadyHeat, near: WarmMachine | None
     ) -> WarmMachine:
-        t, films = found.temperatures, found.films
+        t, films = steady.temperatures, steady.films
         by_omega = np.zeros_like(t) if near is None else near.by_omega
         if near is not None and abs(change := float(films.speeds[0]) - near.omega) > APART * near.omega:
             by_omega = (t - near.steady.temperatures) / change
@@ -160,7 +160,7 @@ class WarmMachines:
             )
             for ring in self._heat.rings
         )
-        return WarmMachine(system, resting, found, film_temperatures(found, system.names), rings, by_omega)
+        return WarmMachine(system, resting, steady, film_temperatures(steady, system.names), rings, by_omega)
 
 
 def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:
@@ -172,11 +172,11 @@ def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, A
     F . e'. Between rough surfaces the friction of the summits makes heat in the same film.
     """
     speeds = list(zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True))
-    found = [
+    rows = [
         system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
         for i, (place, (total, slip), drag) in enumerate(speeds)
     ]
-    power, flow = np.array(found).T
+    power, flow = np.array(rows).T
     if system.asperities is not None:
         power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns, _) in enumerate(speeds)]
     return power, flow

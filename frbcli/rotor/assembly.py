@@ -118,14 +118,14 @@ def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:
     """Names and maps of all nodes of a machine with n degrees of freedom, a row for each of the COORDINATES: nodes of
     bodies that do not tilt have none there."""
-    found: dict[str, Array] = {}
+    nodes: dict[str, Array] = {}
     first = 0
     for body in bodies:
         for name, place in body.nodes:
-            found[name] = np.zeros((len(COORDINATES), size))
-            found[name][: len(place), first : first + body.size] = place
+            nodes[name] = np.zeros((len(COORDINATES), size))
+            nodes[name][: len(place), first : first + body.size] = place
         first += body.size
-    return found
+    return nodes
 
 
 def _bordered(matrix: Array, other: Array) -> Array:
@@ -151,8 +151,8 @@ class HeldRotor:
 
     def places(self, unknowns: Array, films: int) -> Array:
         """(films, c) coordinates of the journals."""
-        found = unknowns if self.journals is None else self.journals @ unknowns
-        return np.asarray(found.reshape(films, -1))
+        coordinates = unknowns if self.journals is None else self.journals @ unknowns
+        return np.asarray(coordinates.reshape(films, -1))
 
 
 def whole_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:

@@ -90,10 +90,10 @@ class LinearRotor:
 
     def precession(self, speeds: Array) -> Array:
         """(n, n) what multiplies q' beside the damping by the cones, at speeds (n,) of the angles in rad/s."""
-        found = np.zeros_like(self.damping)
+        matrix = np.zeros_like(self.damping)
         for spin, cone in self.cones:
-            found += speeds[spin] * (np.outer(cone[0], cone[1]) - np.outer(cone[1], cone[0]))
-        return found
+            matrix += speeds[spin] * (np.outer(cone[0], cone[1]) - np.outer(cone[1], cone[0]))
+        return matrix
 
     def with_parts(self, parts: Sequence[LinearPart]) -> LinearRotor:
         """The rotor with linear parts on all of its degrees of freedom: constant ones join its matrices."""

@@ -156,9 +156,9 @@ def ranks(values: Array, size: float | None = None) -> NDArray[np.intp]:
         return np.zeros(0, dtype=np.intp)
     order = np.argsort(values, kind="stable")
     apart = np.diff(values[order]) > EQUAL * (float(np.max(np.abs(values))) if size is None else size)
-    found = np.empty(len(values), dtype=np.intp)
-    found[order] = np.concatenate([[0], np.cumsum(apart)])
-    return found
+    ranks_ = np.empty(len(values), dtype=np.intp)
+    ranks_[order] = np.concatenate([[0], np.cumsum(apart)])
+    return ranks_
 
 
 def fastest_first(eigenvalues: NDArray[np.complex128]) -> NDArray[np.intp]:
@@ -253,9 +253,9 @@ def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
     if not parts:
         return None
     speeds = np.unique(np.concatenate([part.speeds for part in parts]))
-    found = [[part.at(float(omega)) for omega in speeds] for part in parts]
+    evaluated = [[part.at(float(omega)) for omega in speeds] for part in parts]
     stiffness, damping, mass = (
-        np.sum([[matrices[i] for matrices in rows] for rows in found], axis=0) for i in range(3)
+        np.sum([[matrices[i] for matrices in rows] for rows in evaluated], axis=0) for i in range(3)
     )
     return LinearPart(speeds, stiffness, damping, mass)
 

@@ -109,29 +109,29 @@ class Port:
     def signals(self, q: Array, v: Array, omega: Array, angle: Array) -> dict[str, tuple[str, Array]]:
         """Units and values (k,) of its signals in a run, at displacements q and velocities v (k, n)."""
         forces, memories = self.along(q, v, omega, angle)
-        found = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
+        columns = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
         part = self.name.removeprefix(self.law.quantity)
         for quantity, (unit, values) in self.law.inside(memories).items():
-                found[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
-        return found
+                columns[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
+        return columns
 
 
 def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: float = 0.0) -> Array:
     """(n,) N on all degrees of freedom by the ports of a machine, at displacements q and velocities v (n,)."""
-    found = np.zeros(rotor.size)
+    forces = np.zeros(rotor.size)
     for port in rotor.ports:
-        found += port.count * port.place.T @ port.at(q, v, omega, angle).force
-    return found
+        forces += port.count * port.place.T @ port.at(q, v, omega, angle).force
+    return forces
 
 
 def pushed(rotor: LinearRotor) -> Array:
     """(n,) displacements by which its static load pushes each port of a machine over its length."""
-    found = np.zeros(rotor.size)
+    pushes = np.zeros(rotor.size)
     for port in rotor.ports:
         along = port.place @ rotor.static_load
         if size := float(np.linalg.norm(along)):
-            found += port.law.length / size * np.linalg.pinv(port.place) @ along
-    return found
+            pushes += port.law.length / size * np.linalg.pinv(port.place) @ along
+    return pushes
 
 
 def settled(
@@ -152,13 +152,13 @@ def settled(
     for q in starts:
         for iteration in range(ITERATIONS):
             try:
-                there, found = rest(tangent(rotor, omega, q, compiled), q)
+                there, position = rest(tangent(rotor, omega, q, compiled), q)
             except NotConverged as error:
                 reason = reason or error
                 break
             moved = there - q
             if all(float(np.abs(port.place @ moved).max()) < step * port.law.length for port in rotor.ports):
-                return found
+                return position
             q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
     name = rotor.ports[0].name.replace("_", " ")
     raise reason or NotConverged(f"No resting position: the {name} does not settle. Start a run in the centre.")

@@ -127,11 +127,11 @@ class Places:
     def of(self, modes: FreeModes) -> Array:
         """(p, n) displacements of modes at bearings and wheels, their slopes at collars, and the shares of the bow."""
         slopes = [modes.slope_at(collar) for collar in self.collars]
-        found = [*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes]
+        rows = [*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes]
         if self.bow is not None:
             shares = self.bow.of(modes) / max(map(abs, self.bow.forces))
-            found += [shares.real, shares.imag]
-        return np.stack(found)
+            rows += [shares.real, shares.imag]
+        return np.stack(rows)
 
 
 @dataclass(frozen=True)
@@ -291,10 +291,10 @@ def reduction(modes: FreeModes, places: Places, top: float, target: float) -> Re
     """The smallest reduction with static modes whose changes are within a target, up to the speed `top` in rad/s."""
     exact = with_static_modes(modes, min(EXACT, len(modes.frequencies)), places)
     for count in COUNTS:
-        found = judged(with_static_modes(modes, min(count, len(modes.frequencies)), places), exact, places, top, count)
-        if max(found.frequency, found.amplitude) <= target:
+        model = judged(with_static_modes(modes, min(count, len(modes.frequencies)), places), exact, places, top, count)
+        if max(model.frequency, model.amplitude) <= target:
             break
-    return found
+    return model
 
 
 def judged(

@@ -171,9 +171,9 @@ class _SettledCells:
         film, open_ = self.at_pressure(), self._parts[-1][UNKNOWN].ravel() != 0.0
         flow, by_place, *_ = self._balances(without_ends(self._parts[0]))
         outflow, clearance = -(open_ @ flow), self._solver.film.section.clearance
-        by_filling, outflow_by_filling, push = self._by_filling()
+        by_filling, by_supply, push = self._by_filling()
         return LinearFilm(
-            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[outflow_by_filling]]]], "csc"),
+            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[by_supply]]]], "csc"),
             storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
             by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
             by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),

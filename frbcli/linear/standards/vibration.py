@@ -39,7 +39,7 @@ ZONES = "ABCD"
 ISO_RANGE_rpm = (1000.0, 30000.0)  # of machines that the standard is for
 OF_SHAFT = ("journal", "disk")  # kinds of points
 WELL_DAMPED = 2.5  # amplification factor below which no margin is asked for
-TOLD = {"linear": "", "doubtful": "?", "beyond-gap": "!"}  # validity of an amplitude
+MARKS = {"linear": "", "doubtful": "?", "beyond-gap": "!"}  # validity of an amplitude
 
 
 def api_limit(speed_Hz: Array | float) -> Array:
@@ -119,7 +119,7 @@ _POINT = (
     Column("peak_to_peak", "m", "vibration, peak to peak", more="twice the larger semi-axis of the orbit",
            shown=(Shown("um p-p", ".3g", "um"),)),
 )  # fmt: skip
-_MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", TOLD.__getitem__),))
+_MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", MARKS.__getitem__),))
 
 
 def _boundary(place: int, name: str) -> Column:

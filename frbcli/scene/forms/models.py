@@ -31,7 +31,7 @@ from frbcli.scene.keys import film_keys
 from frbcli.scene.tilt import tilt_refusal
 
 WHY = "set in the case; added from Python"
-TOLD = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
+WHOLE_BEARING = "the whole bearing by one function of displacement, velocity and speed; derivatives by {}"
 
 
 def chosen_model(case: Case) -> BearingModel | None:
@@ -53,7 +53,7 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
     return (
         ("theory", model.name, f"{model.label}: {WHY}"),
         ("cavitation", "in the model", "film.cavitation and bearing.ends have no effect"),
-        ("film", str(GIVEN), TOLD.format(by)),
+        ("film", str(GIVEN), WHOLE_BEARING.format(by)),
     )
 
 

@@ -23,7 +23,7 @@ from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.rotor import make_rotor
 
 # Shares of the clearance from which a change of the gap at the ends is told, of bent shafts and of conical whirls.
-BENT_TOLD, CONE_TOLD = 0.1, 0.25
+BENT_LIMIT, CONE_LIMIT = 0.1, 0.25
 FLAT = 1e-12  # rad: a journal that tilts less is held by a body that does not tilt
 
 
@@ -58,7 +58,7 @@ class FilmTilt:
     @property
     def matters(self) -> bool:
         """Whether the tilt is worth a look."""
-        return self.bent > BENT_TOLD or self.whirling > CONE_TOLD
+        return self.bent > BENT_LIMIT or self.whirling > CONE_LIMIT
 
 
 def _in_mrad(tilt: float) -> str:

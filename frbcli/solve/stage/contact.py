@@ -119,13 +119,13 @@ def rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: Ar
 @compiled_for(RoughContact)
 def press(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> None:
     """Add the summits of film f to FORCE, BY_X, BY_Y of its journal."""
-    x, y, found = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
-    journal[FORCE, x] += found.f_x
-    journal[FORCE, y] += found.f_y
-    journal[BY_X, x] += found.d_xx + g * found.k_xx
-    journal[BY_Y, x] += found.d_xy + g * found.k_xy
-    journal[BY_X, y] += found.d_yx + g * found.k_yx
-    journal[BY_Y, y] += found.d_yy + g * found.k_yy
+    x, y, rubbed = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
+    journal[FORCE, x] += rubbed.f_x
+    journal[FORCE, y] += rubbed.f_y
+    journal[BY_X, x] += rubbed.d_xx + g * rubbed.k_xx
+    journal[BY_Y, x] += rubbed.d_xy + g * rubbed.k_xy
+    journal[BY_X, y] += rubbed.d_yx + g * rubbed.k_yx
+    journal[BY_Y, y] += rubbed.d_yy + g * rubbed.k_yy
 
 
 @compiled_for(RoughContact, 0.0)
