@@ -46,7 +46,7 @@ class CycleCount:
     count: int = 0
 
     def __call__(self, value: float, eccentricity_max: Array) -> None:
-        """Count a cycle, and tell its place and eccentricities."""
+        """Count a cycle, and report its place and eccentricities."""
         self.count += 1
         if self.observe is not None:
             self.observe(self.count, value, float(eccentricity_max.max()))
@@ -77,18 +77,18 @@ def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], 
     """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: gives the CPU time so far in s."""
     resting, course, count = walk.resting, walk.course, CycleCount(observe)
 
-    def tell(cycle: Cycle) -> None:
+    def record(cycle: Cycle) -> None:
         count(walk.value(cycle), cycle.eccentricity_max)
 
     branches: list[Branch | None] = []
     for number, hopf in enumerate(resting.hopf):
         known = any(branch is not None and _ends_in(walk, branch, hopf) for branch in branches[:number])
-        branches.append(None if known else follow_branch(walk.follower, first_place(hopf), tell))
+        branches.append(None if known else follow_branch(walk.follower, first_place(hopf), record))
     followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
     numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
     notes = [resting.note, *_notes(case, walk)]
     if not any(point.stable for point in resting.points) and not resting.hopf:
-        seeded = _seeded(walk, tell)
+        seeded = _seeded(walk, record)
         followed += [] if seeded is None else [(None, seeded)]
     special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
     grown = tuple(
@@ -188,7 +188,7 @@ def _notes(case: Case, walk: Walk) -> list[str]:
     return notes
 
 
-def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
+def _seeded(walk: Walk, record: Callable[[Cycle], None]) -> Branch | None:
     """The branch through a cycle that no Hopf point in the range leads to, from its low to its high end."""
     points = walk.resting.points
     for resting in (points[len(points) // 2], points[0], points[-1]):
@@ -198,8 +198,8 @@ def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
             break
     else:
         return None
-    up = follow_branch(walk.follower, place, tell)
-    down = follow_branch(walk.follower, oriented(place, -place.tangent), tell)
+    up = follow_branch(walk.follower, place, record)
+    down = follow_branch(walk.follower, oriented(place, -place.tangent), record)
     notes = dict.fromkeys((down.note, up.note))
     return Branch((*reversed(down.cycles), *up.cycles), " ".join(notes), down.ends_at_rest or up.ends_at_rest)
 

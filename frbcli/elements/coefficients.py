@@ -61,7 +61,7 @@ class GivenCoefficients(MachineElement):
         remedy = "Load the case with load_case or case_from_dict."
         return [Fault(f"{self.key}.file", self.given.file, None, problem, remedy)]
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         value, reason = self._values()
         return "bearings", f"{self.given.name}: {value}".removeprefix(": "), reason
 

@@ -58,7 +58,7 @@ class DamperElement(MachineElement):
         """The link between shell and seat on which spring and film act."""
         return Link(self.node, site.seat(self.bearing), site.count)
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} in a film".removeprefix(": ")
         spring = "no centring spring: it sinks under a static load"
         if any(self.given.spring):

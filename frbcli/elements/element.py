@@ -60,7 +60,7 @@ class MachineElement(ABC):
         """The elements of this kind in a case."""
 
     @abstractmethod
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         """Its line of the plan."""
 
     @property

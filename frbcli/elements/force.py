@@ -51,7 +51,7 @@ class ForceElement(MachineElement):
         amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y])
         return Parts(loads=((self.node, changing_load(self.name, amplitude, given)),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         x, y = (display(each, "N") for each in self.given.amplitude)
         turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
         where = "at each of both equal bearings" if equal_places(self.node, site) > 1.0 else "at one place"

@@ -50,7 +50,7 @@ class HousingElement(MachineElement):
     def parts(self, site: Site) -> Parts:
         return Parts(bodies=(self._modal(site.gravity) if self.given.modes else self._rigid(site.gravity),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         if self.given.modes:
             frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in self.given.modes)
             weight = "its weight at its masses" if self.given.masses else "without its weight, for no masses are given"

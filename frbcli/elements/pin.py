@@ -37,7 +37,7 @@ class PinElement(MachineElement):
             if bearing.pin is not None:
                 yield cls(f"{key}.pin", bearing.name, bearing.pin)
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         pin = self.given
         value = f"{self.bearing}: play {display(pin.play, 'm')}".removeprefix(": ")
         free = f"{math.degrees(pin.play / pin.radius):.3g} deg to either side"

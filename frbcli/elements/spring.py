@@ -150,7 +150,7 @@ class SpringElement(MachineElement):
         part = LinearPart.of((given.stiffness or 0.0) * np.eye(2), given.damping * np.eye(2))
         return Parts(links=((link, part),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         given, (first, second) = self.given, (each.replace("_", " ") or "the ground" for each in self.nodes)
         values = [display(given.stiffness, "N/m")] if given.stiffness else []
         values += [display(given.cubic, "N/m^3")] if given.cubic else []

@@ -47,7 +47,7 @@ class SupportElement(MachineElement):
         link = Link(self.node, site.ground(self.bearing), site.count)
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         springs = directions(self.given.stiffness, "N/m")
         damping = f", {directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")

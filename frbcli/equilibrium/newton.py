@@ -40,7 +40,7 @@ class ForceBalance(Generic[Films]):
 
 @dataclass(frozen=True)
 class Search:
-    """When a search ends. step: over the clearance, a full step below it has arrived; untaken: over the clearance, a
+    """When a search ends. step: over the clearance, a full step below it has arrived; negligible: over the clearance, a
     step below it is not taken any more, where films are dear; force: N, and so has less left
     over; share: smallest one of a step that is tried until less is left over; patience: places that may be no better
     one after the other, where forces have jumps; gap: over the clearance, a journal that is nearer to its shell and
@@ -51,7 +51,7 @@ class Search:
     share: float
     patience: int = 0
     gap: float = 0.0
-    untaken: float = 0.0
+    negligible: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -95,7 +95,7 @@ def search_rest(
         if _leaves(there, moved, search.gap):
             break
         share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
-        if (size := float(np.abs(moved).max())) < search.untaken:
+        if (size := float(np.abs(moved).max())) < search.negligible:
             return replace(here, settled=True)
         arrives = size < search.step
         while True:

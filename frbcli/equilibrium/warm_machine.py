@@ -19,7 +19,7 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
-CLOSE_ON_CELLS = replace(SEARCH, untaken=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
+CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
 APART = 1e-4  # of the speed: machines that are closer do not tell how their temperatures change
 
 

@@ -64,7 +64,7 @@ class ShellProfile(ABC):
         """What it is, as `3 lobes`."""
 
     @abstractmethod
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         """Its value and reason in a plan, of a film with a clearance in m."""
 
     @property
@@ -102,7 +102,7 @@ class LobedShell(ShellProfile):
     def words(self) -> str:
         return f"{self.count} lobes"
 
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         machined = 1e6 * clearance / (1.0 - self.preload)
         reason = f"clearance {1e6 * clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
         return f"{self.words}, preload {self.preload:g}", reason
@@ -149,7 +149,7 @@ class TabledShell(ShellProfile):
     def words(self) -> str:
         return f"a profile of {len(self.angles)} points"
 
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         least, most = (1e6 * clearance * (1.0 + f(self.depths)) for f in (min, max))
         return self.words, f"gaps of {least:.4g} to {most:.4g} um around the centred journal"
 

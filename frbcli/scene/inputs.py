@@ -31,7 +31,7 @@ def input_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
             continue
         x, time = each.values.x, each.values.time
         value = f"{each.key}: {display(min(x), each.unit)} to {display(max(x), each.unit)}"
-        span = f"{each.values.told}, {time[0]:g} to {time[-1]:g} s"
+        span = f"{each.values.origin}, {time[0]:g} to {time[-1]:g} s"
         yield "input", value, f"{span}; runs follow it, all other analyses have the largest value"
 
 

@@ -78,7 +78,7 @@ def steady_heat(
         step = np.asarray(np.linalg.lstsq(slope, -change)[0])
         left, speeds = float(np.abs(step).max()), films.speeds
         if left < SETTLED and rounds > 0:
-            return _found(model, temperatures, viscosities, clearances, films, slope)
+            return _with_losses(model, temperatures, viscosities, clearances, films, slope)
         if rounds >= ROUNDS // 2:
             step = 0.5 * change
         step *= min(1.0, FURTHEST / max(left, 1e-300))
@@ -86,7 +86,7 @@ def steady_heat(
     raise NotConverged(f"The temperatures do not settle: they still change by {left:.2g} K after {ROUNDS} rounds.")
 
 
-def _found(
+def _with_losses(
     model: HeatModel, t: Array, viscosities: Array, clearances: Array, films: FilmHeat, slope: Array
 ) -> SteadyHeat:
     gain, whole = rates(model, t, films.power, films.flow, clearances), float(films.power.sum())

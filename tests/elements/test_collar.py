@@ -158,7 +158,7 @@ def test_a_rotor_that_does_not_tilt_has_its_axis_alone() -> None:
     case = frbcli.load_case("jeffcott").with_settings(more)
     assert make_rotor(case).over_speed is None
     (element,) = ThrustElement.of(case)
-    assert "does not tilt" in element.told(site_of(case))[2]
+    assert "does not tilt" in element.plan_line(site_of(case))[2]
     point = frbcli.stability(case, [300.0]).points[0]
     assert point.axial is not None
     assert point.axial.films.load == pytest.approx(40.0, rel=1e-7)

@@ -54,18 +54,18 @@ def text_of(path: Path, meant: str, write: str) -> str:
         raise Refused(str(error), write if isinstance(error, NoText) else f"Name {meant}.") from None
 
 
-def number_table(text: str, names_told: str) -> Columns:
-    """The columns of a text by their names; names_told: the remedy for wrong names. Raises Refused."""
+def number_table(text: str, names_remedy: str) -> Columns:
+    """The columns of a text by their names; names_remedy: the remedy for wrong names. Raises Refused."""
     try:
         rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise Refused(f"cannot be read: {error}.", names_told) from None
+        raise Refused(f"cannot be read: {error}.", names_remedy) from None
     if not rows:
-        raise Refused("is empty.", names_told)
+        raise Refused("is empty.", names_remedy)
     names = [cell.strip() for cell in rows[0]]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise Refused(f'has the column "{twice}" twice.', names_told)
+        raise Refused(f'has the column "{twice}" twice.', names_remedy)
     columns: Columns = {name: [] for name in names}
     for number, row in enumerate(rows[1:], start=1):
         if len(row) != len(names):

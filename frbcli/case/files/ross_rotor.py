@@ -25,7 +25,7 @@ STEP, MOST_CYLINDERS = 0.025, 80  # of a cone: relative change of the diameter f
 DISK = ("DiskElement", "DiskElement6DoF")
 HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
 MASS = "PointMass"  # that bearings stand on
-TAKEN = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
+SUPPORTED = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
 DAMPINGS = {"mass_damping": "alpha", "stiffness_damping": "beta"}  # C = alpha M + beta K of an element
 LABELS = ("tag", "color", "scale_factor", "kwargs")
 ALWAYS = {"shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper"}
@@ -105,7 +105,7 @@ def _with_units(entries: dict[str, Any]) -> dict[str, Any]:
 
 def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
     """Tables of [[shaft]] for a shaft element."""
-    _refuse_others(element, TAKEN)
+    _refuse_others(element, SUPPORTED)
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
     if inner >= outer or inner + growth[1] >= outer + growth[0]:

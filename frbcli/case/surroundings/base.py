@@ -56,7 +56,7 @@ class Base(MachineTable):
     def turning(self) -> str:
         """What it changes with, in words."""
         if self.over_time is not None:
-            return self.over_time.told
+            return self.over_time.origin
         of = "" if self.speed is None else f" of {self.speed:g} Hz"
         return f"order {1.0 if self.order is None else self.order:g}{of}"
 

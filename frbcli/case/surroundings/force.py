@@ -68,7 +68,7 @@ class AppliedForce(MachineTable):
     def turning(self) -> str:
         """Its order, its frequency or its table in words; "" of a constant force."""
         if self.over_time is not None:
-            return self.over_time.told
+            return self.over_time.origin
         order, frequency = self.turns
         return f"order {order:g}" if order else f"{frequency:g} Hz" if frequency else ""
 

@@ -32,7 +32,7 @@ class OverTime(Model):
         return self.x, self.y or self.x
 
     @property
-    def told(self) -> str:
+    def origin(self) -> str:
         """Where it is from, in words."""
         return f"{len(self.time)} rows of {self.source}" if self.source else f"{len(self.time)} rows"
 

@@ -61,7 +61,7 @@ def limit_cycles_by_shooting(
     hopf = thresholds(shooting, rests)
     count = CycleCount(observe)
 
-    def tell(shot: Shot) -> None:
+    def record(shot: Shot) -> None:
         count(shooting.speed_Hz(shot), shot.eccentricity_max)
 
     other = other_cells(case, shooting)
@@ -72,7 +72,7 @@ def limit_cycles_by_shooting(
         if any(abs(end - begin.rest.omega) < SAME * begin.rest.omega for end in ends):
             special.append(_hopf(shooting, other, begin, None, None))
             continue
-        shots, note = _branch(shooting, begin, (slowest, fastest), asked, tell)
+        shots, note = _branch(shooting, begin, (slowest, fastest), asked, record)
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(shooting, other, begin, len(branches), shots[0] if shots else None))
@@ -80,7 +80,7 @@ def limit_cycles_by_shooting(
         branches.append(CycleBranch(len(special) - 1, points, _with_cells(flow, note, shots)))
         if with_unbalance:
             branches[-1] = whirls_of_branch(shooting, branches[-1], shots, fastest - slowest, observe)
-    response, remarks = _response(shooting, rests, (slowest, fastest), asked, tell) if with_unbalance else ((), [])
+    response, remarks = _response(shooting, rests, (slowest, fastest), asked, record) if with_unbalance else ((), [])
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -100,11 +100,11 @@ def _response(
     rests: Sequence[Rest],
     speeds: tuple[float, float],
     asked: Sequence[float],
-    tell: Callable[[Shot], None],
+    record: Callable[[Shot], None],
 ) -> tuple[tuple[CyclePoint, ...], list[str]]:
     """The synchronous response to the unbalance by falling speed, and what is to be said of it."""
     driven = shooting.with_all_unbalance
-    shots, note = synchronous_shots(driven, rests, speeds, asked, tell)
+    shots, note = synchronous_shots(driven, rests, speeds, asked, record)
     names = {TORUS: "in a torus point", FLIP: "in a flip"}
     remarks = [] if note == LEFT else [f"Synchronous response: {note}"]
     remarks += [
@@ -120,12 +120,12 @@ def _branch(
     begin: RestThreshold,
     speeds: tuple[float, float],
     asked: Sequence[float],
-    tell: Callable[[Shot], None],
+    record: Callable[[Shot], None],
 ) -> tuple[tuple[Shot, ...], str]:
     for size in FIRST_SIZES:
         first = shooting.from_rest(begin.rest, begin.number, size)
         if first is not None:
-            return follow_shots(shooting, first, speeds, asked, tell)
+            return follow_shots(shooting, first, speeds, asked, record)
     return (), "No cycle was found beside the Hopf point."
 
 

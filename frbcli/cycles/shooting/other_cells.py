@@ -142,7 +142,7 @@ def _turned(at: Array, z: Array, apart: Array) -> Array:
 
 def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> ShotError:
     """apart: z on other cells less z."""
-    spread = np.ptp([_told(own.flow, *each) for each in _places(shot)], axis=0)
+    spread = np.ptp([_quantities(own.flow, *each) for each in _places(shot)], axis=0)
     least = np.maximum(SPREAD * spread, LEAST * np.array([1.0, 1.0, *_own(own, shot)[2:]]))
     speed, frequency, *eccentricity = np.maximum(share * np.abs(apart), least)
     return ShotError(speed if shot.kind == FOLD else np.nan, frequency, np.array(eccentricity))
@@ -158,8 +158,8 @@ def _places(shot: Shot) -> list[tuple[Array, Array]]:
 
 def _mean(flow: PeriodMap, places: Sequence[tuple[Array, Array]]) -> Array:
     """z, the mean over places of the cells."""
-    return np.asarray(np.mean([_told(flow, *each) for each in places], axis=0))
+    return np.asarray(np.mean([_quantities(flow, *each) for each in places], axis=0))
 
 
-def _told(flow: PeriodMap, p: Array, displacements: Array) -> Array:
+def _quantities(flow: PeriodMap, p: Array, displacements: Array) -> Array:
     return np.array([p[1], p[0], *largest(flow.middles(displacements))])

@@ -189,7 +189,7 @@ class Shooting:
         size = len(shot.x)
         conditions = both(self.held(shot.wet), along)
         guess_x, guess_p = shot.x + length * along[:size], shot.p + length * along[size:]
-        return self._found(replace(shot, tangent=along), guess_x, guess_p, conditions)
+        return self._solved(replace(shot, tangent=along), guess_x, guess_p, conditions)
 
     def direction(self, shot: Shot, after: Shot) -> Array:
         """(N + 2,) direction of length 1 from one cycle to the next, without what they differ by in time.
@@ -205,7 +205,7 @@ class Shooting:
         share = (math.log(omega / self.unit) - shot.p[1]) / (other.p[1] - shot.p[1])
         x, p = shot.x + share * (other.x - shot.x), shot.p + share * (other.p - shot.p)
         for one in (shot, other) if share < 0.5 else (other, shot):
-            cycle = self._found(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
+            cycle = self._solved(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
             if cycle is not None:
                 return cycle
         return None
@@ -266,9 +266,9 @@ class Shooting:
             space = slow_space(asked.at, guess, start.p, self._first(guess))
         except Unreachable:
             return None
-        return self._found(replace(start, space=space), guess, start.p, conditions)
+        return self._solved(replace(start, space=space), guess, start.p, conditions)
 
-    def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
+    def _solved(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
         asked = _Asked(self, shot.wet, shot.steps)
         try:
             fixed = fixed_point(asked.at, x, p, shot.space, conditions)

@@ -16,9 +16,9 @@ from frbcli.cycles.result import CycleBranch, MissingWhirl, UnbalancedWhirl, her
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, Wet
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
 from frbcli.cycles.unbalance.synchronous import WHIRLS
-from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, taken
+from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, spaced
 
-APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
+APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are followed
 SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl that locks in nearly repeats
 RUNS = 5  # each of as many periods, as long as the whirl nearly repeats
 LAST, PER_PERIOD = 100, 32  # of them, in which a whirl is watched, and its moments in each
@@ -31,7 +31,7 @@ def whirls_of_branch(
     """A branch with its whirls. shots: of its points but the first, which is at rest; range_: of the speeds in rad/s;
     observe: see limit_cycles."""
     driven, whirls, missing = shooting.with_all_unbalance, list[UnbalancedWhirl](), list[MissingWhirl]()
-    for place in taken(branch, APART * hertz(range_)):
+    for place in spaced(branch, APART * hertz(range_)):
         if place == 0:
             continue
         point, shot = branch.points[place], shots[place - 1]

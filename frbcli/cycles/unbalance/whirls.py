@@ -50,7 +50,7 @@ def whirls_with_unbalance(diagram: LimitCycles, course: MachineCourse, observe: 
     for branch in diagram.branches:
         near: Cycle | None = None
         whirls, missing = list[UnbalancedWhirl](), list[MissingWhirl]()
-        for point in (branch.points[place] for place in taken(branch, APART * (max(speeds) - min(speeds)))):
+        for point in (branch.points[place] for place in spaced(branch, APART * (max(speeds) - min(speeds)))):
             try:
                 near = _locked(course, point, near)
             except Unreachable as why:
@@ -65,7 +65,7 @@ def whirls_with_unbalance(diagram: LimitCycles, course: MachineCourse, observe: 
     return replace(diagram, branches=tuple(branches))
 
 
-def taken(branch: CycleBranch, apart: float) -> list[int]:
+def spaced(branch: CycleBranch, apart: float) -> list[int]:
     """Places in a branch of stable cycles at some distance from each other in Hz, with those that were asked for."""
     places: list[int] = []
     for place, point in enumerate(branch.points):

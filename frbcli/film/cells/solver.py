@@ -179,17 +179,17 @@ class FilmSolver:
             solution = self._again(motion, solution, storage, closes[0])
         else:
             self._hold_gas(self.film.gaps(motion), storage, 0.0)
-            solution = self._solve(motion, self._taken(begun[0]), storage, closes[0])
+            solution = self._solve(motion, self._start_of(begun[0]), storage, closes[0])
         stages = [self._stage(solution)]
         for number in range(1, repeated + 1):
             self._before = before_upstream(solution.state.fraction, motion.omega)
-            near = self._taken(begun[number]) if number < len(begun) else solution.w
+            near = self._start_of(begun[number]) if number < len(begun) else solution.w
             refined = self._solve(motion, near, storage, closes[number])
             solution = replace(refined, iterations=solution.iterations + refined.iterations)
             stages.append(self._stage(solution))
         return replace(solution, stages=np.array(stages))
 
-    def _taken(self, stage: Array) -> Array:
+    def _start_of(self, stage: Array) -> Array:
         """(m, k) w of a stage; the gas of the states <- that of the stage."""
         w, self._states[CARRIED_GAS], self._states[TURNOVER] = stage
         return np.asarray(w)

@@ -65,9 +65,9 @@ class Rubbing:
         return rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell).power
 
     def slopes(self, motions: Array) -> Array:
-        """(k, FOUND, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
+        """(k, QUANTITIES, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
         if self.surfaces is None:
-            return np.zeros((len(motions), FOUND, COLUMNS))
+            return np.zeros((len(motions), QUANTITIES, COLUMNS))
         return rub_slopes(self.surfaces, self.film, self.clearance, motions)
 
     def standing(self, load: float) -> float:
@@ -96,15 +96,15 @@ class Rubbing:
         return math.hypot(*film.force) / size if self.surfaces is not None and size > 0.0 else 1.0
 
 
-# What is found: force on the journal in N, torques in N m on the journal and on the shell, each about its own middle
-F_X, F_Y, ON_JOURNAL, ON_SHELL, FOUND = range(5)
+# Quantities: force on the journal in N, torques in N m on the journal and on the shell, each about its own middle
+F_X, F_Y, ON_JOURNAL, ON_SHELL, QUANTITIES = range(5)
 # Columns of each: its value, and its derivatives by displacement, velocity, slip and speed of the shell
 VALUE, BY_X, BY_Y, BY_V_X, BY_V_Y, BY_SLIP, BY_SHELL, COLUMNS = range(8)
 LEAST = 1e-300  # m: eccentricity in the middle, which has no line of centres
 
 
 def rub_slopes(asperities: Asperities, f: int, clearance: float, motions: Array) -> Array:
-    """(k, FOUND, COLUMNS) of film f in motions (k, 6): displacement in m and velocity in m/s of the journal in its
+    """(k, QUANTITIES, COLUMNS) of film f in motions (k, 6): displacement in m and velocity in m/s of the journal in its
     shell, slip omega_J - omega_S and speed omega_S of the shell in rad/s. See rub of asperities.py."""
     place, rate, (slip, shell) = motions[:, :2], motions[:, 2:4], motions[:, 4:].T
     e = np.maximum(np.hypot(*place.T), LEAST)

@@ -62,7 +62,7 @@ class FilmForm:
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
-    told_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
+    error_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
     solved: ClassVar[bool] = (
         True  # whether its pressure is solved, on a mesh whose error is known
     )
@@ -170,7 +170,7 @@ class FilmForm:
         reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
         return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         """How the film of a kinematic test is computed: value and reason of a decision."""
         if is_published(case):
             return "finite volumes", PUBLISHED
@@ -182,7 +182,7 @@ class FilmForm:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
         return (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
 
-    def mesh_told(self, plan: Plan) -> str:
+    def mesh_text(self, plan: Plan) -> str:
         """The mesh of a plan in words."""
         if plan.cells is not None:
             return "{} x {} cells".format(*plan.cells)

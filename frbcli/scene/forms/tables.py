@@ -64,7 +64,7 @@ class ModalForm(FilmForm):
 
     modal: ClassVar[bool] = True
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         return self.name, f"{law.name} in a rectangular gap; it has no state"
 
 
@@ -78,7 +78,7 @@ class ShortForm(FilmForm):
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
         return SHORT_POINTS, "at which the pressure is told; the force is exact"
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         return self.name, f"{law.name} of the short bearing, set in the case; it has no state"
 
 

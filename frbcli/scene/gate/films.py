@@ -142,7 +142,7 @@ def sealed_faults(case: Case) -> Iterator[Fault]:
         at = f"{key}.ends"
         if case.film.theory == "short" and film_form(case, film, "short") is CLIPPED:
             problem = "lets a cavity reach the ends, where a short bearing clips between the pressures of open ends."
-            yield Fault(at, _told(film), None, problem, 'Write film.theory = "finite".')
+            yield Fault(at, _shown(film), None, problem, 'Write film.theory = "finite".')
         elif form.by_cells:
             yield from _enclosed(case, key, film)
 
@@ -184,10 +184,10 @@ def _enclosed(case: Case, key: str, film: FilmGeometry) -> Iterator[Fault]:
     if film.sealed < ENCLOSED and not film.supply.feeds and not case.film.bearing_model:
         problem = "encloses the oil, for nothing feeds the film: the level of its pressure is that of its filling."
         remedy = f"Give it a supply, or a share of at least {ENCLOSED:g}; runs with half-sommerfeld take any."
-        yield Fault(f"{key}.ends", _told(film), None, problem, remedy)
+        yield Fault(f"{key}.ends", _shown(film), None, problem, remedy)
 
 
-def _told(film: FilmGeometry) -> str:
+def _shown(film: FilmGeometry) -> str:
     return f"sealed = {film.sealed:g}"
 
 

@@ -99,7 +99,7 @@ def axial_heat_faults(case: Case) -> Iterator[Fault]:
         if isinstance(value, OverTime):
             problem = "changes over time, which the temperatures of the films on the pads do not follow."
             remedy = "Give one temperature, or leave [axial] out."
-            yield Fault(f"thermal.{key}", value.told, None, problem, remedy)
+            yield Fault(f"thermal.{key}", value.origin, None, problem, remedy)
 
 
 def drive_faults(case: Case) -> Iterator[Fault]:

@@ -143,7 +143,7 @@ def changes_with_speed(case: Case) -> bool:
 def element_decisions(case: Case) -> Iterator[Line]:
     """What the plan says of elements: choice, value, reason."""
     site = site_of(case)
-    return (element.told(site) for element in elements_of(case))
+    return (element.plan_line(site) for element in elements_of(case))
 
 
 def element_faults(case: Case) -> list[Fault]:

@@ -23,5 +23,5 @@ def expected_error(plan: Plan) -> ExpectedError:
     """From the tolerance of a step and the known error of the films of a plan."""
     form = plan.form
     reach = 1.0 if form.by_cells else REACH
-    force = None if form.told_by_eccentricity or not form.solved else plan.film_error
+    force = None if form.error_by_eccentricity or not form.solved else plan.film_error
     return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)

@@ -178,7 +178,7 @@ def _decisions(
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
     yield from _profile_decision(section)
-    yield Decision("film", *form.told_in_tests(case, law))
+    yield Decision("film", *form.decision_in_tests(case, law))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
     elif law.closed and bearing.ends == "free-to-air":
@@ -222,4 +222,4 @@ def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
 
 def _profile_decision(section: Section) -> list[Decision]:
     shell = section.profile
-    return [] if shell is None else [Decision(shell.key, *shell.told(section.clearance))]
+    return [] if shell is None else [Decision(shell.key, *shell.plan_entry(section.clearance))]

@@ -117,7 +117,7 @@ def _about_target(case: Case, plan: Plan) -> Decision:
         reasons.append(f"budget of {accuracy.budget:g} s")
     why = ", ".join(reasons)
     cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
-    needs += f" {asked.form.mesh_told(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
+    needs += f" {asked.form.mesh_text(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
     return Decision("target", value, f"{needs}; chosen: {own}; {why}")
 
 
