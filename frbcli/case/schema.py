@@ -234,7 +234,7 @@ class Case(Model):
 
     @property
     def given_speed(self) -> SpeedRamp | None:
-        """The speeds of a run, those that its drive is expected to reach at the most; None of a case without any."""
+        """The speeds of a run, those that its drive is expected to reach at most; None of a case without any."""
         if self.drive is None or not self.polar_inertia:
             return self.speed_ramp
         return self.drive.expected(self.polar_inertia)

@@ -1,4 +1,4 @@
-"""The columns of limit cycles: resting positions, cycles, whirls with unbalance, special points and maps."""
+"""The columns of limit cycles: static equilibria, cycles, whirls with unbalance, special points and maps."""
 
 from __future__ import annotations
 

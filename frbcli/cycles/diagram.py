@@ -1,4 +1,4 @@
-"""From resting positions and their Hopf points to a whole diagram, over the speed or another number of the case."""
+"""From static equilibria and their Hopf points to a whole diagram, over the speed or another number of the case."""
 
 from __future__ import annotations
 
@@ -54,7 +54,7 @@ class CycleCount:
 
 @dataclass(frozen=True)
 class Walk:
-    """What a diagram is computed of: the resting positions along the course of a follower, which follows the branches;
+    """What a diagram is computed of: the static equilibria along the course of a follower, which follows the branches;
     meshes: others, for the errors of cycles; unknown: why there are none."""
 
     resting: Resting
@@ -68,7 +68,7 @@ class Walk:
         return self.follower.course
 
     def value(self, motion: Cycle | Equilibrium) -> float:
-        """The number of a cycle or a resting position, in its unit."""
+        """The number of a cycle or a static equilibrium, in its unit."""
         share = motion.value if isinstance(motion, Equilibrium) else float(motion.place.y[-1])
         return share * self.course.scale
 

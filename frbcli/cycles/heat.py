@@ -192,7 +192,8 @@ class WarmSpeed(MachineCourse):
         return replace(fast, values=np.concatenate([fast.values[:1], others[largest_first(others)]]))
 
     def _warm(self, y: Array, near: Array | None = None) -> WarmMotion:
-        """The motion or the resting position y at its temperatures, see HeatOfMotions.warm; the latest one is kept."""
+        """The motion or the static equilibrium y at its temperatures, see HeatOfMotions.warm; the latest one is
+        kept."""
         if near is not None:
             return self._heat.warm(*self.harmonics(y), near)
         if self._latest is None or not np.array_equal(self._latest[0], y):
@@ -211,7 +212,7 @@ def warm_courses(
     case: Case, plan: Plan, system: System, fastest: float
 ) -> tuple[Callable[[System], WarmSpeed], RestingPosition]:
     """What makes the course of a system of a case with heat, the machine itself or that on films of another mesh, and
-    the resting position at the fastest speed in rad/s. Raises NotConverged without one."""
+    the static equilibrium at the fastest speed in rad/s. Raises NotConverged without one."""
     assert case.heat is not None
     heat = heat_of(case)
     made = np.array([case.viscosity(place.geometry) for place in film_places(case)])

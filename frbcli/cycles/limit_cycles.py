@@ -1,4 +1,4 @@
-"""Limit cycles of a case over its speed: resting positions, Hopf points, and the branches of cycles from them."""
+"""Limit cycles of a case over its speed: static equilibria, Hopf points, and the branches of cycles from them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def limit_cycles(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """Compute resting positions, Hopf points and branches of limit cycles over the speed range of a case.
+    """Compute static equilibria, Hopf points and branches of limit cycles over the speed range of a case.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def limit_cycles(
         If openings turn beside oil that a film keeps, without a speed range, for a speed outside of it, or
         with_unbalance for a case without unbalance.
     NotConverged
-        Without a resting position at the highest speed.
+        Without a static equilibrium at the highest speed.
 
     Examples
     --------
@@ -109,8 +109,8 @@ def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: fl
 
 
 def _walk(case: Case, system: System, lowest: float, fastest: float, asked: Sequence[float]) -> Walk:
-    """Resting positions and cycles up to a speed in rad/s; lowest, asked: speeds over it. Raises NotConverged without a
-    resting position there, and Unreachable."""
+    """Static equilibria and cycles up to a speed in rad/s; lowest, asked: speeds over it. Raises NotConverged without a
+    static equilibrium there, and Unreachable."""
     plan = make_plan(case)
     course, position = _courses(case, plan, system, fastest)
     own = course(system)
@@ -123,7 +123,7 @@ def _courses(
     case: Case, plan: Plan, system: System, fastest: float
 ) -> tuple[Callable[[System], MachineCourse], RestingPosition]:
     """What makes the course over the speed of a system, the machine itself or that on films of another mesh, and the
-    resting position at the fastest speed in rad/s. Raises NotConverged without one."""
+    static equilibrium at the fastest speed in rad/s. Raises NotConverged without one."""
     if case.heat is not None:
         return warm_courses(case, plan, system, fastest)
     if system.rotor.over_speed is None:

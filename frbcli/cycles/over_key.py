@@ -25,7 +25,7 @@ from frbcli.errors import NotConverged
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
-POINTS = 41  # resting positions of the diagram
+POINTS = 41  # static equilibria of the diagram
 
 
 def limit_cycles_over(
@@ -83,8 +83,7 @@ def limit_cycles_over(
 
 
 def resting_over(family: Family, lowest: float) -> Resting:
-    """Resting positions over the key, ascending, sought from the largest value on. Raises Unreachable,
-    NotConverged."""
+    """Static equilibria over the key, ascending, sought from the largest value on. Raises Unreachable, NotConverged."""
     with advised(family.case):
         near = at_rest(family.top, resting_position(family.system(1.0), family.speed))
     points = []

@@ -1,4 +1,4 @@
-"""What `limit_cycles` returns: resting positions, branches of cycles, special points; frozen."""
+"""What `limit_cycles` returns: static equilibria, branches of cycles, special points; frozen."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def hertz(omega: float) -> float:
 
 @dataclass(frozen=True)
 class RestingPoint:
-    """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
-    the clearance; ring_speeds_Hz: (R,); eigenvalues:
-    (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,) of the films, empty without heat;
-    end_eccentricity: (F,) the larger one of both ends, empty of films that do not tilt."""
+    """A static equilibrium. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
+    the clearance; ring_speeds_Hz: (R,); eigenvalues: (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,)
+    of the films, empty without heat; end_eccentricity: (F,) the larger one of both ends, empty of films that do not
+    tilt."""
 
     value: float
     speed_Hz: float
@@ -185,7 +185,7 @@ class LimitCycles(Tabular):
         return tuple(point for point in self.special if point.kind == kind and not point.synchronous)
 
     def table(self) -> Table:
-        """One row per resting position and cycle, and per whirl with unbalance, if they were asked for."""
+        """One row per static equilibrium and cycle, and per whirl with unbalance, if they were asked for."""
         from frbcli.cycles.columns import diagram_columns  # of what is declared here
 
         numbered = list(enumerate(self.branches))

@@ -41,7 +41,7 @@ class TiltingFilm:
 
 @dataclass(frozen=True)
 class RestingFilm:
-    """A film at its resting position.
+    """A film at its static equilibrium.
 
     displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
     counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m, -dF/dD and

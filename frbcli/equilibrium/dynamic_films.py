@@ -1,4 +1,5 @@
-"""Machines at rest whose films keep their oil: the dynamic stiffness of the films, and eigenvalues of machine and oil.
+"""Machines at rest whose films are mass-conserving: the dynamic stiffness of the films, and eigenvalues of machine and
+oil.
 
 The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of L Z(s) P, by nonlinear inverse iteration from the
 eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
@@ -87,9 +88,8 @@ class DynamicFilm:
 def dynamic_film(
     film: Callable[[tuple[int, int]], LinearOf], place: Array, total: float, omega: float, turns: bool = False
 ) -> DynamicFilm:
-    """A film that keeps its oil, its journal at rest at `place` (c,) in m and rad. film: on any cells, see
-    Films.linear; total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises
-    NotConverged."""
+    """A mass-conserving film, its journal at rest at `place` (c,) in m and rad. film: on any cells, see Films.linear;
+    total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises NotConverged."""
     frequencies = [share * abs(omega) for share in PROJECTED]
     lying: list[tuple[DynamicStiffness, ...]] = []
     means: list[DynamicStiffness] = []

@@ -1,11 +1,10 @@
-"""The resting position of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
+"""The static equilibrium of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
 
 The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
 rings turn with the speeds at which the torques on them balance (ring_speed.py), which follow from the places of the
 journals: they are no unknowns of their own. Films that see tilts have the rotor in all its degrees of freedom, and its
-load does not tell the force of each; there the speeds of the rings are unknowns in place of their angles.
-"""
+load does not tell the force of each; there the speeds of the rings are unknowns instead of their angles. """
 
 from __future__ import annotations
 
@@ -190,7 +189,7 @@ def _forces(
     system: System, omega: float, speeds: Array, places: Array, near: tuple[FilmForce, ...]
 ) -> tuple[FilmForce, ...]:
     """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; near: those near by,
-    from whose fields films on cells are sought, if there are any."""
+    from whose fields finite-volume films are sought, if there are any."""
     omegas, slips = (each.tolist() for each in (system.omegas(omega, speeds), system.slips(omega, speeds)))
     return tuple(
         system.force(i, place, np.zeros_like(place), omegas[i], near[i] if near else None, slips[i])

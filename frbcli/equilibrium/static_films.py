@@ -1,4 +1,4 @@
-"""The films of static results: resting positions, coefficients, stability and response all have the same ones.
+"""The films of static results: static equilibria, coefficients, stability and response all have the same ones.
 
 Gaps made of rectangles, and bearing models, have the film of a run, clipped along more lines: it has no cells, and is
 cheap. All others are solved on CELLS, more than those of a run, which has to solve them many times, and with the edge

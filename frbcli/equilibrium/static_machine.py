@@ -34,8 +34,8 @@ from frbcli.scene.planning.plan import make_plan
 
 ON_CELLS = replace(SEARCH, negligible=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
-# Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
-# law follows, those of others are exact, and a step leaves its square over the gap.
+# Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of finite-volume films lack
+# what the law follows, those of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, negligible=1e-6)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
@@ -80,7 +80,7 @@ class MachineAtRest:
 
     @property
     def modes_on_finer_films(self) -> list[tuple[complex, Complex]]:
-        """Those of the finer of two meshes, in place of the extrapolation from both."""
+        """Those of the finer of two meshes, instead of the extrapolation from both."""
         return followed(self.oscillator, [film.fine for film in self.dynamic], self.modes)
 
     def foreseen(self, omega: float) -> Array:

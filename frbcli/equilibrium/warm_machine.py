@@ -1,4 +1,4 @@
-"""The machine at a constant speed with its heat: temperatures, resting position and ring speeds together."""
+"""The machine at a constant speed with its heat: temperatures, static equilibrium and ring speeds together."""
 
 from __future__ import annotations
 

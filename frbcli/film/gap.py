@@ -177,11 +177,10 @@ class Section:
 
     width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
     far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
-    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most;
-    flow_roughness: of both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share
-    of its square exceeds that of the shell, -1 to 1; bath: height of the oil at free
-    ends over the middle of the shell, over its radius, -1 without any.
-    """
+    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at most; flow_roughness:
+    of both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share of its square
+    exceeds that of the shell, -1 to 1; bath: height of the oil at free ends over the middle of the shell, over its
+    radius, -1 without any. """
 
     radius: float
     width: float

@@ -1,4 +1,4 @@
-"""The sheet of a bearing: resting position, coefficients, power loss, flow and largest pressure of every film.
+"""The sheet of a bearing: static equilibrium, coefficients, power loss, flow and largest pressure of every film.
 
 Over the rotor speed each film rests under its static load, which comes from the rotor of the case or is given; over the
 eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Positions, loads and coefficients are

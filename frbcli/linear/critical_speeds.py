@@ -7,9 +7,8 @@ say where the response is evaluated, so that no peak falls between two speeds, a
 
 What runs are compared with (linear_critical_speeds) are modes of the rotor in half-Sommerfeld films, full wherever they
 carry: a mass-conserving film has no eight coefficients, and the stiffness of a starved film changes with time. A
-bearing model is linearised itself. Films on cells are on the coarsest mesh of static results, whose critical speeds
-differ by less than 1e-4 from those on the finest.
-"""
+bearing model is linearised itself. Finite-volume films are on the coarsest mesh of static results, whose critical
+speeds differ by less than 1e-4 from those on the finest. """
 
 from __future__ import annotations
 
@@ -307,7 +306,7 @@ def separation_margin(speed: float, operating: tuple[float, float] | None) -> fl
 
 def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
     """Critical speeds of a case in Hz, ascending, up to its highest speed and a little above; None where they are not
-    known: for floating rings, whose films whirl from low speeds on, and where no resting position is found."""
+    known: for floating rings, whose films whirl from low speeds on, and where no static equilibrium is found."""
     if rings(case):
         return None
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))

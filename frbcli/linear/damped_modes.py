@@ -84,7 +84,7 @@ class DampedModes(Tabular):
 
 
 def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
-    """Compute the damped modes of a case about its resting position at a rotor speed.
+    """Compute the damped modes of a case about its static equilibrium at a rotor speed.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     InputError
         As `stability` does.
     NotConverged
-        Where there is no resting position.
+        Where there is no static equilibrium.
 
     Examples
     --------

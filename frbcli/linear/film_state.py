@@ -67,8 +67,8 @@ class MixedFriction:
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
-    which tells what they are.
+    """One film in its static equilibrium, SI units: the fields are those of SHEET in columns.py, which tells what they
+    are.
 
     error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
     p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the

@@ -1,4 +1,5 @@
-"""Linear response to the unbalance, or to another load: the motion of a rotor in its films about the resting position.
+"""Linear response to the unbalance, or to another load: the motion of a rotor in its films about the static
+equilibrium.
 
 At each rotor speed Omega the films are the eight coefficients of stability.py, of films that keep oil those at the
 frequency Omega, and the motion q = Re(Q exp(i alpha))
@@ -11,8 +12,7 @@ Loads of the case that turn or swing once in a revolution join the unbalance, an
 harmonic load has the frequency of that load, and its phase counts from there.
 
 The motion is in proportion to the unbalance, whatever the gap: where a journal moves over more than DOUBTFUL of the gap
-that its resting position leaves, the coefficients are doubtful, and no journal moves beyond its clearance.
-"""
+that its static equilibrium leaves, the coefficients are doubtful, and no journal moves beyond its clearance. """
 
 from __future__ import annotations
 
@@ -79,11 +79,10 @@ class Response(Tabular):
     speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
     amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
     2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
-    where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the resting positions; in_films:
+    where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the static equilibria; in_films:
     (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances: (n, f) m, warm with
     heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN where it is not known.
-    excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
-    """
+    excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites. """
 
     case: Case
     speeds_Hz: Array
@@ -124,7 +123,7 @@ class Response(Tabular):
 
     @property
     def gap_share(self) -> Array:
-        """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its resting position
+        """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its static equilibrium
         leaves, 1 - eccentricity; of one that rests on an elastic shell, over the depth by which it presses it in."""
         left = np.where(self._pressed, self._eccentricity - self.case.contact.eccentricity, 1.0 - self._eccentricity)
         return np.asarray(larger_semi_axis(self.in_films) / left)
@@ -143,7 +142,7 @@ class Response(Tabular):
 
     @property
     def eccentricity_max(self) -> Array:
-        """(n, f) largest eccentricity of each journal on its orbit about its resting position; from 1 on, which no
+        """(n, f) largest eccentricity of each journal on its orbit about its static equilibrium; from 1 on, which no
         journal can have, the orbit leaves the gap."""
         turn = np.exp(2j * np.pi * np.arange(ORBIT_PLACES) / ORBIT_PLACES)
         rest = np.array([[film.displacement for film in point.films] for point in self.resting])
@@ -217,7 +216,7 @@ def response(
         Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin. Both are
         among the default speeds where these reach so far.
     after_loss : bool
-        Take the unbalance after all losses of the case, in place of that before.
+        Take the unbalance after all losses of the case, instead of that before.
 
     Returns
     -------

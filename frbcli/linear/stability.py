@@ -1,11 +1,10 @@
-"""Linear stability: resting positions, coefficients of the films, and eigenvalues.
+"""Linear stability: static equilibria, coefficients of the films, and eigenvalues.
 
-In its resting position films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
+In its static equilibrium films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
 K = -dF/dD and a damping D = -dF/dD' per bearing, and the rotor has 2 n eigenvalues: a positive real part is a motion
 that grows. Films that keep oil are linearised together with it (dynamic_films.py); K and D are then those at the
-frequency of the least damped whirl. The threshold is the lowest speed at which one of the oscillating motions, a
-whirl, begins to grow.
-"""
+frequency of the least damped whirl. The threshold is the lowest speed at which one of the oscillating motions, a whirl,
+begins to grow. """
 
 from __future__ import annotations
 
@@ -53,7 +52,7 @@ class Stability(Tabular):
     note: str
 
     def table(self) -> Table:
-        """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
+        """One row per point: speed, static equilibrium and coefficients of each film, critical eigenvalue."""
         films = max((point.films for point in self.points), key=len, default=())
         names = [film.name for film in films]
         axial = named(AXIAL, "collar", attrgetter("axial")) if self.case.axial is not None else ()
@@ -66,7 +65,7 @@ def stability(
     observe: Callable[[int, int], None] | None = None,
     threshold: bool = False,
 ) -> Stability:
-    """Compute resting positions, linear coefficients, eigenvalues, and the threshold of stability.
+    """Compute static equilibria, linear coefficients, eigenvalues, and the threshold of stability.
 
     Parameters
     ----------
@@ -83,7 +82,7 @@ def stability(
     Returns
     -------
     Stability
-        Points and threshold; a speed without a resting position gives a point that says so.
+        Points and threshold; a speed without a static equilibrium gives a point that says so.
 
     Raises
     ------

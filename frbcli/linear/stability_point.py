@@ -47,9 +47,8 @@ class StabilityPoint:
     case that has it; its temperatures stand. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the
     films, empty where they were not asked for; others: stiffness and damping (films, c, c) on other meshes, with the
     share of the difference that is the error; axial: the collar under an axial load, None without one; rotor: the
-    machine without its films, as small motions see it, None without rest. All others are empty where no resting
-    position was found; problem then says why, and is empty otherwise.
-    """
+    machine without its films, as small motions see it, None without rest. All others are empty where no static
+    equilibrium was found; problem then says why, and is empty otherwise. """
 
     speed_Hz: float
     films: tuple[RestingFilm, ...]
@@ -74,7 +73,7 @@ class StabilityPoint:
 
     @property
     def rests(self) -> bool:
-        """Whether a resting position was found."""
+        """Whether a static equilibrium was found."""
         return not self.problem
 
     @property
@@ -120,7 +119,7 @@ class StabilityPoint:
 
     @property
     def growth(self) -> float:
-        """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a resting position."""
+        """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a static equilibrium."""
         return self.critical.real
 
     def growth_of(self, number: int) -> float:

@@ -72,8 +72,8 @@ def find_threshold(
 
 
 def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
-    """Numbers of the points, with a resting position each, that decide where the threshold lies: the first one at which
-    a motion grows, after the one below it; where none grows, the one that is nearest to it."""
+    """Numbers of the points, with a static equilibrium each, that decide where the threshold lies: the first one at
+    which a motion grows, after the one below it; where none grows, the one that is nearest to it."""
     growing = next((number for number, point in enumerate(points) if point.growth > 0.0), None)
     if growing is None:
         return (int(np.argmax([point.growth for point in points])),)

@@ -162,7 +162,7 @@ def begin_past(past_now: Array, past: Array) -> None:
 
 @compiled()
 def shorter(step: float, error: float, order: float) -> float:
-    """The step to try in place of one whose error, over the tolerance, was too large or no number."""
+    """The step to try instead of one whose error, over the tolerance, was too large or no number."""
     share = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
     return step * max(SMALLEST_SHARE, share)
 

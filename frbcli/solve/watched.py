@@ -28,7 +28,7 @@ DRAG, LEAVES, FILLED, NOTES = range(4)
 class Notes(NamedTuple):
     """Records of a run beside its motion: now (n + NOTES films,) the rotor's accelerations and what is noted of its
     films, at the end of the last step, not a number before the first one; rows (rows, the same): at the output times;
-    far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
+    far_open (films,): whether the end z = 1 of the sections of finite-volume films is open."""
 
     now: Array
     rows: Array
@@ -52,7 +52,7 @@ def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) ->
 
 
 def filling(films: Any, flows: Array, f: int) -> float:
-    """The filling of the openings of film f, whose supply may give a flow at the most; of other films 1."""
+    """The filling of the openings of film f, whose supply may give a flow at most; of other films 1."""
     raise NotImplementedError
 
 

@@ -1,4 +1,4 @@
-"""The rotor speed through given points, or as it was measured: the case gets times and speeds in place of the keys
+"""The rotor speed through given points, or as it was measured: the case gets times and speeds instead of the keys
 `points` or `file`, and from, to and duration that follow from them."""
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ REMEDY = 'Write e.g. [["0 s", "0 Hz"], ["1 s", "900 Hz"]].'
 
 
 def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with times and speeds in place of speed.points and speed.file, and the faults.
+    """The tables of a case with times and speeds instead of speed.points and speed.file, and the faults.
 
     folder: that a relative path counts from.
     """

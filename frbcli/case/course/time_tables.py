@@ -1,7 +1,6 @@
 """Tables over time out of a file of a measuring instrument or of a calculation: CSV, WAV, MAT or UFF.
 
-The case gets the numbers in place of the key `file`, so that a run has all that it was made of.
-"""
+The case gets the numbers instead of the key `file`, so that a run has all that it was made of. """
 
 from __future__ import annotations
 
@@ -52,7 +51,7 @@ KINDS = {"force": FORCE, "base": ACCELERATION}  # tables of the case file that c
 
 
 def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with the numbers of each `file` over time in place of that key, and the faults.
+    """The tables of a case with the numbers of each `file` over time instead of that key, and the faults.
 
     folder: that a relative path counts from. A table whose file has faults keeps the key.
     """

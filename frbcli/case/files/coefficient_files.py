@@ -1,9 +1,8 @@
 """Coefficients of a bearing over speed out of a file: of ROSS, as `frb bearing --ross` writes it, too, or a CSV.
 
 A file of ROSS is a table of its class and tag with lists kxx to cyy in N/m and N s/m over the frequency in rad/s, as
-`BearingElement.save` writes it, TOML or JSON. The case gets the numbers in place of the key `file`, so that a run has
-all that it was made of.
-"""
+`BearingElement.save` writes it, TOML or JSON. The case gets the numbers instead of the key `file`, so that a run has
+all that it was made of. """
 
 from __future__ import annotations
 
@@ -32,7 +31,7 @@ WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or 
 
 
 def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with the numbers of each bearing's `file` in place of that key, and the faults.
+    """The tables of a case with the numbers of each bearing's `file` instead of that key, and the faults.
 
     folder: that a relative path counts from. A bearing whose file has faults keeps the key.
     """

@@ -28,9 +28,9 @@ def with_file(
     data: dict[str, Any], path: Key, joined: Callable[[str, dict[str, Any]], dict[str, Any]],
     beside: Iterable[str] = (), remedy: str = "Keep one of the two.",
 ) -> tuple[dict[str, Any], list[Breach]]:  # fmt: skip
-    """The tables of a case with what the file of one of them holds in place of its key `file`, and the fault, with
-    which it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; beside:
-    keys that the file stands in place of; remedy: where one of them is given, too."""
+    """The tables of a case with what the file of one of them holds instead of its key `file`, and the fault, with which
+    it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; beside: keys
+    that the file stands instead of; remedy: where one of them is given, too."""
     given = at(data, path)
     name, key = given.get("file") if isinstance(given, dict) else None, (*path, "file")
     if not isinstance(name, str) or not name:

@@ -45,7 +45,7 @@ UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m
 
 
 def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with shaft and disks of its rotor.file in place of that key, and its faults.
+    """The tables of a case with shaft and disks of its rotor.file instead of that key, and its faults.
 
     folder: that a relative path counts from. A [[disk]] of the case with the name of one of the file's completes it,
     e.g. by an unbalance; others come in addition. With faults the tables are returned unchanged.

@@ -11,7 +11,7 @@ from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.errors import Fault
 
 DEEPEST_KEY = 8
-ALL = "*"  # in place of an index: every table of an array
+ALL = "*"  # instead of an index: every table of an array
 
 _INDEX = re.compile(r"[0-9]{1,4}")
 

@@ -205,7 +205,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _kept(films: Mapping[str, Any], whole: float) -> Iterator[Breach]:
-    """Films that a run keeps, between times of it. whole: s that it lasts at the most."""
+    """Films that a run keeps, between times of it. whole: s that it lasts at most."""
     begin, end = (number(films, key, "s") for key in ("from", "to"))
     if begin is None or end is None:
         return

@@ -1,7 +1,7 @@
 """Curves of Hopf points and of folds in a plane of two numbers, see planes.py.
 
-Both are curves of solutions as in continuation.py, with one equation more than the resting positions or the cycles
-that lie on them. That a matrix A is singular is asked by g = 0 of
+Both are curves of solutions as in continuation.py, with one equation more than the static equilibria or the cycles that
+lie on them. That a matrix A is singular is asked by g = 0 of
 
     [A  b; c^H 0] [v; g] = [0; 1],
 

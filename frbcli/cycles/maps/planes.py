@@ -41,7 +41,7 @@ class MapPlane(ABC):
 
     @abstractmethod
     def cycle(self, y: Array) -> Array:
-        """The unknowns with the speed of the rotor over the pace in place of both numbers."""
+        """The unknowns with the speed of the rotor over the pace instead of both numbers."""
 
     @abstractmethod
     def walk(self, share: float) -> Walk:

@@ -1,5 +1,5 @@
 """A stability map: the curves of Hopf points and of folds over two numbers, the rotor speed and one of the case or two
-of the case, and where the resting position is unstable."""
+of the case, and where the static equilibrium is unstable."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class MapRow:
 @dataclass(frozen=True)
 class Growth:
     """values: (V,) of the second number; over: (S,) of the first; rate: (V, S) 1/s, of the whirl that grows fastest at
-    rest, NaN where no resting position is known."""
+    rest, NaN where no static equilibrium is known."""
 
     values: Array
     over: Array
@@ -117,8 +117,8 @@ class StabilityMap(Tabular):
 
 @dataclass(frozen=True)
 class Across:
-    """A first number of a map in place of the speed: a key from `low` to `high`, text with units, above zero, at a
-    speed of the rotor in Hz."""
+    """A first number of a map instead of the speed: a key from `low` to `high`, text with units, above zero, at a speed
+    of the rotor in Hz."""
 
     key: str
     low: str
@@ -150,7 +150,7 @@ def stability_map(
     observe : callable, optional
         Called with the number of each of them and their number.
     across : Across, optional
-        Another number, in place of the speed.
+        Another number, instead of the speed.
 
     Returns
     -------

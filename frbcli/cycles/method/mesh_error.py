@@ -3,9 +3,8 @@ mesh, from those on the own one, by Newton's method. A share of the difference i
 
 A cycle is compared with the one at the same speed, or value of the number that the branch goes over. Next to a fold the
 other films may have none there: their branch turns back before. The error is then not known. Folds are compared with
-each other, in this number, too. The error of a Hopf point follows from the eigenvalues of the resting position of the
-other films at its value, and from how the eigenvalue changes with the number.
-"""
+each other, in this number, too. The error of a Hopf point follows from the eigenvalues of the static equilibrium of the
+other films at its value, and from how the eigenvalue changes with the number. """
 
 from __future__ import annotations
 
@@ -123,8 +122,8 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
 
 
 def hopf_error(own: MachineCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
-    """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN
-    if another mesh has no resting position there. To first order in the eigenvalues on the other meshes."""
+    """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN if
+    another mesh has no static equilibrium there. To first order in the eigenvalues on the other meshes."""
     value = hopf.equilibrium.value
     errors = [(LEAST * value, LEAST * hopf.nu)]
     try:

@@ -55,7 +55,7 @@ class _Stiffening(Changing):
 
 
 def seed_cycle(resting: Equilibrium) -> Array | None:
-    """A cycle, see balance.py, at the speed of an unstable resting position; None if none was found."""
+    """A cycle, see balance.py, at the speed of an unstable static equilibrium; None if none was found."""
     course = _Stiffening(resting.machine, resting.omega)
     try:
         hopf = _stabilised(course, resting)

@@ -80,7 +80,7 @@ def synchronous_shots(
     asked: Sequence[float] = (),
     observe: Callable[[Shot], None] | None = None,
 ) -> tuple[tuple[Shot, ...], str]:
-    """The synchronous motions beside resting positions by falling speed, from the fastest one beside which such a
+    """The synchronous motions beside static equilibria by falling speed, from the fastest one beside which such a
     motion is found both ways, and why they end; the rest as for follow_shots."""
     for rest in reversed(rests):
         start = shooting.with_unbalance(rest)

@@ -1,4 +1,4 @@
-"""Limit cycles of a case whose films are on cells, over its speed: resting positions with the motions of the oil that
+"""Limit cycles of a case whose films are on cells, over its speed: static equilibria with the motions of the oil that
 films keep, Hopf points, and from each the branch of cycles by shooting."""
 
 from __future__ import annotations
@@ -47,11 +47,10 @@ def limit_cycles_by_shooting(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """As limit_cycles, for films on cells that keep their oil or whose force has kinks; speeds in rad/s, asked: those
+    """As limit_cycles, for finite-volume mass-conserving films or whose force has kinks; speeds in rad/s, asked: those
     at which cycles are computed exactly.
 
-    Raises NotConverged where no resting position is found.
-    """
+    Raises NotConverged where no static equilibrium is found. """
     begun = working_time().cpu_s
     flow = period_map(case)
     shooting = Shooting(flow, fastest)

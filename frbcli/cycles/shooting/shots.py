@@ -1,9 +1,9 @@
-"""Limit cycles and resting positions of machines with films on cells, found by shooting.
+"""Limit cycles and static equilibria of machines with finite-volume films, found by shooting.
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
-the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
-a branch by the plane across the direction of the last step (branch.py). With the unbalance the period is that of the
-rotor, T Omega = 2 pi, in place of the phase condition: the unbalance holds the motion in time.
+the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on a
+branch by the plane across the direction of the last step (branch.py). With the unbalance the period is that of the
+rotor, T Omega = 2 pi, instead of the phase condition: the unbalance holds the motion in time.
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
 its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
@@ -91,7 +91,7 @@ class Shot:
 
 @dataclass(frozen=True)
 class Rest:
-    """A resting position. x, wet: its state; omega: rad/s; displacement: (J, 2), see PeriodMap; eigenvalues: (k,) 1/s
+    """A static equilibrium. x, wet: its state; omega: rad/s; displacement: (J, 2), see PeriodMap; eigenvalues: (k,) 1/s
     of slow motions, and their states (N, k)."""
 
     x: Array
@@ -132,7 +132,7 @@ class Rest:
 
 
 class Shooting:
-    """Finds cycles and resting positions of one machine, or, where its unbalance acts, synchronous motions. unit: that
+    """Finds cycles and static equilibria of one machine, or, where its unbalance acts, synchronous motions. unit: that
     of speeds and frequencies in rad/s."""
 
     def __init__(self, flow: PeriodMap, unit: float) -> None:
@@ -158,7 +158,7 @@ class Shooting:
         return AT_REST_DIFFERENCE if self.flow.held.any() else DIFFERENCE
 
     def rest(self, near: Wet, omega: float, wider: float = 1.0) -> Rest | None:
-        """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
+        """The static equilibrium at a speed, as a fixed point of the map over half a revolution: whirls of up to the
         speed of the rotor have frequencies of their own in it. None if it does not converge. wider: factor of what
         states are disturbed by."""
         time, none, difference = math.pi / omega, np.zeros(0), wider * self.at_rest_difference
@@ -225,7 +225,7 @@ class Shooting:
         return None if cycle is None else replace(cycle, tangent=self.direction(start, cycle))
 
     def with_unbalance(self, rest: Rest) -> Shot | None:
-        """The synchronous motion at the speed of a resting position, the tangent to lower speeds; None if it is not
+        """The synchronous motion at the speed of a static equilibrium, the tangent to lower speeds; None if it is not
         found. The unbalance is raised in steps where one step does not lead there."""
         size, speed = len(rest.x), math.log(rest.omega / self.unit)
         p = np.array([math.log(2.0 * math.pi) - speed, speed])

@@ -1,5 +1,5 @@
-"""The whirls of a branch in films on cells with the unbalance: what its stable cycles of nearly half the speed lock in
-with, if a run comes to it."""
+"""The whirls of a branch in finite-volume films with the unbalance: what its stable cycles of nearly half the speed
+lock in with, if a run comes to it."""
 
 from __future__ import annotations
 

@@ -1,10 +1,9 @@
 """The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and those of
 two of its periods, see locked.py.
 
-The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, in place of the phase condition, and
+The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, instead of the phase condition, and
 the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films. A force of the
-order k acts in k times that harmonic.
-"""
+order k acts in k times that harmonic. """
 
 from __future__ import annotations
 
@@ -75,7 +74,7 @@ def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1
 
 
 def synchronous_response(follower: Synchronous, resting: Equilibrium) -> Branch | None:
-    """The response from the speed of a resting position down to the slowest one that a follower of such motions has;
+    """The response from the speed of a static equilibrium down to the slowest one that a follower of such motions has;
     None if it does not begin."""
     machine = follower.machine
     motion = np.zeros((first_harmonics(machine, 1) + 1, machine.size), dtype=complex)

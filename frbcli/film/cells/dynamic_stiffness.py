@@ -1,4 +1,4 @@
-"""The dynamic stiffness Z(s) of films that keep their oil: -F = Z(s) d for a motion d exp(s t) of the journal.
+"""The dynamic stiffness Z(s) of mass-conserving films: -F = Z(s) d for a motion d exp(s t) of the journal.
 
 F has c components, two forces and of a film that tilts two moments, d as many coordinates or one more, see LinearFilm.
 

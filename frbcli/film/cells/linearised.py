@@ -1,4 +1,4 @@
-"""A film on cells linearised about its settled state, with the oil of its cells as a state of its own.
+"""A finite-volume film linearised about its settled state, with the oil of its cells as a state of its own.
 
 With the changes w of the cells' unknowns, d of the journal's place and d' of its velocity, the balances (3.9) are
 
@@ -95,7 +95,7 @@ class LinearFilm:
 
 
 def lying(film: VolumeFilm, share: float) -> VolumeFilm:
-    """The film on cells that lie by a share of one cell further around."""
+    """The finite-volume film that lie by a share of one cell further around."""
     phi, z, height = film.grid.phi, film.grid.z, film.grid.height
     grid = volume_grid(film.section, phi + share * 2.0 * math.pi / (len(phi) - 1), z, height)
     return VolumeFilm(film.section, grid, film.law, film.scales.reference, film.edged)
@@ -132,7 +132,7 @@ def by_neighbours(stencil: Array) -> csc_matrix:
 
 
 class _SettledCells:
-    """A settled film on cells, of which the derivatives are taken."""
+    """A settled finite-volume film, of which the derivatives are taken."""
 
     def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution, weights: Array) -> None:
         """weights: see shear_weights."""

@@ -1,4 +1,4 @@
-"""Forces, torques, pressures and oil flows of a film on cells."""
+"""Forces, torques, pressures and oil flows of a finite-volume film."""
 
 from __future__ import annotations
 

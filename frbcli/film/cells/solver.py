@@ -1,4 +1,4 @@
-"""The state of one film for a motion of its journal, to round-off: for kinematic tests, resting positions and starts.
+"""The state of one film for a motion of its journal, to round-off: for kinematic tests, static equilibria and starts.
 
 Balances, derivatives and elimination are the compiled ones of the time loop. Here stands what leads Newton's method to
 a solution from afar. The law's kinks make plain Newton steps oscillate between sets of cavitated cells. A storage of w
@@ -126,9 +126,8 @@ class FilmSolver:
         of REPEATED solutions holding the oil fractions of the one before.
 
         start: field of a solution to begin from, else a full film; upwind: whether oil is carried upwind by every law.
-        Gas that goes with the oil from the start needs no solution without it before.
-        Where the supply gives a flow at the most, the openings are filled accordingly. Raises FilmUnsolved.
-        """
+        Gas that goes with the oil from the start needs no solution without it before. Where the supply gives a flow at
+        most, the openings are filled accordingly. Raises FilmUnsolved. """
         if not is_limited(self.film.section):
             return self._steady(motion, start, upwind)
 

@@ -170,7 +170,7 @@ class Films(ABC):
 
     @property
     def starving(self) -> bool:
-        """Whether a film keeps its oil and has no pressurised supply, so that its force decays."""
+        """Whether a film is mass-conserving and has no pressurised supply, so that its force decays."""
         return False
 
     def changeable(self) -> Self:

@@ -1,5 +1,5 @@
 """Outflow of a film with turning openings through its ends, as the mean over their angle: from the fields of
-film/mean_fields, by the same flows as of a film on cells. Compiled."""
+film/mean_fields, by the same flows as of a finite-volume film. Compiled."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 Before a whirl the journal moves little: a film needs few steps per revolution, and the guess of each stage is nearly
 its solution. In a whirl the journal moves through most of the gap. Where half the rotor speed comes near to the natural
-frequency of a stiff shaft, the whirl presses the journal into the shell. A film that keeps its oil and has no inflow is
+frequency of a stiff shaft, the whirl presses the journal into the shell. A mass-conserving film and has no inflow is
 never quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
 
 All numbers were measured on the shipped cases and on `jeffcott` with each cavitation law; docs/accuracy.md compares
@@ -127,7 +127,7 @@ def whirl_speed(case: Case) -> float:
 
 
 def runs_nearly_dry(case: Case) -> bool:
-    """Whether a film keeps its oil and no pressure pushes oil into it, nor draws it in."""
+    """Whether a film is mass-conserving and no pressure pushes oil into it, nor draws it in."""
     return bool(_dry_laws(case))
 
 
@@ -177,7 +177,7 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
 
     turned = shaft.eccentricity + shaft.bow
     rate = np.maximum(steps(omega, turned), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
-    if shaft.compliance and case.start.position == "centre":  # it falls to its resting position
+    if shaft.compliance and case.start.position == "centre":  # it falls to its static equilibrium
         natural = 1.0 / math.sqrt(shaft.compliance)
         left = np.exp(-FADING * natural * (times - times[0]))
         rate = np.maximum(rate, steps(natural, case.rotor.gravity * shaft.compliance * left))

@@ -5,8 +5,7 @@ What the steps of a run resolve of loads and inputs that change with time, and w
 Steps end at the rows of a table, so that each row is followed; between rows a table is a line. The samples of a run
 file show frequencies below half of their rate.
 
-The length that displacements of a machine without films are compared with, in place of a clearance.
-"""
+The length that displacements of a machine without films are compared with, instead of a clearance. """
 
 from __future__ import annotations
 

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
 
 STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
-RESTING = 3.0  # factor for a resting position, found by Newton's method
+RESTING = 3.0  # factor for a static equilibrium, found by Newton's method
 COMPILING = 36.0, 5e8  # at the first start: CPU time in s, memory in bytes
 AGAIN = 0.5  # of the loop: the run on fewer cells
 FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
-# Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a
+# Solves of a stage of a mass-conserving film, whose cells turn with it: at least, and for every cell that passes a
 # front in a step.
 KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
 # Fronts that cross cells make the local error of second order; the steps fall with the size of the cells.

@@ -99,7 +99,7 @@ class FilmForm:
         return 0.0
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
-        """CPU time in s of the first state of a run. resting: whether a resting position is sought."""
+        """CPU time in s of the first state of a run. resting: whether a static equilibrium is sought."""
         return 0.0
 
     def again_share(self) -> float:
@@ -190,7 +190,7 @@ class FilmForm:
 
 
 def cells_B(cells: tuple[int, int], films: int) -> float:
-    """Bytes of films on cells or elements (around, along)."""
+    """Bytes of finite-volume films or elements (around, along)."""
     around, along = cells
     return films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
 

@@ -115,14 +115,14 @@ def drives(case: Case) -> list[str]:
 
 
 def by_shooting(case: Case) -> bool:
-    """Whether limit cycles are found by shooting on the time loop: films keep their oil, or are on cells, where their
-    force has kinks."""
+    """Whether limit cycles are found by shooting on the time loop: films are mass-conserving, or are on cells, where
+    their force has kinks."""
     return keeps_oil(case) or (form_of(case).by_cells and not turning_openings(case))
 
 
 def turning_openings(case: Case) -> bool:
-    """Whether films on cells are tabulated as the mean over the angle of their openings: their gaps are even along the
-    axis, all solve a linear equation, and all openings turn."""
+    """Whether finite-volume films are tabulated as the mean over the angle of their openings: their gaps are even along
+    the axis, all solve a linear equation, and all openings turn."""
     if form_of(case).inclines or not all_clipped(case) or any(coupled_rings(case)):
         return False
     return all(

@@ -47,7 +47,7 @@ def supply_faults(case: Case) -> Iterator[Fault]:
 
 
 def limited_supply_faults(case: Case) -> Iterator[Fault]:
-    """Supplies that give a flow at the most, of films that are not solved so."""
+    """Supplies that give a flow at most, of films that are not solved so."""
     for at, place in _limited_films(case):
         form, oil = form_of(case), case.oil
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
@@ -94,7 +94,7 @@ def bath_faults(case: Case) -> Iterator[Fault]:
 
 
 def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:
-    """Keys of the flow of the supplies that give one at the most, and the films."""
+    """Keys of the flow of the supplies that give one at most, and the films."""
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         if math.isfinite(place.geometry.supply.largest_flow):
             yield f"{key}.supply.flow", place

@@ -70,9 +70,9 @@ class CellError:
         return float(self.along[below] ** (1.0 - share) * self.along[above] ** share)
 
 
-# Without openings, with lobes, with grooves across, with bores or pockets; films that keep their oil are carried on by
-# cells that turn with it where there are no openings, by cells at rest else.
-# Plain films of laws that keep no oil, eccentricities of 0.92 to 0.98: 1.2e-3 to 3e-3, of others up to 0.8e-3.
+# Without openings, with lobes, with grooves across, with bores or pockets; mass-conserving films are carried on by
+# cells that turn with it where there are no openings, by cells at rest else. Plain films of laws that keep no oil,
+# eccentricities of 0.92 to 0.98: 1.2e-3 to 3e-3, of others up to 0.8e-3.
 PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4}, growth=1.0)
 PLAIN_OIL = replace(PLAIN, growth=0.5)
 LOBES = CellError(4e-4, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5})

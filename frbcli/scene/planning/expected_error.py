@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from frbcli.scene.planning.planned import Plan
 
 SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
-REACH = 0.5  # usual eccentricity of a resting position, the factor of an error of the force; cells tell theirs
+REACH = 0.5  # usual eccentricity of a static equilibrium, the factor of an error of the force; cells tell theirs
 
 
 @dataclass(frozen=True)

@@ -89,7 +89,7 @@ class KinematicPlan:
 
     @property
     def on_cells(self) -> bool:
-        """Whether the force is that of a film on cells."""
+        """Whether the force is that of a finite-volume film."""
         return self.form.by_cells
 
 

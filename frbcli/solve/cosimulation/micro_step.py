@@ -23,7 +23,7 @@ from frbcli.solve.step import SMALLEST_STEP, shorter, step_after
 from frbcli.solve.tableau import Tableau
 
 # Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the
-# films keep their oil: those that do not are solved once per macro step.
+# films are mass-conserving: those that do not are solved once per macro step.
 MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMBERS, NUMBERS + 5)
 UNSOLVED_SHARE = 0.25  # of a step whose films were not solved, to be tried instead
 

@@ -44,7 +44,7 @@ def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
 
 @compiled()
 def _scale_oil(wet: Array, f: int, factor: float) -> None:
-    """keep_oil of films on cells."""
+    """keep_oil of finite-volume films."""
     if factor != 1.0:
         for layer in range(OIL, wet.shape[0]):  # oil and gas with their rates
             for i in range(wet.shape[2]):
@@ -53,8 +53,8 @@ def _scale_oil(wet: Array, f: int, factor: float) -> None:
 
 
 def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
-    """Films on cells <- pressures and law of film f at its scale, bearing models <- viscosity and clearance; tabulated
-    films are asked for scaled velocities."""
+    """Finite-volume films <- pressures and law of film f at its scale, bearing models <- viscosity and clearance;
+    tabulated films are asked for scaled velocities."""
     raise NotImplementedError
 
 

@@ -1,4 +1,4 @@
-"""The openings of a film whose supply gives a flow at the most.
+"""The openings of a film whose supply gives a flow at most.
 
 All openings of a film are one vessel. While the film takes less than the flow, they are at the pressure of the supply.
 Else their pressure falls until the film takes the flow, down to that of the cavities; where the surfaces carry away
@@ -21,7 +21,7 @@ from frbcli.film.gap import Section
 if TYPE_CHECKING:
     from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 
-RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at the most
+RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at most
 EAGER = 2.5  # what a film with an eccentric journal takes, over what a concentric one takes
 ALL = 1.0  # filling of openings at the pressure of the supply
 ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be told any closer
@@ -120,7 +120,7 @@ def _lowest(film: VolumeFilm) -> float:
 
 
 def given_flow(section: Section) -> float:
-    """The flow that the supply of a section gives at the most, in the units of its film, 1/s."""
+    """The flow that the supply of a section gives at most, in the units of its film, 1/s."""
     return section.largest_flow / (section.radius * section.width * section.clearance)
 
 
@@ -140,7 +140,7 @@ class SupplyLine(NamedTuple):
 def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
     """The line of the supply of a film, of which the oil is the state: filling' = (given - outflow) / line.
 
-    response: s; the line holds what the film may take in it at the most, so that steps as short as that are stable."""
+    response: s; the line holds what the film may take in it at most, so that steps as short as that are stable."""
     section, scales = film.section, film.scales
     if not is_limited(section):
         return SupplyLine(0.0, 0.0, 0.0)
@@ -151,5 +151,5 @@ def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
 
 
 def is_limited(section: Section) -> bool:
-    """Whether the supply of a section gives a flow at the most."""
+    """Whether the supply of a section gives a flow at most."""
     return math.isfinite(section.largest_flow)

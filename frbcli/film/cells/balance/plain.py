@@ -136,7 +136,7 @@ class CellBalances:
     def _at_faces(self, loose: Array) -> tuple[Array, Array, Array]:
         """(m, k) oil fraction at the face after each cell and its derivatives by those of this cell and the next.
 
-        loose: (m, k) oil fractions, full at the most. Beside artificial diffusion it is the mean of both."""
+        loose: (m, k) oil fractions, full at most. Beside artificial diffusion it is the mean of both."""
         if self.section.diffusion is not None:
             half = np.full_like(loose, 0.5)
             return half * (loose + np.roll(loose, -1, axis=0)), half, half

@@ -129,11 +129,11 @@ def pressure_of(film: np.record, law: Array, w: float) -> float:
     return float(state[PRESSURE])
 
 
-UPWIND = np.nan  # held in place of an oil fraction: L is 0 at that face
+UPWIND = np.nan  # held instead of an oil fraction: L is 0 at that face
 
 
 def before_upstream(theta: Array, omega: float) -> Array:
-    """(m, k) oil fraction of the cell before the upstream one of the face after each cell, full at the most.
+    """(m, k) oil fraction of the cell before the upstream one of the face after each cell, full at most.
 
     theta: (m, k); omega: of what carries the oil, its sign counts."""
     loose = np.minimum(theta, 1.0)

@@ -19,7 +19,7 @@ from frbcli.film.cells.elimination.block_cyclic import UNKNOWN_SIDES, ring_solve
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
 
-IN_GROOVE = -1  # in place of a feed hole
+IN_GROOVE = -1  # instead of a feed hole
 OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film
 
 

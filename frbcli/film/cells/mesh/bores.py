@@ -8,11 +8,11 @@ own is a sum of
 
     ln(r / a),   (r^n - a^2n / r^n) cos(n t) and sin(n t),  n = 1, 2,   (a^2 - r^2) / 4,
 
-the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have
-ln(r / a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and in place of cos(t) / r they have h^2 / 4 times
-cos(5 t) / r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells
-around the bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these
-solutions: of each two solutions P and Q,
+the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have ln(r
+/ a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and instead of cos(t) / r they have h^2 / 4 times cos(5 t) /
+r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells around the
+bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these solutions:
+of each two solutions P and Q,
 
     sum over the cells of P_i (flow of Q out of cell i) = 0.
 
