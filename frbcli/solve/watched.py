@@ -52,7 +52,7 @@ def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) ->
 
 
 def filling(films: Any, flows: Array, f: int) -> float:
-    """The filling of the openings of film f, whose supply may give a flow at most; of other films 1."""
+    """The filling of the openings of film f, below 1 only with a flow-limited supply."""
     raise NotImplementedError
 
 

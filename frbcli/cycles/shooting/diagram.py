@@ -47,8 +47,8 @@ def limit_cycles_by_shooting(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """As limit_cycles, for finite-volume mass-conserving films or whose force has kinks; speeds in rad/s, asked: those
-    at which cycles are computed exactly.
+    """As limit_cycles, for films that are mass-conserving or whose force has kinks; speeds in rad/s, asked: those at
+    which cycles are computed exactly.
 
     Raises NotConverged where no static equilibrium is found. """
     begun = working_time().cpu_s

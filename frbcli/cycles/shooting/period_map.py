@@ -1,9 +1,9 @@
 """What a time of constant speed makes of a machine with finite-volume films: the map of the time loop that runs use.
 
 The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, the filling of the openings of each
-film whose supply gives a flow at most, and of each cell of the mass-conserving films its fraction and, where the oil
-carries gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with the oil;
-what they hold is brought back over the angle that they have turned by, with cubics through four cells. The steps are of
+film with a flow-limited supply, and of each cell of the mass-conserving films its fraction and, where the oil carries
+gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with the oil; what
+they hold is brought back over the angle that they have turned by, with cubics through four cells. The steps are of
 equal length and their number is fixed, so that the map is smooth enough for differences: error control would change it
 from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is released and
 absorbed. """

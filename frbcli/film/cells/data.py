@@ -49,7 +49,7 @@ END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"),
 # between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its L, and by how
 # much more it acts along than around, see diffusion/spread.py; parameters: of its law, of a centred journal at 1 rad/s.
 # Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply` is the largest; of
-# a supply that gives a flow at most: given, line and lowest of supply_line.
+# a flow-limited supply: given, line and lowest of supply_line.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),

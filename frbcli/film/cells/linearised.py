@@ -95,7 +95,7 @@ class LinearFilm:
 
 
 def lying(film: VolumeFilm, share: float) -> VolumeFilm:
-    """The finite-volume film that lie by a share of one cell further around."""
+    """The film with its cells shifted around by a share of one cell."""
     phi, z, height = film.grid.phi, film.grid.z, film.grid.height
     grid = volume_grid(film.section, phi + share * 2.0 * math.pi / (len(phi) - 1), z, height)
     return VolumeFilm(film.section, grid, film.law, film.scales.reference, film.edged)

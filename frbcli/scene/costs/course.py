@@ -2,8 +2,8 @@
 
 Before a whirl the journal moves little: a film needs few steps per revolution, and the guess of each stage is nearly
 its solution. In a whirl the journal moves through most of the gap. Where half the rotor speed comes near to the natural
-frequency of a stiff shaft, the whirl presses the journal into the shell. A mass-conserving film and has no inflow is
-never quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
+frequency of a stiff shaft, the whirl presses the journal into the shell. A mass-conserving film without inflow is never
+quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
 
 All numbers were measured on the shipped cases and on `jeffcott` with each cavitation law; docs/accuracy.md compares
 predicted and real cost.

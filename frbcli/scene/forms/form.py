@@ -190,7 +190,7 @@ class FilmForm:
 
 
 def cells_B(cells: tuple[int, int], films: int) -> float:
-    """Bytes of finite-volume films or elements (around, along)."""
+    """Bytes of films on cells or elements (around, along)."""
     around, along = cells
     return films * (8.0 * BLOCKS * around * along**2 + CELL_B * around * along)
 

@@ -47,7 +47,7 @@ def supply_faults(case: Case) -> Iterator[Fault]:
 
 
 def limited_supply_faults(case: Case) -> Iterator[Fault]:
-    """Supplies that give a flow at most, of films that are not solved so."""
+    """Flow-limited supplies of films that do not support them."""
     for at, place in _limited_films(case):
         form, oil = form_of(case), case.oil
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))

@@ -1,6 +1,6 @@
 """Fillings of openings, and the grid of films in the loop.
 
-The filling of openings whose supply gives a flow at most, see feed.py, in one stage of the time loop. Compiled.
+The filling of openings with a flow-limited supply, see feed.py, in one stage of the time loop. Compiled.
 
 It is a state as the oil of the cells is: filling' = (given - taken) / line, so that a stage asks for filling = past +
 g filling'. What a film takes is known once its cells balance. A step changes the filling far less than the line could

@@ -60,7 +60,7 @@ from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_ga
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
 # and what leaves the solution net, see gas/carry.py; oil that artificial diffusion creates, see spread.py; and the rate
-# of the filling of openings whose supply gives a flow at most, see feed.py.
+# of the filling of openings with a flow-limited supply, see feed.py.
 INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 

@@ -1,4 +1,4 @@
-"""The openings of a film whose supply gives a flow at most.
+"""The openings of a film with a flow-limited supply.
 
 All openings of a film are one vessel. While the film takes less than the flow, they are at the pressure of the supply.
 Else their pressure falls until the film takes the flow, down to that of the cavities; where the surfaces carry away
@@ -151,5 +151,5 @@ def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
 
 
 def is_limited(section: Section) -> bool:
-    """Whether the supply of a section gives a flow at most."""
+    """Whether the supply of a section is flow-limited."""
     return math.isfinite(section.largest_flow)
