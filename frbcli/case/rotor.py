@@ -170,7 +170,7 @@ class Bow(MachineTable):
         elif not 0.0 <= self.position <= length * (1.0 + 1e-9):
             problem = f"is {display(self.position, 'm')}, not on the shaft of {display(length, 'm')}."
             yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
-        elif any(other is not self and abs(other.position - self.position) < BESIDE * length for other in case.bows):
+        elif any(other is not self and abs(other.position - self.position) < APART * length for other in case.bows):
             problem = "is, within a thousandth of the shaft, that of another one, between which no shaft bends so."
             yield Breach((*path, "position"), problem, "Keep one of the two.")
         elif self is case.bows[0] and len(bow_places(case)) < LEAST_PLACES:
@@ -178,7 +178,7 @@ class Bow(MachineTable):
             yield Breach((*path, "position"), problem, "Add a [[bow]] at another place.")
 
 
-BESIDE, LEAST_PLACES = 1e-3, 3  # of the shaft's length: places that count as one; a bow has
+APART, LEAST_PLACES = 1e-3, 3  # of the shaft's length: places that count as one; a bow has
 
 
 def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
@@ -187,7 +187,7 @@ def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
     if not any(bow.offset for bow in case.bows):
         return ()
     given = tuple((bow.position, cmath.rect(bow.offset, bow.phase)) for bow in case.bows)
-    held, near = [each.position or 0.0 for each in case.placed_bearings], BESIDE * sum(s.length for s in case.shaft)
+    held, near = [each.position or 0.0 for each in case.placed_bearings], APART * sum(s.length for s in case.shaft)
     ends = (end for end in (min(held), max(held)) if all(abs(end - place) >= near for place, _ in given))
     return *((end, 0j) for end in ends), *given
 

@@ -61,9 +61,8 @@ def follow_branch(
     observe: Callable[[Cycle], None] | None = None,
     until: Callable[[Cycle], bool] | None = None,
 ) -> Branch:
-    """The cycles from a place on, as that of a Hopf point. observe: called with each cycle;
-    until: called with each cycle, special ones too, the last one being that for which it says so.
-    """
+    """The cycles from a place on, e.g. a Hopf point. observe: called with each cycle; until: called with each cycle,
+    special ones too; the branch ends where it returns True. """
     machine = follower.machine
     place, length, strides = start, STRIDES.first, STRIDES
     cycles: list[Cycle] = []
@@ -121,7 +120,7 @@ def special_cycles(follower: Follower, before: Cycle | None, place: Place, after
         if fold is not None:
             special.append(follower.cycle(fold, FOLD, after))
     ends = sorted((place.y[-1], after.y[-1]))
-    for speed in follower.asked if not special else ():  # beside a fold there are two of them, or none
+    for speed in follower.asked if not special else ():  # next to a fold there are two of them, or none
         there = at_speed(follower, place, after.place, speed) if ends[0] < speed <= ends[1] else None
         if there is not None:
             special.append(follower.cycle(there, ASKED, after))

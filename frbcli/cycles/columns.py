@@ -235,9 +235,9 @@ def diagram_columns(
 ) -> tuple[Column, ...]:  # fmt: skip
     """The columns of a diagram in pandas: of the number of a branch, -1 for none, and one of its points.
 
-    over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
-    unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether journals tilt.
-    """
+    over: the number that is varied; films: their names; rings: their number; lines: names of the spectral lines of
+    whirls with unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether
+    journals tilt. """
     value = Column(over, "", "value of the number that is varied", _number("value"))
     whirl = Column("unbalance", "", "true of a whirl with unbalance",
                    lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip

@@ -40,7 +40,7 @@ SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf
 
 @dataclass
 class CycleCount:
-    """Counts cycles, and tells an observer their number, value and largest eccentricity."""
+    """Counts cycles and passes number, value and largest eccentricity to an observer."""
 
     observe: Observer | None
     count: int = 0
@@ -182,7 +182,7 @@ def _notes(case: Case, walk: Walk) -> list[str]:
     if all(point.stable for point in points):
         notes.append(f"No whirl begins between {between}: every small motion decays there.")
     elif not any(point.stable for point in points):
-        notes.append(f"The resting position is unstable between {between}: the whirl begins outside of the range.")
+        notes.append(f"The static equilibrium is unstable between {between}: the whirl begins outside of the range.")
     else:
         notes.append(f"No whirl begins between {between}.")
     return notes

@@ -67,7 +67,7 @@ def _sentence(cause: SpecialPoint, starts: bool, speed_Hz: float, unit: SpeedUni
     return f"the cycles end in the fold at {where}, {off} away."
 
 
-BESIDE = 0.03  # relative: range about the threshold in which its Hopf point is looked for
+SEARCH_RANGE = 0.03  # relative: range about the threshold in which its Hopf point is looked for
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
         system = make_system(case, make_plan(case))
         machine = make_machine(system, fastest)
         omega = 2.0 * math.pi * threshold_Hz
-        near = resting_curve(system, machine, (1.0 - BESIDE) * omega, (1.0 + BESIDE) * omega)
+        near = resting_curve(system, machine, (1.0 - SEARCH_RANGE) * omega, (1.0 + SEARCH_RANGE) * omega)
     except (FrbError, Unreachable):
         return None
     if not near.hopf:

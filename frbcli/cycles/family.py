@@ -46,7 +46,7 @@ class Family(Changing):
         """KEY=VALUE of a share of the largest value."""
         return f"{self.over}={share * self.high!r} {self.unit}".strip()
 
-    def beside(self, setting: str) -> Family:
+    def with_setting(self, setting: str) -> Family:
         """The machines with another setting of another key."""
         return Family(self.case, self.over, self.high, self.unit, self.speed, (setting,))
 

@@ -1,10 +1,9 @@
 """Limit cycles of a machine with heat: its temperatures are those at which the means over a period balance.
 
 Temperatures are slow: over a period they stay, and the heat that the films dissipate on the mean leaves with the oil
-and through the walls. So they follow from a motion y: T(y), by H(T, P(y, T), Q(y, T)) = 0. The equations of cycles are
-those of the machine at T(y), and how they change with y has the part of T(y) in it. Whether a cycle is stable is asked
-twice: of the motion while the temperatures stay, and of the temperatures while the motion follows them.
-"""
+and through the walls. So they follow from a motion y: T(y), by H(T, P(y, T), Q(y, T)) = 0. Cycles satisfy the equations
+of the machine at T(y); their derivatives by y include the part by T(y). A cycle is stable if both the motion (at fixed
+temperatures) and the temperatures (with the motion following) recover from a disturbance. """
 
 from __future__ import annotations
 
@@ -125,7 +124,7 @@ class HeatOfMotions:
         return rates(self.model, t, power, flow, self.base.clearances)
 
     def _gain(self, t: Array, heat: FilmHeats) -> tuple[Array, tuple[Array, Array], Array]:
-        """W that all nodes gain (n,); derivatives of that of the free ones by power and flow (free, F) of each film;
+        """W gained by all nodes (n,); derivatives of the gain of free nodes by power and flow (free, F) of each film;
         slopes of WarmMotion."""
         count, free = len(heat.power), self.free
         gain = self._rates(t, heat.power, heat.flow)

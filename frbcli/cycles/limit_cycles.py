@@ -60,7 +60,7 @@ def limit_cycles(
     Raises
     ------
     InputError
-        If openings turn beside oil that a film keeps, without a speed range, for a speed outside of it, or
+        If openings turn in a mass-conserving film, without a speed range, for a speed outside of it, or
         with_unbalance for a case without unbalance.
     NotConverged
         Without a static equilibrium at the highest speed.
@@ -83,7 +83,7 @@ def limit_cycles(
         with advised(case):
             walk = _walk(case, system, slowest / fastest, fastest, [speed / fastest for speed in asked])
     except Unreachable:
-        raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
+        raise NotConverged(f"The static equilibria could not be followed down from {hertz(fastest):.4g} Hz.") from None
     computed = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
     if case.heat is not None:
         computed = with_hopf_errors(computed, walk)

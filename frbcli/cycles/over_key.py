@@ -71,7 +71,7 @@ def limit_cycles_over(
     try:
         resting = resting_over(family, first / last)
     except Unreachable:
-        raise NotConverged(f"The resting positions could not be followed over {key}.") from None
+        raise NotConverged(f"The static equilibria could not be followed over {key}.") from None
     plan, lowest = make_plan(family.case_at(1.0)), first / last
     meshes = tuple(
         OtherMesh(Follower(family.on_mesh(number), lowest), other.share)

@@ -32,7 +32,7 @@ class DamperElement(MachineElement):
     given: Damper
 
     symbol: ClassVar[str] = "damper"
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

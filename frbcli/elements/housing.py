@@ -35,7 +35,7 @@ class HousingElement(MachineElement):
     given: Housing
     bearings: tuple[tuple[str, float], ...]
 
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

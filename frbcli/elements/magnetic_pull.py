@@ -28,7 +28,7 @@ class MagneticPullElement(MachineElement):
     given: MagneticPull
 
     arrow: ClassVar[tuple[str, str] | None] = ("M", "a magnetic pull")
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

@@ -130,7 +130,7 @@ class SpringElement(MachineElement):
     given: Spring
 
     arrow: ClassVar[tuple[str, str] | None] = ("K", "a spring or a stop")
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

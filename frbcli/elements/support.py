@@ -29,7 +29,7 @@ class SupportElement(MachineElement):
     given: Support
 
     symbol: ClassVar[str] = "spring"
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:

@@ -38,7 +38,7 @@ from frbcli.scene.machine.system import System
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
-ARM = 100.0  # clearances: torques on rings over it count beside forces, and not too much before the speeds are near
+ARM = 100.0  # clearances: torques on rings over it count next to forces, and not too much before the speeds are near
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 
 
@@ -68,16 +68,16 @@ def resting_position(
     start: Array | None = None,
     search: Search = SEARCH,
     held: HeldRotor | None = None,
-    beside: RestingPosition | None = None,
+    neighbour: RestingPosition | None = None,
 ) -> RestingPosition:
     """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
     gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand;
-    beside: a position near the start, from the fields of whose films, and with what their slopes lack, it is sought.
+    neighbour: a position near the start; its film fields and the corrections of their slopes start the search.
 
     Raises NotConverged if no start leads to one.
     """
     if system.rotor.ports:
-        return _at_ports(system, omega, start, search, beside)
+        return _at_ports(system, omega, start, search, neighbour)
     held, clearances = held or held_in_plane(system, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
@@ -92,7 +92,7 @@ def resting_position(
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
         starts = [_with_rings(system, held, omega, each) for each in starts]
-    films, lacking = ((), None) if beside is None else (beside.films, beside.lacking)
+    films, lacking = ((), None) if neighbour is None else (neighbour.films, neighbour.lacking)
     balance = partial(_balance, system, held, omega, films)
     if held.journals is not None:
         balance = partial(_whole_balance, system, held, held.journals, omega, films)
@@ -115,19 +115,19 @@ def resting_position(
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
         return _position(system, held, omega, held.shape, ())
     raise NotConverged(
-        f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
+        f"No static equilibrium at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
         f"{len(tries)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. {_remedy(system, omega)}"
     )
 
 
 def _at_ports(
-    system: System, omega: float, start: Array | None, search: Search, beside: RestingPosition | None
+    system: System, omega: float, start: Array | None, search: Search, neighbour: RestingPosition | None
 ) -> RestingPosition:
     """resting_position of a machine with ports, from the given start, the centre, and where the static load pushes each
     port over its length: a stop that nothing touches holds nothing."""
 
     def rest(flat: LinearRotor, q: Array) -> tuple[Array, RestingPosition]:
-        position = resting_position(replace(system, rotor=flat), omega, q, search, None, beside)
+        position = resting_position(replace(system, rotor=flat), omega, q, search, None, neighbour)
         return position.displacements, position
 
     starts = [] if start is None else [start]

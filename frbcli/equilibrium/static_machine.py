@@ -148,11 +148,11 @@ class StaticMachines:
         others: list[tuple[FilmsAtRest, float]] | None = None
         # what fronts of oil leave differs from speed to speed: only what the memory of the oil needs follows them
         follows = near is not None and not (remembers and (with_error or self._heat))
-        beside = near.at_rest.position if near is not None and follows and static.on_cells else None
+        neighbour = near.at_rest.position if near is not None and follows and static.on_cells else None
         if not follows and static.on_cells:  # a coarse mesh also brings the journals near to where they rest
             coarse = static.others if with_error else static.others[:1]
             start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
-        position = resting_position(static.system, omega, start, self._search, held, beside)
+        position = resting_position(static.system, omega, start, self._search, held, neighbour)
         at_rest = films_at_rest(static.system, omega, position, settled)
         if with_error and others is None:
             search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, held)
@@ -224,12 +224,12 @@ def _on_others(
     which no position is found are left out."""
     others, same = [], near is not None and len(near.others) == len(meshes)
     for number, mesh in enumerate(meshes):
-        beside, begun = None, start
+        neighbour, begun = None, start
         if near is not None and same and start is not None:
-            beside = near.others[number][0].position
-            begun = start + beside.displacements - near.at_rest.position.displacements
+            neighbour = near.others[number][0].position
+            begun = start + neighbour.displacements - near.at_rest.position.displacements
         try:
-            position = resting_position(mesh.system, omega, begun, search, held, beside)
+            position = resting_position(mesh.system, omega, begun, search, held, neighbour)
             others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
             start = start if same else position.displacements
         except NotConverged:

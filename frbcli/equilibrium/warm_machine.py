@@ -132,8 +132,8 @@ class WarmMachines:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
             start = None if resting is None else resting.displacements
-            beside = None if system.remembers else resting  # what fronts of oil leave is not that of another speed
-            resting = resting_position(system, omega, start, search, beside=beside)
+            neighbour = None if system.remembers else resting  # what fronts of oil leave is not that of another speed
+            resting = resting_position(system, omega, start, search, neighbour=neighbour)
             bodies = np.concatenate([[omega], resting.ring_speeds])
             power, flow = _film_heat(system, resting.journals, bodies)
             if self._concentric:

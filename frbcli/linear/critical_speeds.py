@@ -100,23 +100,23 @@ class SpeedModel:
     and is a cubic spline over the speeds at which they are solved."""
 
     def __init__(
-        self, rotor: LinearRotor, omegas: Sequence[float], beside: Sequence[Array], load: Load, places: Array
+        self, rotor: LinearRotor, omegas: Sequence[float], changes: Sequence[Array], load: Load, places: Array
     ) -> None:
-        """rotor: the machine without its films; omegas: ascending, in rad/s, at which they are solved; beside: what
+        """rotor: the machine without its films; omegas: ascending, in rad/s, at which they are solved; changes: what
         they add to its stiffness and its damping there, (2, n, n) each, none without films; load: by the speed in rad/s
         frequency in rad/s, and (n,) complex amplitudes in N; places: (p, 2, n) x and y of the points."""
         from scipy.interpolate import make_interp_spline  # runs, which need critical speeds alone, need not wait
 
         self._rotor, self._load, self._places, self.omegas = rotor, load, places, np.asarray(omegas, dtype=np.float64)
-        degree = min(3, len(beside) - 1)
-        self._beside = make_interp_spline(self.omegas, np.array(beside), k=degree) if degree >= 0 else None
+        degree = min(3, len(changes) - 1)
+        self._changes = make_interp_spline(self.omegas, np.array(changes), k=degree) if degree >= 0 else None
 
     def matrices(self, omega: float) -> tuple[Array, Array, Array]:
         """(n, n) mass, damping with the gyroscopic term, and stiffness at a speed in rad/s."""
         here = self._rotor.at(omega)
         stiffness, damping = here.stiffness, here.damping + omega * here.gyroscopic
-        if self._beside is not None:
-            more = self._beside(omega)
+        if self._changes is not None:
+            more = self._changes(omega)
             stiffness, damping = stiffness + more[0], damping + more[1]
         return here.mass, damping, stiffness
 
@@ -156,7 +156,7 @@ class SpeedModel:
         low, high = float(self.omegas[0]), float(self.omegas[-1])
         if self.frequency(low) == self.frequency(high):
             return np.zeros(0, dtype=complex)  # a load of a frequency of its own: no mode crosses it but by its change
-        if self._beside is None and self._rotor.over_speed is None:
+        if self._changes is None and self._rotor.over_speed is None:
             roots = self._poles_near(0.5 * (low + high), 0.5 * (high - low))
         else:
             edges = self.omegas if len(self.omegas) < 4 else self.omegas[::2]
@@ -220,8 +220,8 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
     undamped = np.array([model.half_width(pole) <= UNDAMPED * pole.real for pole in poles.tolist()], dtype=bool)
     near_axis = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
     around = poles[~undamped, None].real + np.abs(poles[~undamped, None].imag) * WIDTHS
-    beside = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))
-    grid = np.unique(np.concatenate([np.linspace(low, high, PLACES), model.omegas, around.ravel(), beside.ravel()]))
+    close = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))
+    grid = np.unique(np.concatenate([np.linspace(low, high, PLACES), model.omegas, around.ravel(), close.ravel()]))
     grid = grid[(grid >= low) & (grid <= high)]
     sizes = model.amplitudes(grid)
     clear = (np.abs(grid[:, None] - poles[undamped].real) > 10.0 * CLOSE * grid[:, None]).all(axis=1)

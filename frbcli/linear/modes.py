@@ -239,7 +239,7 @@ def _check_own(case: Case) -> None:
         keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
         key, kind = next((key, bearing.kind) for key, bearing in keyed if bearing in resting)
         what = "films" if case.bearings else "balls"
-        problem = f"has {what}, whose stiffness follows from the resting position."
+        problem = f"has {what}, whose stiffness follows from the static equilibrium."
         raise InputError(case.name or "case", (Fault(f"{key}.kind", kind, None, problem, remedy),))
     for element in GivenCoefficients.of(case):
         k = element.linear.stiffness

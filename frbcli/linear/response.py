@@ -248,7 +248,7 @@ def response(
     system, points = stability_points(case, asked, observe, frequency, machines)
     resting = [point for point in points if point.rests]
     if not resting:
-        problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
+        problem = f"has no static equilibrium at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise input_error(case.name or "case", "speed", "", problem, "Choose other speeds.")
 
     def solved(speeds: Sequence[float]) -> list[StabilityPoint]:
@@ -380,16 +380,16 @@ def critical_speeds_of(
 def _model(points: Sequence[StabilityPoint], excitation: str, other: int | None = None) -> SpeedModel:
     """The response between points, on their own films or on another mesh, by its number."""
     rotors = [point.rotor for point in points if point.rotor is not None]
-    base, beside = rotors[0], []
+    base, changes = rotors[0], []
     for point, rotor in zip(points, rotors, strict=True) if points[0].films else ():
         omega = TURN * point.speed_Hz
         coefficients = coefficients_of(point.films) if other is None else point.others[other][:2]
         _, damping, stiffness = linearised(rotor, omega, *coefficients)
         here = base.at(omega)
-        beside.append(np.array([stiffness - here.stiffness, damping - here.damping - omega * here.gyroscopic]))
+        changes.append(np.array([stiffness - here.stiffness, damping - here.damping - omega * here.gyroscopic]))
     omegas = [TURN * point.speed_Hz for point in points]
     places = np.array([place for _, place in base.points])
-    return SpeedModel(base, omegas, beside, lambda omega: excited(base, omega, excitation), places)
+    return SpeedModel(base, omegas, changes, lambda omega: excited(base, omega, excitation), places)
 
 
 def _shares(points: Sequence[StabilityPoint]) -> list[tuple[int, float]]:

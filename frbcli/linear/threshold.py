@@ -50,7 +50,7 @@ def find_threshold(
     becomes stable once more."""
     resting = [point for point in sweep if point.rests]
     if not resting:
-        return None, "No threshold: there is no resting position in the whole range of speeds."
+        return None, "No threshold: there is no static equilibrium in the whole range of speeds."
     slowest, fastest = resting[0], resting[-1]
     unit = case.speed_unit
     lowest, highest = unit.words(slowest.speed_Hz), unit.words(fastest.speed_Hz)
@@ -63,7 +63,7 @@ def find_threshold(
         return None, f"{STABLE}: a threshold, if there is one, lies above {highest}."
     if above == 0:
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
-        beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
+        beyond = "" if slowest is sweep[0] else " Below it there is no static equilibrium."
         return None, f"{unstable} {lowest}.{beyond}{_stable_again(resting, unit)}"
     near = resting[max(above - 2, 0) : above + 2]
     guess = interpolated_root([point.speed_Hz for point in near], [point.growth for point in near])

@@ -161,7 +161,7 @@ def settled(
                 return position
             q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
     name = rotor.ports[0].name.replace("_", " ")
-    raise reason or NotConverged(f"No resting position: the {name} does not settle. Start a run in the centre.")
+    raise reason or NotConverged(f"No static equilibrium: the {name} does not settle. Start a run in the centre.")
 
 
 def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -> LinearRotor:

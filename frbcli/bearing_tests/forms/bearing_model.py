@@ -57,7 +57,7 @@ def model_forces(case: Case, plan: KinematicPlan, motions: list[Motion]) -> list
 
     def force(motion: Motion) -> FilmForce:
         place, rate = c * np.array(motion.d), c * np.array(motion.v)
-        return rubbing.beside(evaluate(film, c, place, rate, motion.omega), place, rate, motion.omega)
+        return rubbing.with_summits(evaluate(film, c, place, rate, motion.omega), place, rate, motion.omega)
 
     return [force(motion) for motion in motions]
 

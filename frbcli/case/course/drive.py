@@ -185,7 +185,7 @@ class Drive(MachineTable):
             yield Breach(("rotor", "polar_inertia"), "is missing; [drive] turns it.", remedy)
             return
         if self.points is not None and "torque" in self.model_fields_set:
-            yield Breach((*path, "torque"), "is given beside points.", "Keep one of the two.")
+            yield Breach((*path, "torque"), "is given with points.", "Keep one of the two.")
         if self.end is not None and self.end <= self.start:
             problem = f"is {display(self.end, SPEED)}, not above the start at {display(self.start, SPEED)}."
             yield Breach((*path, "to"), problem, "Raise it, or leave it out.")

@@ -30,7 +30,7 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
         return data, []
     given = [key for key in ("points", "file", TIMES) if key in speed]
     if len(given) > 1:
-        return data, [Breach(("speed", given[0]), f"is given beside {given[1]}.", "Keep one of them.")]
+        return data, [Breach(("speed", given[0]), f"is given with {given[1]}.", "Keep one of them.")]
     try:
         written = _written(speed, folder)
         times, speeds = (_column(each, unit) for each, unit in zip(written, ("s", SPEED), strict=True))
@@ -51,7 +51,7 @@ def _differs(key: str, given: object, follows: float) -> Breach | None:
             return None
     except ValueFault:
         pass
-    problem = "is given beside points or a file, which it follows from."
+    problem = "is given with points or a file, which it follows from."
     return Breach(("speed", key), problem, "Leave it out, or set the whole table: speed = { from, to, duration }.")
 
 

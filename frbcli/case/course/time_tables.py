@@ -255,7 +255,7 @@ def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
         def numbers(name: str, kept: dict[str, Any], wanted: TableKind = wanted) -> dict[str, Any]:
             if kept:
-                raise Refused("is given beside other keys.", "Keep the file alone.")
+                raise Refused("is given with other keys.", "Keep the file alone.")
             return {"source": name, **read_table(folder / name, wanted)}
 
         data, faults = with_file(data, path, numbers)

@@ -42,8 +42,8 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
     breaches = list[Breach]()
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
-            beside = ("stiffness", "damping", "mass", "over_speed")
-            data, faults = with_file(data, path, joined, beside, "Keep the file, or the coefficients themselves.")
+            excluded = ("stiffness", "damping", "mass", "over_speed")
+            data, faults = with_file(data, path, joined, excluded, "Keep the file, or the coefficients themselves.")
             breaches += faults
     return data, breaches
 

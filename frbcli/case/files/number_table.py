@@ -26,17 +26,17 @@ class Refused(Exception):
 
 def with_file(
     data: dict[str, Any], path: Key, joined: Callable[[str, dict[str, Any]], dict[str, Any]],
-    beside: Iterable[str] = (), remedy: str = "Keep one of the two.",
+    excluded: Iterable[str] = (), remedy: str = "Keep one of the two.",
 ) -> tuple[dict[str, Any], list[Breach]]:  # fmt: skip
     """The tables of a case with what the file of one of them holds instead of its key `file`, and the fault, with which
-    it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; beside: keys
-    that the file stands instead of; remedy: where one of them is given, too."""
+    it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; excluded: keys
+    that the file replaces; remedy: where one of them is given, too."""
     given = at(data, path)
     name, key = given.get("file") if isinstance(given, dict) else None, (*path, "file")
     if not isinstance(name, str) or not name:
         return data, []
-    if both := [other for other in beside if other in given]:
-        return data, [Breach(key, f"is given beside {' and '.join(both)}.", remedy)]
+    if both := [other for other in excluded if other in given]:
+        return data, [Breach(key, f"is given with {' and '.join(both)}.", remedy)]
     try:
         table = joined(name, {other: value for other, value in given.items() if other != "file"})
     except Refused as fault:

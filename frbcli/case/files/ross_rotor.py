@@ -55,7 +55,7 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
     if rotor.get("kind") not in OF_SECTIONS or not isinstance(name, str) or not name:
         return data, []
     if "shaft" in data:
-        return data, [Breach(KEY, "is given beside [[shaft]].", "Keep one of the two.")]
+        return data, [Breach(KEY, "is given with [[shaft]].", "Keep one of the two.")]
     try:
         shaft, disks = _rotor(ross_elements(folder / name), _says_what_carries(data))
     except Refused as fault:

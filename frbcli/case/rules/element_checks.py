@@ -71,7 +71,7 @@ def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     given = [key for key in GIVEN if key in bearing]
     if "over_speed" in bearing:
         if given:
-            problem = f"is given beside {' and '.join(given)}."
+            problem = f"is given with {' and '.join(given)}."
             yield Breach((*path, "over_speed"), problem, "Keep the table over speed, or the constant coefficients.")
         yield from _over_speed((*path, "over_speed"), table(bearing, "over_speed"))
     elif not given and "file" not in bearing:
@@ -86,7 +86,7 @@ def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     angle, clearance = "contact_angle" in bearing, "radial_clearance" in bearing
     if angle == clearance:
-        problem = "is given beside radial_clearance, from which it follows." if angle else "is missing."
+        problem = "is given with radial_clearance, from which it follows." if angle else "is missing."
         yield Breach((*path, "contact_angle"), problem, 'Keep one: contact_angle = "15 deg", or radial_clearance.')
     yield from _preload(path, bearing, angle)
     ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))

@@ -94,7 +94,7 @@ def _profile(
 ) -> Iterator[Breach]:
     """A table of gaps over one turn, none of which is less than the clearance."""
     if "lobes" in film:
-        yield Breach(path, "is given beside lobes.", "Keep one of the two.")
+        yield Breach(path, "is given with lobes.", "Keep one of the two.")
     try:
         angles, gaps = zip(*PROFILE.validate_python(film["profile"]), strict=True)
     except ValidationError:

@@ -76,7 +76,7 @@ class AppliedForce(MachineTable):
         if not node_at(case, self.at):
             yield Breach((*path, "at"), *no_place(case, self.at))
         if self.order is not None and self.frequency is not None:
-            yield Breach((*path, "frequency"), "is given beside order.", "Keep one of the two.")
+            yield Breach((*path, "frequency"), "is given with order.", "Keep one of the two.")
         for key in ("order", "frequency"):
             if getattr(self, key) == 0.0:
                 yield Breach((*path, key), "is 0.", "Leave it out: the force is then constant.")

@@ -141,7 +141,7 @@ def _rigid(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
 def _modal(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
     for key in RIGID:
         if getattr(housing, key) not in (None, ()):
-            yield Breach((*path, key), "is given beside modes.", "Keep the keys of a rigid housing, or its modes.")
+            yield Breach((*path, key), "is given with modes.", "Keep the keys of a rigid housing, or its modes.")
     carried = (SYMMETRIC_PLACE,) if case.rotor.symmetric else tuple(bearing.name for bearing in case.placed_bearings)
     known = {each.place for each in housing.masses}
     for number, mode in enumerate(housing.modes):

@@ -54,9 +54,9 @@ def no_place(case: Case, at: str) -> tuple[str, str]:
 
 def table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str, ...]) -> Iterator[Breach]:
     """Rules of a table over time beside the other keys that say how a load changes."""
-    beside = [key for key in others if key in given.model_fields_set]
-    if beside:
-        yield Breach((*path, beside[0]), "is given beside file.", "Keep one of the two.")
+    extra = [key for key in others if key in given.model_fields_set]
+    if extra:
+        yield Breach((*path, extra[0]), "is given with file.", "Keep one of the two.")
     problem = over_time_problem(table.time, *table.both)
     if problem:
         yield Breach((*path, "over_time"), problem, "Order its rows by rising times.")

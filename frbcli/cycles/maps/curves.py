@@ -9,8 +9,7 @@ which is regular on the curve if b and c are near to the vectors that A has no p
 Bifurcations of Dynamical Equilibria, 2000). Of a Hopf point A = 1 - T_1 (dg/du + i nu dg/du' + kappa), as small as the
 films; of a fold, the derivative of the harmonic balance by the motion and its frequency at a constant speed.
 
-The unknowns end with both numbers over their largest values; that of the speed is the pace.
-"""
+The unknowns end with both numbers over their largest values, which for the speed is the pace. """
 
 from __future__ import annotations
 
@@ -133,7 +132,7 @@ def _nearly_null(matrix: Array) -> Array:
     """The unit vector of which a nearly singular matrix makes least, by inverse iteration."""
     factors = lu_factor(matrix)
     vector = np.ones(len(matrix))
-    for side in (1, 0, 1, 0):  # of the transposed matrix and of its own: that of the smallest singular value
+    for side in (1, 0, 1, 0):  # of the transposed matrix and of its own, for the smallest singular value
         vector = lu_solve(factors, vector, trans=side)
         vector /= np.linalg.norm(vector)
     return np.asarray(vector)

@@ -38,7 +38,7 @@ from frbcli.html import Tabular
 BAUTIN, CUSP = "bautin", "cusp"
 ACROSS = 200  # values of the first number at which the growth at rest is evaluated
 KNOWN = 4e-3  # distance in the plane, over its size, and of the frequency: a point lies on a curve that is known
-SMALL = 0.04  # amplitude over the clearance below which a curve of folds has come to that of Hopf points
+SMALL = 0.04  # amplitude over the clearance below which a curve of folds has reached the curve of Hopf points
 SHARP = 1e-6  # of a step: how closely a cusp or a change of the criticality is located
 MET = "It meets the curve of Hopf points."
 
@@ -219,7 +219,7 @@ def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
     try:
         walk = plane.walk(share)
     except (NotConverged, Unreachable) as error:
-        return MapRow(value, (), str(error) or "The resting positions could not be followed.")
+        return MapRow(value, (), str(error) or "The static equilibria could not be followed.")
     special: list[SpecialPoint] = []
     for number, hopf in enumerate(walk.resting.hopf):
         here = hopf.equilibrium

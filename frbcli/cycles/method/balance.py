@@ -109,7 +109,7 @@ def loads_along(machine: Machine, motion: Complex, nu: float, omega: float) -> t
 
 
 def left_out(machine: Machine, y: Array) -> float:
-    """What the harmonics beyond those of y would have: the largest that one of the next four gets from the loads."""
+    """Largest amplitude that the loads give to one of the four harmonics after the last one of y."""
     c, h = machine.size, (len(y) - 2) // machine.size // 2
     nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
     motion = unpacked(y[:-2], c)

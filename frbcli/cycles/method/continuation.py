@@ -171,9 +171,9 @@ def located(
     tolerance: float,
     known: Mapping[float, float] = MappingProxyType({}),
 ) -> Place | None:
-    """The place within a step of `length` from one at which a number that is told of places changes its sign, known to
-    a length `tolerance` along the tangent. known: the number at some lengths. None where it does not change its sign,
-    or the curve cannot be followed."""
+    """The place within a step of `length` from one at which `criterion` changes its sign, known to a length `tolerance`
+    along the tangent. known: the criterion at some lengths. None where it does not change its sign, or the curve cannot
+    be followed."""
     from scipy.optimize import brentq
 
     places: dict[float, Place | None] = {0.0: place}

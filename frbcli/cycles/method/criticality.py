@@ -46,7 +46,7 @@ class Lyapunov:
 
     @property
     def sign(self) -> int:
-        """1: subcritical, -1: supercritical, 0: that cannot be told."""
+        """1: subcritical, -1: supercritical, 0: uncertain."""
         real = self.value.real
         return 0 if abs(real) <= self.uncertainty else 1 if real > 0.0 else -1
 

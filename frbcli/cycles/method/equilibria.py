@@ -117,7 +117,7 @@ def resting_along(course: MachineCourse, near: Array, lowest: float, highest: fl
         places[-1] = end
     else:
         lost = f"{places[-1].y[-1] * course.scale:.4g} {course.unit}".rstrip()
-        note = f"The resting positions could not be followed below {lost}."
+        note = f"The static equilibria could not be followed below {lost}."
     points = tuple(equilibrium(course, place) for place in reversed(places))
     return Resting(points, hopf_points(course, points), note)
 

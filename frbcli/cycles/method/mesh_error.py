@@ -75,7 +75,7 @@ def why_no_error(plan: Plan) -> str:
         return ""
     if plan.form.solved:
         return f"{UNKNOWN} means over the angle of openings that turn are tabulated, and others would cost as much."
-    return f"{UNKNOWN} that of a bearing model added from Python is not known."
+    return f"{UNKNOWN} the error of a bearing model added from Python is not known."
 
 
 Seek = Callable[[Equations, Place], Place | None]
@@ -122,8 +122,8 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
 
 
 def hopf_error(own: MachineCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
-    """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN if
-    another mesh has no static equilibrium there. To first order in the eigenvalues on the other meshes."""
+    """The errors of a Hopf point: of the value of its course and of its frequency in rad/s, NaN if another mesh has no
+    static equilibrium there. To first order in the eigenvalues on the other meshes."""
     value = hopf.equilibrium.value
     errors = [(LEAST * value, LEAST * hopf.nu)]
     try:
@@ -158,7 +158,7 @@ def _found_again(own: Follower, followers: Sequence[Follower], cycle: Cycle) -> 
 
 
 def _in_stages(seek: Seek, here: Equations, there: Equations, near: Place, machine: Machine) -> Place | None:
-    """The sought place on other films. Films that differ much, such as those of two theories, are changed into each
+    """The sought place on other films. Films that differ much, such as films of two theories, are changed into each
     other in stages."""
     for stages in (1, STAGES):
         place: Place | None = near

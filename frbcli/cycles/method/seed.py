@@ -1,8 +1,7 @@
 """A cycle to begin with where a course has no Hopf point: the rotor whirls at all of its values.
 
-Its films get springs and dashpots beside them (machine.py) in the share a. With enough of them the rotor rests; as a
-falls a whirl is born at a Hopf point in a, and its cycles are followed to a = 0.
-"""
+Springs and dashpots act parallel to its films (machine.py) in the share a. With enough of them the rotor rests; as a
+falls a whirl is born at a Hopf point in a, and its cycles are followed to a = 0. """
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ MOST = 50.0  # share up to which springs and dashpots are added
 
 
 class _WithoutMultipliers(FoldFollower):
-    """Follows cycles as closely as those of a diagram, without their multipliers and past folds."""
+    """Follows cycles as closely as for a diagram, but without multipliers and past folds."""
 
     tail = Follower.tail
 
@@ -34,7 +33,7 @@ class _WithoutMultipliers(FoldFollower):
 
 
 class _Stiffening(Changing):
-    """The share of springs and dashpots beside the films of a machine, at a speed of its rotor in rad/s."""
+    """The share of springs and dashpots parallel to the films of a machine, at a speed of its rotor in rad/s."""
 
     def __init__(self, machine: Machine, omega: float) -> None:
         super().__init__(lambda share: replace(machine, stiffened=share), omega)

@@ -7,9 +7,8 @@ For a harmonic u_k exp(i k nu t) and the loads g_k of the films,
     u_k = T_k (g_k + kappa_k u_k) + rest (k = 0),      T_k = P Z_k^-1 P^T m,
     Z_k = K - (k nu)^2 M + i k nu (D + Omega G) + P^T m kappa_k P,
 
-is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot beside each film, added on both
-sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies.
-"""
+is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot parallel to each film, added on
+both sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies. """
 
 from __future__ import annotations
 
@@ -33,7 +32,7 @@ from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
 
-NEAR = 0.1  # eccentricity at which the dashpots beside the films are taken from these
+NEAR = 0.1  # eccentricity at which the dashpots parallel to the films are taken from these
 
 
 class OutOfGap(Unreachable):

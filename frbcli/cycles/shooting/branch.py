@@ -80,8 +80,8 @@ def synchronous_shots(
     asked: Sequence[float] = (),
     observe: Callable[[Shot], None] | None = None,
 ) -> tuple[tuple[Shot, ...], str]:
-    """The synchronous motions beside static equilibria by falling speed, from the fastest one beside which such a
-    motion is found both ways, and why they end; the rest as for follow_shots."""
+    """The synchronous motions near static equilibria by falling speed, from the fastest one near which such a motion is
+    found both ways, and why they end; the rest as for follow_shots."""
     for rest in reversed(rests):
         start = shooting.with_unbalance(rest)
         if start is None:
@@ -91,7 +91,7 @@ def synchronous_shots(
             return down, note
         up, end = follow_shots(shooting, replace(start, tangent=-start.tangent), speeds, asked, observe)
         return (*reversed(up[1:]), *down), " ".join(dict.fromkeys((end, note)))
-    return (), "No synchronous motion was found beside a resting position."
+    return (), "No synchronous motion was found near a static equilibrium."
 
 
 def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:

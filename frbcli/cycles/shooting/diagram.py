@@ -36,7 +36,7 @@ from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
 HELD = 0.05  # error of the trivial multiplier from which on it is stated
-FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
+FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle next to a Hopf point
 
 
 def limit_cycles_by_shooting(
@@ -56,7 +56,7 @@ def limit_cycles_by_shooting(
     shooting = Shooting(flow, fastest)
     rests = resting(shooting, slowest, fastest)
     if not rests:
-        raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
+        raise NotConverged(f"No static equilibrium was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
     hopf = thresholds(shooting, rests)
     count = CycleCount(observe)
 
@@ -125,7 +125,7 @@ def _branch(
         first = shooting.from_rest(begin.rest, begin.number, size)
         if first is not None:
             return follow_shots(shooting, first, speeds, asked, record)
-    return (), "No cycle was found beside the Hopf point."
+    return (), "No cycle was found next to the Hopf point."
 
 
 def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
@@ -144,7 +144,7 @@ def _notes(
     shooting: Shooting, other: OtherCells | None, rests: Sequence[Rest], hopf: Sequence[RestThreshold]
 ) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
-    kept = "keep their oil, on" if shooting.flow.held.any() else "are on"
+    kept = "are mass-conserving, on" if shooting.flow.held.any() else "are on"
     notes = [
         f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
         f"with the error of the cells; multipliers are known to 5e-3. {_errors_of(other)}"

@@ -51,7 +51,7 @@ from frbcli.solve.time_loop import advance
 STEPS_PER_REVOLUTION = 100
 TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
-PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
+PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle after the first, in lengths of a cell
 SAMPLES = 256  # moments at which displacements are evaluated
 MOST_STEPS = 10**6
 
@@ -60,7 +60,7 @@ MOST_STEPS = 10**6
 class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
     angle 0; content: (n, m, k) oil fractions of the fields of cells, and behind them, where oil carries gas, their free
-    gas over the oil; rate: those of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
+    gas over the oil; rate: of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
     openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried along as its
     guess."""
 
@@ -106,7 +106,7 @@ class PeriodMap:
 
     @property
     def slow(self) -> int:
-        """How many numbers of a state, which stand before those of the oil, belong to the rotor and to fillings."""
+        """How many numbers of a state belong to the rotor and to fillings; the numbers of the oil follow them."""
         return 2 * self.system.rotor.size - self.system.ring_count + int(np.count_nonzero(self.limited))
 
     @property
@@ -128,12 +128,12 @@ class PeriodMap:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Further PLACES of the cells at the start of a cycle, which matter where cells turn; with the unbalance they
-        pass all places beside the motion within a period."""
+        """Further PLACES of the cells at the start of a cycle, which matter where cells turn; with the unbalance the
+        cells pass all places within a period."""
         return PLACES if self.turned.any() and self.driven == 0.0 else ()
 
     def middles(self, d: Array) -> Array:
-        """(..., F, 2) displacements in the middle of the films, of those of the journals (..., J, 2)."""
+        """(..., F, 2) displacements in the middle of the films, from displacements of the journals (..., J, 2)."""
         return np.asarray(d.reshape(*d.shape[:-2], self.system.films.count, -1, 2).mean(axis=-2))
 
     def at_ends(self, eccentricities: Array) -> Array:
@@ -278,7 +278,7 @@ class PeriodMap:
 
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
-    """The map of a case whose films are all on cells. cells: (around, along), default those of its plan."""
+    """The map of a case whose films are all on cells. cells: (around, along), default: the cells of its plan."""
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
@@ -326,7 +326,7 @@ def resampled(fields: Array, shape: tuple[int, ...]) -> Array:
     for axis in (1, 2):
         count, wanted = fields.shape[axis], shape[axis]
         at = (np.arange(wanted) + 0.5) * count / wanted - 0.5
-        at = at if axis == 1 else np.clip(at, 0.0, count - 1.0)  # around the last cell lies beside the first
+        at = at if axis == 1 else np.clip(at, 0.0, count - 1.0)  # around the last cell lies next to the first
         low = np.floor(at).astype(int)
         share = (at - low).reshape(-1, *(1,) * (fields.ndim - axis - 1))
         below, above = (np.take(fields, index % count, axis) for index in (low, low + 1))

@@ -51,7 +51,7 @@ def resting(shooting: Shooting, slowest: float, fastest: float) -> list[Rest]:
 
 
 def settled(shooting: Shooting, omega: float) -> Rest | None:
-    """The static equilibrium next to that of films whose oil is at rest, too; None if none is found."""
+    """The static equilibrium near the one with the oil at rest, too; None if none is found."""
     system = shooting.flow.system
     try:
         static = resting_position(system, omega)
@@ -61,7 +61,7 @@ def settled(shooting: Shooting, omega: float) -> Rest | None:
 
 
 def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
-    """The Hopf points between static equilibria, of whirls that begin or cease to grow, others may grow beside them."""
+    """The Hopf points between static equilibria, of whirls that begin or cease to grow; other whirls may grow there."""
     return [
         located(shooting, low, high, number)
         for low, high in itertools.pairwise(rests)

@@ -1,14 +1,13 @@
 """Limit cycles and static equilibria of machines with finite-volume films, found by shooting.
 
-A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
-the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on a
-branch by the plane across the direction of the last step (branch.py). With the unbalance the period is that of the
-rotor, T Omega = 2 pi, instead of the phase condition: the unbalance holds the motion in time.
+A cycle is a fixed point of the map of the time loop over its period (period_map.py). Besides the state x, the period
+and the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on a
+branch by the plane across the direction of the last step (branch.py). With unbalance the phase condition is replaced by
+T Omega = 2 pi, the period of the rotor: the unbalance holds the motion in time.
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
-its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
-those with cells in several places; how far these lie apart is part of the error of the cells.
-"""
+its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore stated as the mean over
+several places of the cells; the scatter of these is part of the error of the cells. """
 
 from __future__ import annotations
 
@@ -132,15 +131,15 @@ class Rest:
 
 
 class Shooting:
-    """Finds cycles and static equilibria of one machine, or, where its unbalance acts, synchronous motions. unit: that
-    of speeds and frequencies in rad/s."""
+    """Finds cycles and static equilibria of one machine, or, where its unbalance acts, synchronous motions. unit: of
+    speeds and frequencies, in rad/s."""
 
     def __init__(self, flow: PeriodMap, unit: float) -> None:
         self.flow, self.unit = flow, unit
 
     @property
     def free(self) -> bool:
-        """Whether the period is that of a whirl, and not that of the rotor."""
+        """Whether the period is of a whirl, not of the rotor."""
         return self.flow.driven == 0.0
 
     @property
@@ -211,7 +210,7 @@ class Shooting:
         return None
 
     def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
-        """The cycle of a small size beside a Hopf point; number: of the eigenvalue that crosses there."""
+        """The cycle of a small size next to a Hopf point; number: of the eigenvalue that crosses there."""
         mode, nu = rest.states[:, number], rest.eigenvalues[number].imag
         steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
@@ -377,7 +376,7 @@ def largest(displacements: Array) -> Array:
 
 
 def driven_multipliers(space: SlowSpace) -> Multipliers:
-    """The multipliers of a motion with the unbalance; none is trivial, and a 1 stands in its place."""
+    """The multipliers of a motion with the unbalance; none is trivial; the first one is set to 1."""
     return Multipliers(np.append(1.0 + 0.0j, ritz(space)[0]), BLURRED)
 
 

@@ -2,8 +2,8 @@
 
 With an unbalance at 2 mu, which is shifted against the whirl by an angle theta, a cycle of some frequency mu(theta)
 exists; it goes on from the one without unbalance, mu = nu. Where mu = Omega / 2 for some theta the whirl locks in, for
-one theta with a stable motion, for another one with an unstable one. If no theta has it, the whirl does not lock in.
-"""
+one theta with a stable motion, for another one with an unstable one. If there is no such theta, the whirl does not lock
+in. """
 
 from __future__ import annotations
 
@@ -111,8 +111,8 @@ def shifted(machine: Machine, motion: Complex, nu: float, omega: float, share: f
 
 
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
-    """The cycle with a share of the unbalance shifted by theta, next to y; its phase is that of the reference. Raises
-    Unreachable."""
+    """The cycle with a share of the unbalance shifted by theta, next to y; its phase is the phase of the reference.
+    Raises Unreachable."""
     place = corrected(_equations(machine, reference, share, theta), y, unit_vector(len(y)))
     if place is None:
         raise Unreachable

@@ -1,7 +1,7 @@
-"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and those of
+"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and motions of
 two of its periods, see locked.py.
 
-The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, instead of the phase condition, and
+The equations of a cycle (balance.py) apply with nu = Omega, or 2 nu = Omega, instead of the phase condition, and with
 the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films. A force of the
 order k acts in k times that harmonic. """
 
@@ -45,8 +45,8 @@ class Synchronous(Follower):
         return partial(self._motion, reference=unpacked(place.y[:-2], self.machine.size))
 
     def fast_multipliers(self, machine: Machine, y: Array, _near: Multipliers | None, _enough: float) -> Multipliers:
-        """The multipliers of a motion y; none is trivial, for the unbalance holds it in time, and a 1 stands in its
-        place."""
+        """The multipliers of a motion y; none is trivial, since the unbalance holds it in time; the first one is set to
+        1."""
         harmonics = (len(y) - 2) // machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
         values = np.linalg.eigvals(monodromy(machine, self.course.seen_states(machine), y, count)).astype(complex)

@@ -1,8 +1,7 @@
-"""The whirls with the unbalance beside the branches of limit cycles: what stable cycles of nearly half the speed lock
-in with, and where the synchronous motion is stable.
+"""The whirls with unbalance near the branches of limit cycles: what stable cycles of nearly half the speed lock in
+with, and where the synchronous motion is stable.
 
-A whirl that does not lock in has a frequency of its own beside that of the rotor. It is not computed: a run shows it.
-"""
+A whirl that does not lock in has its own frequency besides the rotor's. It is not computed: a run shows it. """
 
 from __future__ import annotations
 
@@ -33,7 +32,7 @@ from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
 ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
-LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
+LINES, FAINT = 8, 1e-4  # besides whirl and unbalance: how many lines, and the smallest over the clearance
 # Why no whirl locks in
 FREE = "its frequency is not near half the speed"
 NOT_FOUND = "no stable motion of half the speed was found"
@@ -81,7 +80,7 @@ def nearly_half(point: CyclePoint) -> bool:
 
 
 def locked_lines(omega: float, harmonics: Complex) -> tuple[SpectralLine, ...]:
-    """The lines of a motion of two periods of the rotor: those of whirl and unbalance, then the largest others. omega:
+    """The lines of a motion of two periods of the rotor: whirl and unbalance first, then the largest others. omega:
     rad/s; harmonics: (H + 1, 2 F) of the displacements over the clearance."""
     whirl, unbalance, *others = (
         SpectralLine(_multiple_of_half(order), 0.5 * order * hertz(omega), _longer_axis(harmonic))

@@ -93,8 +93,8 @@ def ball(
     by_a, by_r = a - memory[at], r - memory[at + 1]
     u = memory[at + 2] + memory[at + 4] * by_a + memory[at + 5] * by_r
     v = memory[at + 3] + memory[at + 6] * by_a + memory[at + 7] * by_r
-    beside = u * u + v * v > outer * outer
-    if not beside:
+    outside = u * u + v * v > outer * outer
+    if not outside:
         u, v = _near(of, a, r, length, share, centrifugal)
     step_u = step_v = f_a = f_r = s_aa = s_ar = s_rr = h_uu = h_uv = h_vv = determinant = 0.0
     least, size = math.inf, 1.0
@@ -110,9 +110,9 @@ def ball(
         missed = math.sqrt(g_u * g_u + g_v * g_v)
         if (missed >= least or d_i + d_o <= 0.0) and size > SMALLEST:
             size, step_u, step_v = 0.5 * size, 0.5 * step_u, 0.5 * step_v
-            if beside:  # what is known does not help
+            if outside:  # what is known does not help
                 u, v = _near(of, a, r, length, share, centrifugal)
-                beside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
+                outside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
             continue
         u, v, least, size, f_a, f_r = t_u, t_v, missed, 1.0, q_i * m_a, q_i * m_r
         along, across = 1.5 * root_i, q_i / l_i

@@ -59,5 +59,5 @@ def shear_stress(x: Array) -> Array:
         moment *= (2.0 * k - 1.0) / (2.0 * k + 7.0)
         series = series + moment / np.maximum(z, SERIES) ** (2 * k)
     close = np.minimum(x, LAST_STRESS)
-    beside = STRESS_A * close**STRESS_B * np.exp(-STRESS_C * close + STRESS_D * close**2)
-    return np.asarray(np.where(z > SERIES, series, local) + np.where(x < LAST_STRESS, beside, 0.0))
+    moving = STRESS_A * close**STRESS_B * np.exp(-STRESS_C * close + STRESS_D * close**2)
+    return np.asarray(np.where(z > SERIES, series, local) + np.where(x < LAST_STRESS, moving, 0.0))

@@ -40,7 +40,7 @@ class Rubbing:
         by_place, by_rate = (np.array(rubbed[first : first + 4]).reshape(2, 2) for first in (2, 6))
         return FilmForce(np.array(rubbed[:2]), by_place, by_rate)
 
-    def beside(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
+    def with_summits(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
         """A film and its summits, see force."""
         if self.surfaces is None:
             return film

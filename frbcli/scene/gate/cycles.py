@@ -50,7 +50,7 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
     if case.heat is None:
         return
     if by_shooting(case):
-        problem = "settles over many periods, and a film on cells has its cycle by one period of a run."
+        problem = "settles over many periods, and finite-volume films find cycles from one period of a run."
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
     for key in ("clearance", "centrifugal_growth"):
         if getattr(case.heat, key) == "follows":

@@ -53,7 +53,7 @@ def limited_supply_faults(case: Case) -> Iterator[Fault]:
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
         least = max(oil.ambient_pressure, oil.cavitation_pressure)
         if not (form.by_cells and form.follows_supply) or tilts(case) or any(True for _ in misaligned(case)):
-            problem = "is given, and only films on cells without a tilt follow it."
+            problem = "is given, which only finite-volume films without tilt support."
             remedy = 'Write film.cavitation = "elrod" and no tilt; or leave it out.'
         elif not law.keeps_oil or law.carries_gas:
             problem = f"is given, and {law.name} does not conserve the oil, or has its gas to follow."
@@ -80,7 +80,7 @@ def bath_faults(case: Case) -> Iterator[Fault]:
         followed = form.by_cells and form.follows_supply and law.keeps_oil
         if not followed or law.carries_gas:
             why = "is not modelled with oil that carries free gas"
-            problem = f"parts the ends, which {why if followed else 'only films on cells that keep their oil follow'}."
+            problem = f"parts the ends, which {why if followed else 'only mass-conserving finite volumes support'}."
             remedy = f'Write film.cavitation = "peeken"; or {remedy[0].lower()}{remedy[1:]}'
         elif tilts(case) or any(True for _ in misaligned(case)):
             problem = "parts the ends, which is not modelled with a tilt."
@@ -220,7 +220,7 @@ def rough_faults(case: Case) -> Iterator[Fault]:
             remedy = f"Give less than {display(room, 'm')}."
             yield Fault("contact.mean_height", display(contact.mean_height, "m"), None, problem, remedy)
     if contact.flow_factors and (form := form_of(case)) not in (CELLS, TILTED, INCLINED):
-        problem = f"changes the flow of films on cells, and this one is: {form}."
+        problem = f"changes the flow of finite-volume films, and this film is: {form}."
         yield Fault("contact.flow_factors", "true", None, problem, "Write false.")
     if contact.shear != 0.0 and any((each.outside, each.grid_body) != (HOUSING,) * 2 for each in film_places(case)):
         problem = "lets a surface carry more oil than the other, which is modelled beside shells and openings at rest."

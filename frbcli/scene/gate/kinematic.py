@@ -91,7 +91,7 @@ def tilt_faults(case: Case, test: str) -> Iterator[Fault]:
         return
     key, value = tilt_key(case)
     if motion.load is not None:
-        problem = "is given beside a load: a journal at rest takes the tilt at which the moment of its film vanishes."
+        problem = "is given with a load: a journal at rest takes the tilt at which the moment of its film vanishes."
         yield Fault(key, value, None, problem, "Give an eccentricity in place of motion.load, or leave the tilt out.")
 
 

@@ -40,7 +40,7 @@ def form_faults(case: Case) -> Iterator[Fault]:
         yield fault
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
-        yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")
+        yield _missing("film.grid", "half-speed", "auto; it is for finite-volume films without openings and lobes")
 
 
 def changing_supply_faults(case: Case) -> Iterator[Fault]:

@@ -190,7 +190,7 @@ def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
 
 def beside_bearings(case: Case) -> tuple[MachineElement, ...]:
     """What lets the shells of bearings move, or pulls at the shaft beside them."""
-    return tuple(element for element in elements_of(case) if element.beside)
+    return tuple(element for element in elements_of(case) if element.besides_bearings)
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:

@@ -66,7 +66,7 @@ class System:
             )  # fmt: skip
         slip = total if slip is None else slip
         film = self.films.force(i, place, rate, total, near)
-        return self.rubbing(i).beside(film, place, rate, slip, 0.5 * (total - slip))
+        return self.rubbing(i).with_summits(film, place, rate, slip, 0.5 * (total - slip))
 
     def felt(self, i: int, place: Array) -> Array:
         """(coordinates,) what film i feels of a journal at a place: an elastic shell keeps a gap."""

@@ -286,7 +286,7 @@ def _decide_form(case: Case, films: FilmChoice, decide: Decide) -> None:
         decide(*decided)
     with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
     if with_oil and films.form.turns_cells:
-        reason = "set in the case" if case.film.grid != "auto" else "no openings, and the film keeps its oil"
+        reason = "set in the case" if case.film.grid != "auto" else "no openings, and the film is mass-conserving"
         several = len(with_oil) < len(film_places(case))
         which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
         decide("grid", which, f"{reason}; the cells turn as the oil does, so that it does not diffuse")

@@ -182,7 +182,7 @@ def _take_in_next(typing, behind, following, rows, sizes):  # type: ignore[no-un
 
 def _take_in_border(typing, border, rows, right, sizes):  # type: ignore[no-untyped-def]
     """right (k, k + r), its last r layers <- the right-hand sides of rows (k, w) less what they take from the border,
-    whose solutions stand instead of its right-hand sides in border (k, w)."""
+    whose solutions replace its right-hand sides in border (k, w)."""
     k, r, w = len(sizes[0]), len(sizes[1]), row_length(len(sizes[0]), len(sizes[1]))
     first = min(2 * k, w - row_length(0, r))  # no vector reaches beyond its row
     places, shift = range(first, 2 * k + r, LANES), 2 * k - first

@@ -104,9 +104,9 @@ def _ellipse_cover(phi: Array, z: Array, hole: Hole, middle: float, half: float)
 def _disk_corner(u: Array, v: Array) -> Array:
     """Area of the unit disk left of the abscissa u and below the ordinate v, each in [-1, 1]; the shapes broadcast."""
     half_chord = np.sqrt(1.0 - v**2)
-    beside = _below_circle(np.minimum(u, -half_chord)) + np.abs(v) * (np.clip(u, -half_chord, half_chord) + half_chord)
-    beside = beside + _below_circle(np.maximum(u, half_chord)) - _below_circle(half_chord)
-    return np.asarray(_below_circle(u) + np.sign(v) * beside, dtype=np.float64)
+    sides = _below_circle(np.minimum(u, -half_chord)) + np.abs(v) * (np.clip(u, -half_chord, half_chord) + half_chord)
+    sides = sides + _below_circle(np.maximum(u, half_chord)) - _below_circle(half_chord)
+    return np.asarray(_below_circle(u) + np.sign(v) * sides, dtype=np.float64)
 
 
 def _below_circle(t: Array) -> Array:
