@@ -1,4 +1,4 @@
-"""Arrays that take long to make, kept on disk beside the compiled kernels, so that later processes need not make them.
+"""Arrays that take long to make, kept on disk next to the compiled kernels, so that later processes need not make them.
 
 An array is found by all that it follows from: the sources of the function that makes it, its arguments, the libraries.
 """

@@ -95,7 +95,7 @@ def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
     from scipy.sparse.linalg import splu  # takes long to load
 
     # Oil that leaves one cell enters others: the diagonal serves as pivot, as in elimination/block_cyclic.py, and the
-    # order is that of a symmetric matrix.
+    # order is the one for a symmetric matrix.
     matrix, at = film.at(s), s if s.imag else s.real
     solver = splu(
         matrix,

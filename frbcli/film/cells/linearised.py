@@ -56,7 +56,7 @@ class LinearFilm:
     """A film of n states at rest, see above, by c coordinates of its journal. SI units but for the cells' own: flow and
     storage (n, n) sparse; by_place (n, c) per m and rad; by_rate (n, c) by their rates; by_total (n,) by omega_J +
     omega_S; push (2 or 4, n) N and N m on the journal; sheared (n,): share of Couette's torque that missing oil leaves;
-    field: of the settled film; ordered: whether the states stand in the order of their elimination, each with its own
+    field: of the settled film; ordered: whether the states are in the order of their elimination, each with its own
     equation."""
 
     flow: csc_matrix
@@ -83,7 +83,7 @@ class LinearFilm:
         return csc_matrix((shifted, both.indices, both.indptr), shape=both.shape)
 
     def turning(self) -> LinearFilm:
-        """The film beside rings: the angle by which journal and shell turn together is one more coordinate, and the
+        """The film next to rings: the angle by which journal and shell turn together is one more coordinate, and the
         share of Couette's torque that missing oil leaves one more component of the force."""
         by_place = np.column_stack([self.by_place, np.zeros_like(self.by_total)])
         by_rate, push = np.column_stack([self.by_rate, self.by_total]), np.vstack([self.push, self.sheared])

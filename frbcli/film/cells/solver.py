@@ -97,7 +97,7 @@ GAS_ATTEMPTS: tuple[Attempt, ...] = (replace(PLAIN, limit=60), *GAS_BEGINS)
 
 @lru_cache(maxsize=FEW)
 def _alone(film: VolumeFilm) -> VolumeFilms:
-    """A film as arrays, not to be written to. Those of a few films are kept: each is solved often."""
+    """A film as arrays, not to be written to. The arrays of a few films are cached: each is solved often."""
     return volume_films([film])
 
 
@@ -166,8 +166,8 @@ class FilmSolver:
     def _steady_with_gas(
         self, motion: Motion, start: Array | None, storage: Storage, repeated: int
     ) -> VolumeSolution:
-        """See steady. Each stage begins from that of a film near by, if `start` has it; else the gas is in equilibrium
-        first, and then begins to go with the oil."""
+        """See steady. Each stage begins from the same stage of a film near by, if `start` includes it; else the gas is
+        in equilibrium first, and then begins to go with the oil."""
         begun = start if start is not None and start.ndim > self._area.ndim else np.zeros((0, 0))
         closes = [CLOSE, *(GAS_ROUND_OFF * PASSED_ON**number for number in range(1, 1 + repeated))][::-1]
         self._settle_gas()
@@ -189,7 +189,7 @@ class FilmSolver:
         return replace(solution, stages=np.array(stages))
 
     def _start_of(self, stage: Array) -> Array:
-        """(m, k) w of a stage; the gas of the states <- that of the stage."""
+        """(m, k) w of a stage; the gas of the states <- gas of the stage."""
         w, self._states[CARRIED_GAS], self._states[TURNOVER] = stage
         return np.asarray(w)
 
@@ -297,7 +297,7 @@ class FilmSolver:
             solve_blocks(self._stencil, self._blocks, self._fields, self._stencil[0, 0], self._fields[0, 0])
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
-                return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
+                return w, iteration, "the equations became singular, as they are for a film that no oil can enter"
         return w, 2 * attempt.limit, self._where(worst)
 
     def _assemble(
@@ -345,7 +345,7 @@ class FilmSolver:
         return self._stencil
 
     def leaving(self, motion: Motion, states: Array, past: Array, g: float = 0.0) -> Array:
-        """See tilted_balances, whose stencil and flows are those of the solver."""
+        """See tilted_balances, with stencil and flows of the solver."""
         return tilted_balances(self._parts, self._places, motion, states, past, self._stencil, self._flows, g)
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:

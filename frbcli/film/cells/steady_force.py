@@ -68,8 +68,8 @@ def steady_force(
 
 
 def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field where
-    it keeps its oil. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
+    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field if it
+    is mass-conserving. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
     film, data, (m, k), clearance = solver.film, solver.data, solution.w.shape, solver.film.section.clearance

@@ -1,4 +1,4 @@
-"""Films on finite volumes, all of a machine beside each other."""
+"""Films on finite volumes, all of a machine side by side."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ class CellFilms(Films):
         return np.asarray(self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def harmonic_gaps(self, places: Array) -> Array:
-        """See Films.harmonic_gaps: over the cells in which oil is sheared, with the openings where they stand, as the
-        time loop has it. Narrow gaps lie between openings, or in them, and rough surfaces shear the oil otherwise."""
+        """See Films.harmonic_gaps: over the cells in which oil is sheared, with the openings in their places, as in the
+        time loop. Narrow gaps lie between openings, or in them, and rough surfaces shear the oil otherwise."""
         h = np.maximum(self.gaps(places / np.array(self.clearances)[:, None])[:, :, 0], NARROWEST)
         areas = self.data.cells[:, SHEARED].sum(axis=2)
         sheared = areas / h
@@ -350,8 +350,8 @@ def least_gaps(section: Section, d: Array) -> Array:
 
 
 def unknown_with_gas(film: VolumeFilm, content: Array, before: Array, w: Array) -> Array:
-    """(m, k) unknown of cells with oil fractions and free gas `content` (2, m, k); w: that of cells which had `before`,
-    whose pressure a cell keeps that has too much oil for its gas."""
+    """(m, k) unknown of cells with oil fractions and free gas `content` (2, m, k); w: unknown of cells with the content
+    `before`; a cell with too much oil for its gas keeps its pressure."""
     theta, free = content
     gas = with_own_gas(np.clip(free, 0.0, film.law.gas_content))
     changed = np.abs(content - before).max(axis=0) > SAME
@@ -359,10 +359,10 @@ def unknown_with_gas(film: VolumeFilm, content: Array, before: Array, w: Array) 
 
 
 def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
-    """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
+    """(m, k) unknown of cells that hold theta; w: unknown of cells that held `before`.
 
     The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep
-    part of a law from afar. In a full cell the pressure is not told by the oil, and the unknown stays."""
+    part of a law from afar. In a full cell the oil does not determine the pressure, and the unknown stays."""
     unknown = np.where(theta < 1.0, w, np.maximum(w, 0.0))
     changed = (theta < 1.0) & (np.abs(theta - before) > SAME)
     high = np.zeros(np.count_nonzero(changed))

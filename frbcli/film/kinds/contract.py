@@ -105,7 +105,7 @@ class Films(ABC):
         return np.ones(self.count)
 
     def compared(self) -> Compared | None:
-        """The force beside that of a better film, None where there is no better one to be had."""
+        """The force and the force of a better film, None where there is no better one."""
         return None
 
     @property

@@ -17,7 +17,7 @@ PLANE = slice(0, 2)  # of the four coordinates of a journal that tilts: its disp
 
 @dataclass(frozen=True)
 class InclinedFilms(Films):
-    """tilted: the same films around journals that may tilt; those of these films stay parallel to the z-axis."""
+    """tilted: the same films around journals that may tilt; here journals stay parallel to the z-axis."""
 
     tilted: TiltedFilms
 

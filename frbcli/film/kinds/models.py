@@ -30,11 +30,11 @@ class ModelFilms(Films):
         return evaluate(self.data[i], self.clearances[i], place, rate, total)
 
     def heat_ends(self) -> Any:
-        """See Films.heat_ends: the films themselves tell their flow."""
+        """See Films.heat_ends: the films themselves give their flow."""
         return ()
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """See Films.power_and_flow; the flow is NaN of a model that does not tell it."""
+        """See Films.power_and_flow; the flow is NaN of a model without one."""
         film, c = self.data[i], self.clearances[i]
         x, y = (place / c).tolist()
         power = couette_power(place, c, self.force(i, place, np.zeros(2), total).force, total, slip, drag)

@@ -48,7 +48,7 @@ AT_REST = RunnerMotion()
 
 @dataclass(frozen=True)
 class PadFilm:
-    """The film of a pad, or of all pads of a ring, whose pressure is then that of the first.
+    """The film of a pad, or of all pads of a ring, with the pressure of the first.
 
     forces: on the runner: load in N, moments about x and y in N m; torque: that resists the rotation, in N m
     inner_flow, outer_flow, trailing_flow: out of the film, leading_flow: into it, in m^3/s; swept: rate at which the

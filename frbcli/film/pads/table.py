@@ -22,7 +22,7 @@ from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import MESH, SOMMERFELD, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
 
-NODES = 48  # of the interpolation, which errs by less than 1e-7
+NODES = 48  # of the interpolation, whose error is below 1e-7
 MOST_HELD = 8
 
 

@@ -1,8 +1,8 @@
 """Films whose law makes oil where the pressure falls too low, tabulated over eccentricity, direction and speed.
 
 The force of such a film without openings follows from the eccentricity and from the velocity w of the journal in the
-frame that turns with half the speed, seen along and across the line of centres. It is not proportional to |w| as that
-of a clipped film is, for the law brings a pressure of its own: |w| is the third axis. Where the law's pressure follows
+frame that turns with half the speed, seen along and across the line of centres. Unlike the force of a clipped film it
+is not proportional to |w|, for the law brings its own pressure: |w| is the third axis. Where the law's pressure follows
 the speed of rotation (dimensionless penalty), w and the force count over it.
 
 Of a steepness b the force leaves proportion where b |w| is small, and slowly: cubic splines in (|w| + L)^-ROOT with L
@@ -127,7 +127,7 @@ def _coefficients(values: Array, axis: int, ends: Callable[[Array], None]) -> Ar
 
 
 def _ends_free(matrix: Array) -> None:
-    """The third derivative does not jump at the node beside an end."""
+    """The third derivative does not jump at the node next to an end."""
     matrix[0, :5] = matrix[-1, -5:] = 1.0, -4.0, 6.0, -4.0, 1.0
 
 

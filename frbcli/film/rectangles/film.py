@@ -111,7 +111,7 @@ class FilmForce:
         return replace(self, field=self.field + change, fraction=fraction, slopes=there)
 
     def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
-        """This film with another force beside it, or without it."""
+        """This film with another force added, or subtracted (sign = -1)."""
         return replace(
             self,
             force=self.force + sign * other.force,
@@ -128,8 +128,7 @@ def none_of(coordinates: int) -> FilmForce:
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
     """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.
 
-    Derivatives of a bearing model that does not tell them are central differences here.
-    """
+    For a bearing model without derivatives they are central differences. """
     if isinstance(film, BearingModelFilm):
         film = film._replace(central=1)
     d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance

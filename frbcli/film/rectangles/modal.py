@@ -154,8 +154,8 @@ def _mode_fields(
     lengths: Array, cube: Array, change: Array, decays: Array, mode_loads: Array, load: Array, ring: RingMatrices,
     work: tuple[Array, Array, Array], fields: Array,
 ) -> None:  # fmt: skip
-    """fields <- those of unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode with
-    a load of 1."""
+    """fields <- fields as in unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode
+    with a load of 1."""
     m = lengths.shape[0]
     own, defect, solution = work
     for k in range(decays.shape[0]):

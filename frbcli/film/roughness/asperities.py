@@ -204,9 +204,8 @@ def rub(
     """What the summits of film f do: displacement e in m and velocity v in m/s of the journal in its shell; slip:
     omega_J - omega_S, shell_speed: omega_S, rad/s.
 
-    Friction has one direction over the arc, that of the mean sliding speed, weighted with the pressure: then it does
-    nothing but dissipate.
-    """
+    Friction has one direction over the arc, the direction of the mean sliding speed weighted with the pressure; so it
+    only dissipates. """
     eccentricity = math.sqrt(e_x * e_x + e_y * e_y)
     if eccentricity == 0.0 or not meets(asperities, clearance, eccentricity):
         return APART

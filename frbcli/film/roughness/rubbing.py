@@ -1,6 +1,6 @@
 """Rubbing surfaces and the derivatives of their forces.
 
-The summits of one film beside what it does: force with derivatives, and loads.
+The asperities of one film, which act in parallel to it: force with derivatives, and loads.
 
 Force and torques of the summits of a film with all their derivatives, for machines whose rings turn.
 
@@ -79,8 +79,8 @@ class Rubbing:
         return standing_eccentricity(self.surfaces, self.film, self.clearance, load)
 
     def loads(self, film: FilmLoads, motion: Motion, turning: float = 0.0) -> FilmLoads:
-        """The loads of a film with those of its summits. motion: in a shell at rest, seen from a frame that turns with
-        `turning` rad/s, as the force is."""
+        """The loads of a film with its summits. motion: in a shell at rest, seen from a frame that turns with `turning`
+        rad/s, as the force is."""
         if self.surfaces is None:
             return film
         c, (d_x, d_y), (v_x, v_y) = self.clearance, motion.d, motion.v
@@ -91,7 +91,7 @@ class Rubbing:
         return replace(film, force=(x + rubbed.f_x, y + rubbed.f_y), torque=torque)
 
     def share_of_error(self, film: FilmLoads, whole: FilmLoads) -> float:
-        """Relative error of the force with the summits over that of the film alone."""
+        """Relative error of the force with the summits over the error of the film alone."""
         size = math.hypot(*whole.force)
         return math.hypot(*film.force) / size if self.surfaces is not None and size > 0.0 else 1.0
 

@@ -1,8 +1,7 @@
 """The oil balances (3.9), (4.31) of the cells of a film with all derivatives, compiled: Balance.residual in one sweep.
 
-Beside the derivatives by w of the cells stand those by the displacement of the journal, so that rotor and film can be
-solved together.
-"""
+Besides derivatives by w of the cells there are derivatives by the displacement of the journal, so that rotor and film
+can be solved together. """
 
 from __future__ import annotations
 
@@ -84,8 +83,8 @@ class GridMotion(NamedTuple):
 
 @compiled(inline=True)
 def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, float, float]:
-    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and
-    how the pressure falls there by those of the two, see EndSlope."""
+    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and how
+    the pressure slope there follows from the two, see EndSlope."""
     if far:
         return film.far.kind, k - 1, max(k - 2, 0), film.far.rise, film.far.bend
     return film.near.kind, 0, min(1, k - 1), film.near.rise, film.near.bend
@@ -102,8 +101,8 @@ def without_ends(film: np.record) -> np.record:
 
 @compiled(inline=True)
 def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
-    """Pressure towards an end over that of the groove there, or of the air, by a parabola through
-    the last cell and the one beyond it; and its derivatives by the pressures of the two."""
+    """Pressure towards an end above the pressure of the groove there, or of the air, by a parabola through the last
+    cell and the one beyond it; and its derivatives by the pressures of the two."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
     if abs(change) > BEND * abs(rise):
@@ -163,7 +162,7 @@ def _between_rough(
 
 @compiled(inline=True)
 def _carried(states: Array, i: int, n: int, j: int, forward: bool, diffuses: bool) -> tuple[float, float, float]:
-    """carried_at through the face after a cell; beside artificial diffusion the mean of both cells."""
+    """carried_at through the face after a cell; with artificial diffusion the mean of both cells."""
     t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
     if diffuses:
         return 0.5 * (t + t_n), 0.5, 0.5
@@ -178,7 +177,7 @@ def _flow_around(
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     bored, half, roughness = film.bored, 0.5 * omega, film.roughness
-    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
+    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # with a shell at rest
     forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
     outflow = 0.0  # by the openings in cells that are film in part
     diffuses = film.diffuses
@@ -255,7 +254,7 @@ def take(outflow: float, flows: Array) -> None:
 def _carry_out_of_excess(
     ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
-    """Oil that the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
+    """Oil that the surfaces carry out of the areas that cells around bores have outside of the film, see bores.py."""
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     half, outflow = 0.5 * omega, 0.0

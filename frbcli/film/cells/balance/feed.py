@@ -1,10 +1,9 @@
 """The openings of a film with a flow-limited supply.
 
 All openings of a film are one vessel. While the film takes less than the flow, they are at the pressure of the supply.
-Else their pressure falls until the film takes the flow, down to that of the cavities; where the surfaces carry away
-more oil than comes even then, the openings are filled in part, as a cell of the film would be: pressure and oil
-fraction follow the law of the film. What the film takes grows with either, so that there is one filling for each flow.
-"""
+Else their pressure falls until the film takes the flow, down to the cavity pressure; where the surfaces carry away more
+oil than comes even then, the openings are filled in part, as a cell of the film would be: pressure and oil fraction
+follow the law of the film. What the film takes grows with either, so that there is one filling for each flow. """
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at most
 EAGER = 2.5  # what a film with an eccentric journal takes, over what a concentric one takes
 ALL = 1.0  # filling of openings at the pressure of the supply
-ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be told any closer
+ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be resolved any closer
 MOST = 80  # fillings that are tried
 SAME = 1e-15  # fillings that differ by less
 Solve = Callable[[float, "VolumeSolution | None"], "VolumeSolution"]

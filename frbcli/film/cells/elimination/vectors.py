@@ -3,8 +3,7 @@
 The compiler makes vectors of long loops by itself, but none of short ones. So what a column of a few cells needs is
 written out here, number by number and in registers. A column of k cells has k rows of its own equations, or what has
 become of them, followed by k + r more columns: what it takes from the border, and r right-hand sides. Rows are filled
-up with zeros to a multiple of four. k and r are told by tuples of that length.
-"""
+up with zeros to a multiple of four. k and r are passed as tuples of that length. """
 
 from __future__ import annotations
 
@@ -66,7 +65,7 @@ class _Code:
         return self.builder.shuffle_vector(self.with_lane(_ANY, 0, value), _ANY, first)
 
     def vectors(self, numbers: list[Any]) -> list[Any]:
-        """Vectors of numbers that stand beside each other; None: 0."""
+        """Vectors of consecutive numbers; None: 0."""
         made = [ir.Constant(_VECTOR, [_ZERO] * LANES)] * (len(numbers) // LANES)
         for place, value in enumerate(numbers):
             if value is not None:

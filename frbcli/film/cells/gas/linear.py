@@ -1,13 +1,12 @@
 """A film whose oil carries gas, linearised about its settled state, with oil and free gas of each cell as states.
 
-The unknowns are w and the free gas c of the cells. The balance of the gas less c times that of the oil is
+The unknowns are w and the free gas c of the cells. The balance of the gas less c times the balance of the oil is
 
     A H theta c' + sum_in q (c - c_up) = A H theta (c_e - c) / tau,
 
 which is multiplied by tau / (1 + tau r), so that no rate is too fast or too slow for it (r: see balance.py). Both
 balances are sums over next neighbours: cells that are not neighbours of one are moved at the same time for their
-derivatives. Both states of a cell stand beside each other, the cells in an order of which an elimination fills little.
-"""
+derivatives. Both states of a cell are adjacent; the cells are ordered so that an elimination fills little. """
 
 from __future__ import annotations
 

@@ -16,11 +16,11 @@ of each two solutions P and Q,
 
     sum over the cells of P_i (flow of Q out of cell i) = 0.
 
-The total flow for a given pressure in the distance is then that of the bore, wherever it lies among the cells, as with
-Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are those for
-which the solution with a source balances, and with the areas of the force the integrals of the solutions over the film
-are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there: it is right
-for oil that comes out of the whole width, but that of a bore comes out of the place where the solutions are exact.
+The total flow for a given pressure in the distance is then correct for the bore, wherever it lies among the cells, as
+with Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are
+chosen so that the solution with a source balances. With the areas of the force the integrals of the solutions over the
+film are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there. That count
+is right for oil that comes out of the whole width; oil of a bore comes out where the solutions are exact.
 
 Which cells lie around the bores of a section, and what the local solutions (bores.py) make of them.
 """
@@ -41,18 +41,18 @@ from frbcli.film.gap import Hole, Section
 
 Mask = NDArray[np.bool_]
 
-# Weights of what the conductances should do: all flows of the solutions together, those of each cell, stay as they are.
+# Weights of the aims of the conductances: total flow of the solutions, flow of each cell, no change.
 TOGETHER, EACH, STAY = 100.0, 0.1, 0.01
 AREAS = 1e3  # the same of what the areas should do, against a change of a whole cell that touches the bore
 LEAST = 0.1  # of a conductance that remains: no cell is cut off
 NEAR = 0.5  # of the size of a cell squared: so near to the middle of a bore its solution in a distance is none
-LARGEST = 0.8  # change of an area over that of its cell, for bores that are small in cells of very unequal sides
+LARGEST = 0.8  # change of an area over the area of its cell, for bores that are small in cells of very unequal sides
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 class Patch(NamedTuple):
-    """Cells around the middle of a bore of radius a, lengths over R. x (nx + 2,), y (ny + 2,): middles of the cells
-    and of those beyond them; dx (nx,), dy (ny,): sizes; held: (nx, ny) cells that stand for the bore; open_: (nx, ny)
+    """Cells around the middle of a bore of radius a, lengths over R. x (nx + 2,), y (ny + 2,): middles of the cells and
+    of the next ones beyond; dx (nx,), dy (ny,): sizes; held: (nx, ny) cells that represent the bore; open_: (nx, ny)
     area of the film in each cell; mirrored: whether the bore lies on a plane of symmetry at the end of y."""
 
     a: float
@@ -90,8 +90,8 @@ def fit(patch: Patch, around: Array, along: Array) -> BoreFit:
 
 
 def solutions(x: Array, y: Array, a: float, mirrored: bool) -> Array:
-    """(solutions, ...) of the pressure above that of the bore at x, y of any shape, the one with a source of 1 last;
-    those that are odd in y only without a plane of symmetry there."""
+    """(solutions, ...) of the pressure above the bore's at x, y of any shape, the one with a source of 1 last; odd
+    functions of y only without a plane of symmetry there."""
     square = np.maximum(x**2 + y**2, 1e-300)
     q = a**2 / square
     odd = [] if mirrored else [y * (1.0 - q), 2.0 * x * y * (1.0 - q**2) / a]
@@ -215,7 +215,7 @@ def _by_parabolas(patch: Patch) -> Array:
 
 
 def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:
-    """(nx, ny) areas near to those of the film, changed close to the bore so that their sums with the fields (n, nx,
+    """(nx, ny) areas close to the areas of the film, changed near the bore so that their sums with the fields (n, nx,
     ny) grow by what is lacking (n,); 0 where held."""
     size = np.outer(patch.dx, patch.dy)
     distance = np.hypot(patch.x[1:-1, None], patch.y[1:-1]) - patch.a
@@ -280,9 +280,8 @@ def around_bores(
 ) -> Cells:
     """The cells with the flows and areas around the bores by the local solutions.
 
-    phi (m + 1,), z (k + 1,): boundaries; height: (k,) of the unknowns; inside: (m, k) the cells that stand for each
-    hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without.
-    """
+    phi (m + 1,), z (k + 1,): boundaries; height: (k,) of the unknowns; inside: (m, k) the cells that represent each
+    hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without. """
     around, along, at, area, load = (values.copy() for values in plain)
     fits: dict[bytes, BoreFit] = {}
     width = section.width / section.radius
@@ -356,7 +355,7 @@ def _is_bore(section: Section, hole: Hole) -> bool:
 
 
 def _distance_to_next(section: Section, number: int) -> float:
-    """Distance from the edge of a hole to that of the nearest other groove or hole, over R."""
+    """Distance from the edge of a hole to the edge of the nearest other groove or hole, over R."""
     hole = section.holes[number]
     distances = [math.pi - hole.half_angle]
     for groove in section.grooves:
