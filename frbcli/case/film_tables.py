@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Key, Law
 from frbcli.film.cavitation.table import laws, names
 from frbcli.units import NUMBER
 
-THEORIES = ("auto", "short", "finite")  # those of the program
+THEORIES = ("auto", "short", "finite")  # of the program
 if TYPE_CHECKING:
     Cavitation = str
     Theory = str
@@ -39,8 +39,8 @@ def attribute(of: type[Law] | BearingModel) -> str:
 
 def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
     """Give the model of [film] the table of every law and bearing model that has keys and of no other, its `theory` the
-    names of all theories, and its `cavitation`, and that of `others`, the names of all laws. Models that hold one of
-    these have to be rebuilt by the caller."""
+    names of all theories, and its `cavitation`, like the `cavitation` of `others`, the names of all laws. Models that
+    hold one of these have to be rebuilt by the caller."""
     fields = film.model_fields
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]

@@ -67,7 +67,7 @@ def with_loss(unbalance: float, phase: float, loss: Loss | None) -> tuple[float,
 
 
 def unbalance_sizes(part: RigidRotor | JeffcottRotor | Disk) -> float:
-    """The unbalance of a rotor or a disk and that of its loss, in phase, kg m."""
+    """The unbalance of a rotor or a disk plus its loss, in phase, kg m."""
     return part.unbalance + (0.0 if part.loss is None else part.loss.unbalance)
 
 
@@ -111,7 +111,7 @@ class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
     symmetric: ClassVar[bool] = False
-    polar_inertia: ClassVar[None] = None  # that of its sections and disks
+    polar_inertia: ClassVar[None] = None  # follows from its sections and disks
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
@@ -171,7 +171,7 @@ class Bow(MachineTable):
             problem = f"is {display(self.position, 'm')}, not on the shaft of {display(length, 'm')}."
             yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
         elif any(other is not self and abs(other.position - self.position) < APART * length for other in case.bows):
-            problem = "is, within a thousandth of the shaft, that of another one, between which no shaft bends so."
+            problem = "coincides, within a thousandth of the shaft, with another one, between which no shaft bends so."
             yield Breach((*path, "position"), problem, "Keep one of the two.")
         elif self is case.bows[0] and len(bow_places(case)) < LEAST_PLACES:
             problem = "is at a bearing, and a straight line runs through this and the other outermost bearing."

@@ -33,7 +33,7 @@ def check_model(model: BearingModel, film: type[Model]) -> None:
     }  # fmt: skip
     reserved = {*THEORIES, *law_names(), *others, *(field.alias for field in others.values())}
     if {model.name, attribute(model)} & reserved:
-        raise wrong(model, "name", "is that of a key or model of the program.", "Choose another one.")
+        raise wrong(model, "name", "is already a key or model of the program.", "Choose another one.")
     if not isinstance(model.label, str) or not model.label.isprintable():
         raise wrong(model, "label", "is not text.", "Write the name of the model in pictures.")
     if not (isinstance(model.sheared, float | int) and 0.0 <= model.sheared <= 1.0):

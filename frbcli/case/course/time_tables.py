@@ -122,7 +122,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
 
 
 def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
-    """The names of the columns: as people write them, in small letters and without unit, and as they stand there."""
+    """The names of the columns: as people write them, in small letters and without unit, and as in the file."""
     from frbcli.results.measured.delimited import without_unit
 
     for name in columns.values:
@@ -159,7 +159,7 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
     listed = ", ".join(f'"{name}"' for name in columns.values)
     if not wanted.y:
         raise Refused(f'has no column "{wanted.x[0]}".', f'Call it "{wanted.x[0]}". It has: {listed}.')
-    remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column beside the time. It has: {listed}.'
+    remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column besides the time. It has: {listed}.'
     raise Refused("has no columns of the values in x and y.", remedy)
 
 

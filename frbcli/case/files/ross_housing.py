@@ -1,9 +1,8 @@
 """The housing that a rotor of ROSS has: point masses that its bearings stand on, on bearings to the ground.
 
-In ROSS a bearing with `n_link` acts between a node of the shaft and that of a `PointMass`, and other bearings between
-these masses or from them to the ground. The masses by themselves move by M u'' + C u' + K u = F, and that has the modes
-K u_k = omega_k^2 M u_k with u_k . M u_k = 1, each by itself if u_j . C u_k = 0 of any two.
-"""
+In ROSS a bearing with `n_link` acts between a node of the shaft and the node of a `PointMass`, and other bearings
+between these masses or from them to the ground. The masses by themselves move by M u'' + C u' + K u = F, and that has
+the modes K u_k = omega_k^2 M u_k with u_k . M u_k = 1, each by itself if u_j . C u_k = 0 of any two. """
 
 from __future__ import annotations
 
@@ -50,9 +49,8 @@ class _Masses:
 def ross_housing(path: Path, bearings: Sequence[tuple[str, float]]) -> dict[str, Any]:
     """The keys `modes` and `masses` of a housing out of a rotor file.
 
-    bearings: names and positions in m of those of the case, each at a node at which the rotor of the file has one, too.
-    Raises Refused.
-    """
+    bearings: names and positions in m of the bearings of the case, each at a node at which the rotor of the file has
+    one, too. Raises Refused. """
     elements = ross_elements(path)
     _, positions = shaft_of_file(elements)
     springs = [element for element in elements if "kxx" in element.values]
@@ -121,7 +119,7 @@ def _constant(element: RossElement, key: str) -> float:
 
 
 def _matrix(element: RossElement, letter: str) -> Array:
-    """(2, 2) coefficients of what holds a mass: constant, and symmetric, as those of springs and dampers."""
+    """(2, 2) coefficients of what holds a mass: constant and symmetric, as of springs and dampers."""
     if any(_constant(element, f"m{axes}") for axes in AXES):
         raise Refused(f'has a mass in "{element.name}", which holds a {MASS}.', "Add it to that in ROSS.")
     matrix = np.array([_constant(element, f"{letter}{axes}") for axes in AXES]).reshape(2, 2)

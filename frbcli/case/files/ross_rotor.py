@@ -2,10 +2,9 @@
 
 Such a file is a table of elements, named by class and tag: a shaft element carries its node `n`, length, outer and
 inner diameters at both ends and its material, a disk its node, mass and inertias, all in SI. Bearings and seals of the
-file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP.
-Its alpha and beta are damping over mass and over stiffness that does not turn. What an element specifies beside that is
-refused by its name, unless it has no effect.
-"""
+file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP. Its
+alpha and beta are damping over mass and over stiffness that does not turn. Anything else that an element specifies is
+refused by its name, unless it has no effect. """
 
 from __future__ import annotations
 
@@ -132,7 +131,7 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
 
 
 def _refuse_others(element: RossElement, supported: Sequence[str]) -> None:
-    """Raises Refused for a value beside those that are taken, unless it is what frb models or none at all."""
+    """Raises Refused for a value that is not supported, unless it equals what frb models or is empty."""
     for key, value in element.values.items():
         if key in supported or key in LABELS:
             continue
@@ -147,7 +146,7 @@ def _refuse_others(element: RossElement, supported: Sequence[str]) -> None:
 
 
 def _cylinders_of(outer: float, growth: float, inner_growth: float) -> int:
-    """How many cylinders stand for a cone; outer: diameter at its left end, growth: of the outer and inner ones."""
+    """How many cylinders replace a cone; outer: diameter at its left end, growth: of the outer and inner ones."""
     least = min(outer, outer + growth)
     change = max(abs(growth), abs(inner_growth)) / least
     return min(max(1, math.ceil(change / STEP)), MOST_CYLINDERS)

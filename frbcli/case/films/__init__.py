@@ -1,1 +1,1 @@
-"""How films are computed and surfaces touch; laws and bearing models of one's own."""
+"""How films are computed and surfaces touch; user-defined laws and bearing models."""

@@ -1,4 +1,4 @@
-"""Cavitation laws and bearing models of one's own: cases take them in this process, with the keys of their tables."""
+"""User-defined cavitation laws and bearing models: cases take them in this process, with the keys of their tables."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Law
 
 
 def add_law(law: type[Law]) -> None:
-    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys.
+    """Let film.cavitation take a user-defined law in this process, and [film.NAME] its keys.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def remove_law(name: str) -> None:
 
 
 def add_bearing(model: BearingModel) -> None:
-    """Let film.theory take a bearing model of one's own in this process, and [film.NAME] its keys.
+    """Let film.theory take a user-defined bearing model in this process, and [film.NAME] its keys.
 
     Parameters
     ----------

@@ -51,7 +51,7 @@ class HardCase:
         return shlex.join(["frb", self.command, self.base, *(w for text in self.settings for w in ("--set", text))])
 
     def case(self, fine: bool = False) -> Case:
-        """Its case, or that of its reference. Raises InputError if it is refused."""
+        """Its case, or the case of its reference. Raises InputError if it is refused."""
         return load_case(self.base, (*self.settings, *(self.fine if fine else ())))
 
 

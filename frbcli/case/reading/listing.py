@@ -17,7 +17,7 @@ from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
 
-MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is told
+MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is listed
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Val
         if len(content) > MOST_LISTED and isinstance(content[0], float):
             yield Value(key, len(content), "", f"{len(content)} values")
             return
-        both = isinstance(written, dict) and len(content) > 1  # one table that stands for both ends of a cartridge
+        both = isinstance(written, dict) and len(content) > 1  # one table for both ends of a cartridge
         single = both or (key in ("bearing", "base") and len(content) == 1)
         each = written if isinstance(written, list) else [written] * len(content)
         for index, (item, its_text) in enumerate(zip(content[:1] if both else content, each, strict=not both)):

@@ -145,7 +145,7 @@ def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Pa
     ----------
     data : mapping
         Nested mappings and sequences. Quantities are numbers in SI or text with a unit; a table may also be a model of
-        `frbcli.case`; None stands for a key that is not given.
+        `frbcli.case`; None: a key that is not given.
     name : str
         Name of the case, if the data have none.
     folder : str or Path
@@ -218,7 +218,7 @@ def _refused(source: str, faults: Sequence[Fault]) -> InputError:
 def _plain(value: Any, path: lines.Path = ()) -> Any:
     """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
     if len(path) > DEEPEST:
-        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as a case file has it."))
+        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as in a case file."))
     if isinstance(value, Model):
         return as_tables(value)
     if isinstance(value, Mapping):

@@ -85,7 +85,7 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
     for key in ("temperature", "shear_factor"):
         if key in oil and constant:
             problem = "has no effect: the viscosity is constant."
-            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel in place of the viscosity.")
+            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel instead of the viscosity.")
     yield from law_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
     ambient, cavitation = number(oil, "ambient_pressure", "Pa", ATMOSPHERE), number(oil, "cavitation_pressure", "Pa")
     if ambient and cavitation and cavitation > ambient:
@@ -97,7 +97,7 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     for (at, inside), (_, outside) in ring_films(bearing):
         inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
         if inner and outer and inner >= outer:
-            problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
+            problem = f"is {display(inner, 'm')}, not below the outer film's, {display(outer, 'm')}."
             yield Breach((*path, *at, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
     ring = bearing.get("ring")
     yield from pin_breaches(path, bearing)
@@ -117,7 +117,7 @@ def _damper(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     film = ringed[0][1][1] if ringed else bearing
     inner, outer = number(film, "diameter", "m"), number(table(bearing, "damper"), "diameter", "m")
     if inner and outer and inner >= outer:
-        problem = f"is {display(outer, 'm')}, not above that of the film in the shell, {display(inner, 'm')}."
+        problem = f"is {display(outer, 'm')}, not above the value of the film in the shell, {display(inner, 'm')}."
         yield Breach((*path, "damper", "diameter"), problem, "It is the outer diameter of the shell.")
 
 

@@ -1,4 +1,4 @@
-"""Rules that tie the keys of elements without a film together, and those of cases without any film. See checks.py."""
+"""Rules that tie the keys of elements without a film together, and rules of cases without any film. See checks.py."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Br
 
 
 def _matrix(given: object) -> tuple[float, ...] | None:
-    """The entries of a mass matrix, None if it cannot be read; one quantity is that of both directions."""
+    """The entries of a mass matrix, None if it cannot be read; one quantity holds for both directions."""
     if given is None:
         return tuple(entry for row in EMPTY_MATRIX for entry in row)
     if isinstance(given, list | tuple) and len(given) == 2 and all(isinstance(r, list | tuple) for r in given):
@@ -136,7 +136,7 @@ def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
     given = [name for name in MASSES if name in values]
     if 0 < len(given) < len(MASSES):
         missing = next(name for name in MASSES if name not in values)
-        yield Breach((*path, missing), "is missing beside the other masses.", "Give all four of them.")
+        yield Breach((*path, missing), "is missing, while other masses are given.", "Give all four of them.")
     if len(set(lengths.values())) != 1:
         return
     speeds = [number({"": value}, "", "Hz") for value in values.get("speed", [])]

@@ -1,4 +1,4 @@
-"""The contract of all supplies of oil: what differs between the kinds stands in their own files.
+"""The contract of all supplies of oil: what differs between the kinds is in their own files.
 
 Angles are phi of the developed gap, z counts from the end of the bearing in m. The pressure of a supply is absolute in
 the case file; everything that is made of it takes the gauge pressure, over the ambient one, 0 where nothing supplies.
@@ -75,7 +75,7 @@ class OilSupply(Model):
     sizes: ClassVar[tuple[str, ...]] = ("width", "diameter")  # keys that are no larger than the width of the bearing
 
     def absolute(self, ambient: float) -> float:
-        """The absolute pressure of the supply in Pa, the largest one where it changes over time; that of the air where
+        """The absolute pressure of the supply in Pa, the largest one where it changes over time; of the air where
         nothing supplies."""
         return ambient
 
@@ -125,7 +125,7 @@ class OilSupply(Model):
 
     @property
     def land_share(self) -> float:
-        """Flow of a concentric film over that of two lands of half the width."""
+        """Flow of a concentric film over the flow of two lands of half the width."""
         return 1.0
 
     @property
@@ -164,7 +164,7 @@ class OilSupply(Model):
         return "developed gap", f"with openings: {self.kind}"
 
     def faults(self, key: str) -> list[Fault]:
-        """Faults of which no film can be made; key: that of the supply."""
+        """Faults of which no film can be made; key: of the supply."""
         return []
 
     @classmethod

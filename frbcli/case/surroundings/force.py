@@ -1,4 +1,4 @@
-"""A force on a place of the machine beside unbalance and weight."""
+"""A force on a place of the machine besides unbalance and weight."""
 
 from __future__ import annotations
 

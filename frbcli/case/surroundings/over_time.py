@@ -48,12 +48,12 @@ def over_time_problem(time: Sequence[float], *columns: Sequence[float]) -> str:
 
 
 def largest(value: float | OverTime) -> float:
-    """The value of an input, or the largest one of its table: that of all analyses but runs."""
+    """The value of an input, or the largest one of its table, which all analyses but runs use."""
     return max(value.x) if isinstance(value, OverTime) else value
 
 
 def first(value: float | OverTime) -> float:
-    """The value of an input, or the first one of its table: that of the start of a run."""
+    """The value of an input, or the first one of its table, with which a run starts."""
     return value.x[0] if isinstance(value, OverTime) else value
 
 
@@ -63,7 +63,7 @@ def is_over_time(given: object) -> bool:
 
 
 def values_of(given: object, unit: str) -> tuple[float, ...]:
-    """SI values of an input as it was written, all of those of a table; none where it cannot be read."""
+    """SI values of an input as it was written, of a table all; none where it cannot be read."""
     try:
         if isinstance(given, dict):
             return tuple(_numbers(given.get("x", ())))

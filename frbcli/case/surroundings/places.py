@@ -53,7 +53,7 @@ def no_place(case: Case, at: str) -> tuple[str, str]:
 
 
 def table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str, ...]) -> Iterator[Breach]:
-    """Rules of a table over time beside the other keys that say how a load changes."""
+    """Rules of a table over time together with other keys that say how a load changes."""
     extra = [key for key in others if key in given.model_fields_set]
     if extra:
         yield Breach((*path, extra[0]), "is given with file.", "Keep one of the two.")

@@ -134,8 +134,8 @@ def wrong_slopes(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, b
         (BearingModel("mine", "mine", text), "force: cannot be compiled by numba: .*open"),
         (BearingModel("mine", "mine", no_field), "force: cannot be compiled by numba: .*length"),
         (BearingModel("mine", "mine", 3.0), "force: is no function"),  # type: ignore[arg-type]
-        (BearingModel("short", "mine", spring), "name: is that of a key or model of the program"),
-        (BearingModel("two-phase", "mine", spring), "name: is that of a key or model of the program"),
+        (BearingModel("short", "mine", spring), "name: is already a key or model of the program"),
+        (BearingModel("two-phase", "mine", spring), "name: is already a key or model of the program"),
         (BearingModel("My Bearing", "mine", spring), "name: has other characters than small letters"),
         (BearingModel("mine", "mine", spring, keys=(frbcli.BearingKey("width", 1.0),)),
          "keys.width: is already the name of another field"),

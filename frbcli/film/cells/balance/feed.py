@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at most
 EAGER = 2.5  # what a film with an eccentric journal takes, over what a concentric one takes
 ALL = 1.0  # filling of openings at the pressure of the supply
-ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be resolved any closer
+ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling is not resolved closer
 MOST = 80  # fillings that are tried
 SAME = 1e-15  # fillings that differ by less
 Solve = Callable[[float, "VolumeSolution | None"], "VolumeSolution"]
