@@ -43,7 +43,7 @@ class UnfedFilm:
 
     @property
     def remark(self) -> str:
-        """The line beside a result, with the remedy."""
+        """The line next to a result, with the remedy."""
         film = f"film {self.name}" if self.name else "the film"
         return f"Note: {film} has no pressurised supply. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
 

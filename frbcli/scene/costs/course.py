@@ -36,8 +36,8 @@ ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step s
 
 
 RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring that keeps no oil
-# Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
-# 1.3 to 3.4.
+# Steps of a journal that a whirl presses into an elastic shell over the steps of one that it presses into the oil
+# alone: 1.3 to 3.4.
 ELASTIC = 1.7
 LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
@@ -57,7 +57,7 @@ SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
 
 @dataclass(frozen=True)
 class RunCourse:
-    """times: (k,) s; steps, solves: (k,) numbers until then, of film solves those of all films."""
+    """times: (k,) s; steps, solves: (k,) numbers until then, solves summed over all films."""
 
     times: Array
     steps: Array

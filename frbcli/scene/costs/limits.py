@@ -58,7 +58,7 @@ def memory(number: float) -> str:
 
 @dataclass(frozen=True)
 class _Limited:
-    """The demand of a key. times: over that of usual cases."""
+    """The demand of a key. times: over the demand of usual cases."""
 
     times: float
     key: str

@@ -41,8 +41,8 @@ HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ri
 
 def compile_s(cases: Iterable[Case], kernels: Kernels = "loop") -> float:
     """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
-    a time loop of their own beside that of tabulated films. kernels: those of a time loop, of films at rest, or both,
-    each with its own machine code of what both call."""
+    their own time loop, different from tabulated films. kernels: those of a time loop, of films at rest, or both, each
+    with its own machine code of what both call."""
     cases, spent = list(cases), 0.0
     if kernels != "loop":
         spent += AT_REST * sum({form: form.compiling[0] for form in map(form_of, cases)}.values())
@@ -58,7 +58,7 @@ def _kind(case: Case) -> tuple[FilmForm, bool]:
 
 
 def compile_B(case: Case) -> float:
-    """Memory in bytes of a process that compiles the kernels for a case: that of the first start."""
+    """Memory in bytes of a process that compiles the kernels for a case, at the first start."""
     return _compilation(case)[1]
 
 

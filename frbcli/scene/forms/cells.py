@@ -84,7 +84,7 @@ class CellForm(FilmForm):
         return None if cells is None else self.of_whole(cells)
 
     def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """Cells (around, along) of a plan, of those of a section."""
+        """Cells (around, along) of a plan, from the cells of a section."""
         return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
@@ -104,7 +104,7 @@ class CellForm(FilmForm):
         if two_phase.diffusion != "consistent":
             changes.append('film.two-phase.diffusion = "consistent"')
         if two_phase.steepness > GENTLE:
-            changes.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
+            changes.append(f"film.two-phase.steepness = {GENTLE:g} instead of {two_phase.steepness:g}")
         return tuple(changes)
 
 

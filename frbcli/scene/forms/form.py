@@ -39,7 +39,7 @@ BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held
 @dataclass(frozen=True)
 class SolveCounts:
     """Counts of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a
-    stage; pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the
+    stage; pressed: steps and solves of a stage over the numbers in another whirl, where it presses the journal into the
     shell."""
 
     crowded: float
@@ -62,7 +62,7 @@ class FilmForm:
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
-    error_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
+    error_by_eccentricity: ClassVar[bool] = False  # whether its error is of eccentricities, not of forces
     solved: ClassVar[bool] = (
         True  # whether its pressure is solved, on a mesh whose error is known
     )
@@ -78,7 +78,7 @@ class FilmForm:
     parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
-    follows_supply: ClassVar[bool] = True  # whether its pressures may follow those of the supply over time
+    follows_supply: ClassVar[bool] = True  # whether its pressures may follow the supply's over time
     compiling: ClassVar[tuple[float, float]] = 16.0, 3.6e8  # at the first start: CPU time in s, memory in bytes
     rules: ClassVar[tuple[Rule, ...]] = ()  # what it is not made for, and why
 
@@ -131,7 +131,7 @@ class FilmForm:
         return None
 
     def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """Cells (around, along) of a section, up to a plane of symmetry, of those of a plan."""
+        """Cells (around, along) of a section, up to a plane of symmetry, from the cells of a plan."""
         return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
@@ -167,7 +167,7 @@ class FilmForm:
         """The decision about the transport of oil: choice, value, reason."""
         if is_published(case):
             return "diffusion", case.film.two_phase.diffusion, DIFFUSIONS[case.film.two_phase.diffusion]
-        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
+        reason = "upwind flow through the faces of the cells: conserves oil, instead of an artificial diffusion"
         return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
     def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:

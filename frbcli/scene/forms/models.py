@@ -58,7 +58,7 @@ def model_decisions(model: BearingModel) -> tuple[tuple[str, str, str], ...]:
 
 
 def _flowless(case: Case) -> str | None:
-    """The model, where heat leaves with an oil flow that it does not tell."""
+    """The model, where heat leaves with an oil flow that it does not give."""
     model = chosen_model(case)
     asked = case.heat is not None and case.heat.side_flow == "film"
     return case.film.theory if asked and model is not None and model.flow is None else None
@@ -91,7 +91,7 @@ def _geometry_faults(case: Case) -> Iterator[Fault]:
 
 
 def _parts_faults(key: str, film: FilmGeometry) -> Iterator[Fault]:
-    supply, remedy = film.supply, "Leave it out: the model stands for the whole bearing."
+    supply, remedy = film.supply, "Leave it out: the model represents the whole bearing."
     if not supply.plain:
         problem = "is a supply that a bearing model cannot represent."
         yield Fault(f"{key}.supply.kind", supply.kind, None, problem, remedy)
@@ -118,7 +118,7 @@ def _force_faults(case: Case, omega: float) -> Iterator[Fault]:
 
 RULES = (
     refusal(
-        ALL, "film.theory", _flowless, "does not tell the oil that leaves its film and takes the heat along",
+        ALL, "film.theory", _flowless, "does not give the oil flow that leaves its film with the heat",
         "Give BearingModel a function flow(d_x, d_y, v_x, v_y, omega, bearing) that returns it in m^3/s "
         '(docs/adding-a-model.md), or write thermal.side_flow = "concentric".',
     ),

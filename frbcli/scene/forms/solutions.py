@@ -39,7 +39,7 @@ class SolutionForm(FilmForm):
     rules: ClassVar[tuple[Rule, ...]] = (
         refusal(
             (RUN,), "output.signals", oil_flow_signal,
-            "is not told by the tables of the penalty model", 'Write film.solution = "cells".',
+            "is not known from the tables of the penalty model", 'Write film.solution = "cells".',
         ),
     )  # fmt: skip
 

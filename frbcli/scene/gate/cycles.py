@@ -23,7 +23,7 @@ from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
 CONSTANT = "these limit cycles are computed for one rotor with constant coefficients"
-HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film the one of frb check or frb stability.'
 
 
 def coefficient_faults(case: Case) -> Iterator[Fault]:
@@ -101,7 +101,7 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
 
 
 def unbalance_faults(case: Case) -> Iterator[Fault]:
-    """Whirls with unbalance are those of rotors that have one."""
+    """Whirls with unbalance need a rotor with unbalance."""
     if not drives(case):
         problem, remedy = "is zero: no whirl can lock in with it.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)

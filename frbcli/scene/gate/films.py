@@ -87,7 +87,7 @@ def bath_faults(case: Case) -> Iterator[Fault]:
         elif place.grid_body != HOUSING or place.feed_holes is not None:
             problem = "parts the ends, and the openings of the film turn against the bath."
         elif law.empties and oil.cavitation_pressure >= oil.ambient_pressure:
-            problem = "has no effect: the pressure is nowhere below that of the bath, so that no oil comes in."
+            problem = "has no effect: the pressure is nowhere below the bath's, so that no oil comes in."
         else:
             continue
         yield Fault(f"{key}.ends.bath_level", f"{film.bath:.3g} radii", None, problem, remedy)
@@ -101,7 +101,7 @@ def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:
 
 
 def saturation_faults(case: Case) -> Iterator[Fault]:
-    """Gas that dissolves in proportion to its pressure, as Henry's law has it."""
+    """Gas that dissolves in proportion to its pressure, by Henry's law."""
     pressure = case.film.bubbly.saturation_pressure if "bubbly" in case.cavitations else None
     if pressure is not None and pressure > HENRY:
         problem = f"is above {display(HENRY, 'Pa')}, up to which gas dissolves in proportion to its pressure."
@@ -182,7 +182,7 @@ def _sealed_films(case: Case) -> Iterator[tuple[str, FilmGeometry]]:
 def _enclosed(case: Case, key: str, film: FilmGeometry) -> Iterator[Fault]:
     """Oil that does not come in or leave has the pressure that it was enclosed with."""
     if film.sealed < ENCLOSED and not film.supply.feeds and not case.film.bearing_model:
-        problem = "encloses the oil, for nothing feeds the film: the level of its pressure is that of its filling."
+        problem = "encloses the oil, for nothing feeds the film: the level of its pressure follows from its filling."
         remedy = f"Give it a supply, or a share of at least {ENCLOSED:g}; runs with half-sommerfeld take any."
         yield Fault(f"{key}.ends", _shown(film), None, problem, remedy)
 
@@ -201,7 +201,7 @@ def mesh_faults(case: Case) -> Iterator[Fault]:
 
 
 def rough_faults(case: Case) -> Iterator[Fault]:
-    """The gap between rough surfaces is that of plain cylinders."""
+    """The gap between rough surfaces has to be between plain cylinders."""
     contact = case.contact
     if contact.roughness is None:
         return
@@ -210,7 +210,7 @@ def rough_faults(case: Case) -> Iterator[Fault]:
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film = place.geometry
         if film.shell is not None:
-            problem = "is not modelled with asperities, whose gap is that of a plain cylinder."
+            problem = "is not modelled with asperities, which need the gap of a plain cylinder."
             yield Fault(f"{key}.{film.shell.key}", film.shell.words, None, problem, f"{SMOOTH}, or leave it out.")
         problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
         if LAST * contact.roughness >= film.clearance:
@@ -223,7 +223,7 @@ def rough_faults(case: Case) -> Iterator[Fault]:
         problem = f"changes the flow of finite-volume films, and this film is: {form}."
         yield Fault("contact.flow_factors", "true", None, problem, "Write false.")
     if contact.shear != 0.0 and any((each.outside, each.grid_body) != (HOUSING,) * 2 for each in film_places(case)):
-        problem = "lets a surface carry more oil than the other, which is modelled beside shells and openings at rest."
+        problem = "lets a surface carry more oil than the other, which needs shells and openings at rest."
         value = display(contact.journal_roughness or 0.0, "m")
         yield Fault("contact.journal_roughness", value, None, problem, "Leave it out: both surfaces are equal then.")
     for key, value in misaligned(case):
@@ -250,5 +250,5 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
 def rough_heat_faults(case: Case) -> Iterator[Fault]:
     """Heat in cycles and in tests does not know of boundary friction."""
     if case.contact.rough and case.heat is not None:
-        problem = "makes heat by friction, and in cycles and tests the heat is that of the films alone."
+        problem = "makes heat by friction, and in cycles and tests the films alone make heat."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

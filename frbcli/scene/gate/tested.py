@@ -25,7 +25,7 @@ LEFT_OUT = {name: field.default for name, field in Case.model_fields.items() if 
 
 def tested_case(case: Case) -> Case:
     """The case of the film that motion.film names, without a rotor; the case itself where it names none. The tilt of
-    the journal is that of the motion."""
+    the journal is given by the motion."""
     if case.film.tilt != "none":
         case = altered(case, {"film": altered(case.film, {"tilt": "none"})})
     index = _index(case)

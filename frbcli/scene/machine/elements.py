@@ -60,7 +60,7 @@ def element_parts(case: Case) -> Parts:
 
 
 def harmonics_of(case: Case) -> tuple[Harmonic, ...]:
-    """The harmonic loads of a case beside the unbalance, each on the x and y of its place."""
+    """The harmonic loads of a case besides the unbalance, each on the x and y of its place."""
     return tuple(load for _, load in element_parts(case).loads if isinstance(load, Harmonic))
 
 
@@ -185,11 +185,11 @@ def first_without_film(case: Case) -> tuple[str, str]:
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
     """The faults of what is more than bearings on the ground, where `what` is of these alone."""
-    return [Fault(each.key, "", None, f"is beside the bearings, and {what}.", remedy) for each in beside_bearings(case)]
+    return [Fault(each.key, "", None, f"adds to the bearings, and {what}.", remedy) for each in beside_bearings(case)]
 
 
 def beside_bearings(case: Case) -> tuple[MachineElement, ...]:
-    """What lets the shells of bearings move, or pulls at the shaft beside them."""
+    """What lets the shells of bearings move, or pulls at the shaft."""
     return tuple(element for element in elements_of(case) if element.besides_bearings)
 
 

@@ -21,7 +21,7 @@ from frbcli.scene.shafts.table import shaft_of
 from frbcli.units import display
 
 NEXT = 1e-6  # m: a bearing where two sections meet lies on both
-ALIKE = 0.1  # of the diameter of the shaft, by which that of a journal may differ
+ALIKE = 0.1  # of the diameter of the shaft, by which a journal's may differ
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,8 @@ def findings(case: Case) -> Findings:
 
 
 def static_loads(case: Case) -> tuple[float, ...]:
-    """N on each film, in their order; that of a kinematic test; none where none is known, or where the bearings do not
-    hold the rotor."""
+    """N on each film, in their order; the load of a kinematic test; none where none is known, or where the bearings do
+    not hold the rotor."""
     if case.given_rotor is None:
         return () if case.motion is None or case.motion.load is None else (case.motion.load,)
     rotor = make_rotor(case)
@@ -102,7 +102,7 @@ def remarks(case: Case) -> tuple[str, ...]:
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:
-    """Journals whose diameter is not that of the shaft there."""
+    """Journals whose diameter differs from the shaft's there."""
     ends = np.cumsum([section.length for section in case.shaft])
     for bearing in case.bearings:
         film, position = bearing.films[0], bearing.position

@@ -58,7 +58,7 @@ FILM_OPERATION = (
 
 
 def operating_points(case: Case) -> tuple[FilmOperation, ...]:
-    """Every film of a case at its top speed: that of [speed], or that of a kinematic test."""
+    """Every film of a case at its top speed: of [speed], or of a kinematic test."""
     omega = 2.0 * math.pi * _top_speed(case)
     operations: list[FilmOperation] = []
     for bearing in case.bearings:

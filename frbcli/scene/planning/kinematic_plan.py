@@ -44,10 +44,10 @@ TWO_PI = 2.0 * math.pi
 @dataclass(frozen=True)
 class KinematicPlan:
     """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
-    rectangle: that of the accurate modal film, None where grooves or bores are cut out; cells: (around, along);
-    steps: per period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure;
-    turning: rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11);
-    model: the bearing model that gives the forces, cavitation is empty then."""
+    rectangle: of the accurate modal film, None where grooves or bores are cut out; cells: (around, along); steps: per
+    period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning:
+    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11); model: the
+    bearing model that gives the forces, cavitation is empty then."""
 
     test: str
     cavitation: str
@@ -84,17 +84,17 @@ class KinematicPlan:
 
     @property
     def modal(self) -> bool:
-        """Whether the pressure is that of the modal film."""
+        """Whether the pressure is from the modal film."""
         return self.form.modal
 
     @property
     def on_cells(self) -> bool:
-        """Whether the force is that of a finite-volume film."""
+        """Whether the force is from a finite-volume film."""
         return self.form.by_cells
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
-    """Plan a kinematic test of a case for one cavitation model (None: that of the case).
+    """Plan a kinematic test of a case for one cavitation model (None: the one of the case).
 
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """

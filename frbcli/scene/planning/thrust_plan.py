@@ -18,7 +18,7 @@ def thrust_plan(case: Case) -> tuple[Decision, ...]:
         choices.append(Decision("thrust bearing", f"{bearing.name} {bearing.pads} pads, {bearing.side}".strip(), depth))
     return (
         *choices,
-        Decision("cavitation", case.film.cavitation, "only where the pressure falls below that of cavitation"),
+        Decision("cavitation", case.film.cavitation, "only where the pressure falls below the cavitation pressure"),
         _viscosity(case),
         Decision("mesh", f"{radial} x {angular}", "quadratic elements of a pad, radius by angle"),
         Decision("error", f"from {COARSE[0]} x {COARSE[1]}", "stated with each state by `frb thrust`"),

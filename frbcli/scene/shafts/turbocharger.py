@@ -44,9 +44,9 @@ FREQUENCIES = 3  # bending modes that are shown
 
 @dataclass(frozen=True)
 class FreeShaft:
-    """A shaft in its free modes. modes: all of each plane; reduced: those of its body; journals: places of all
-    bearings, those with a film first; wheels: its disks; collars: places that are held in tilt; bow: what bends it
-    without load, None of a straight one."""
+    """A shaft in its free modes. modes: all of each plane; reduced: the modes of its body; journals: places of all
+    bearings, films first; wheels: its disks; collars: places that are held in tilt; bow: what bends it without load,
+    None of a straight one."""
 
     modes: FreeModes
     reduced: Reduction
