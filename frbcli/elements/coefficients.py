@@ -1,7 +1,6 @@
 """Given coefficients: the force on the shaft is -K d - C d' - M d'' with the displacement d (2,) of the shaft.
 
-K, C and M may depend on the speed of the rotor; for the motion at each moment they are those of its speed then.
-"""
+K, C and M may depend on the speed of the rotor; for the motion at each moment the speed at that moment counts. """
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """A squeeze film damper: the shell of a bearing is a body that moves in a film, on a centring spring, without turning.
 
-The film is one of the machine's films, between the shell and its seat; the spring lies beside it. Equal bearings of a
-symmetric rotor move alike: one body stands for both shells.
-"""
+The film is one of the machine's films, between the shell and its seat; the spring acts in parallel. Equal bearings of a
+symmetric rotor move alike: one body represents both shells. """
 
 from __future__ import annotations
 

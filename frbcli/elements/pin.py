@@ -1,9 +1,8 @@
 """Pins of semi-floating rings and cartridges: they act on the turning of a ring alone.
 
 M = -(K (phi - phi_0) + C phi') beyond the play phi_0 to one side, K = k r^2 and C = c r^2 of a pin at the radius r, as
-long as it pushes the ring back, and 0 within the play; solve/pin.py has it in a stage of the time loop. At rest the
-drag of its films holds a ring against its pin.
-"""
+long as it pushes the ring back, and 0 within the play; solve/pin.py solves it in a stage of the time loop. At rest the
+drag of its films holds a ring against its pin. """
 
 from __future__ import annotations
 

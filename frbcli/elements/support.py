@@ -1,8 +1,7 @@
 """The support of a bearing: its shell is a body on springs and dampers, M u'' + C u' + K u = weight + what acts on it.
 
 Film or coefficients act between the shaft, or the ring, and that body. Equal bearings of a symmetric rotor move alike:
-one body stands for both, with twice their mass, stiffness and damping.
-"""
+one body represents both, with twice their mass, stiffness and damping. """
 
 from __future__ import annotations
 

@@ -126,8 +126,8 @@ class FilmsAtRest:
 
 
 def films_at_rest(system: System, omega: float, position: RestingPosition, settled: bool = True) -> FilmsAtRest:
-    """The films of a machine that rests at omega rad/s. settled: whether the derivatives of films that keep oil are
-    those of settled_force, else one-sided ones. Raises NotConverged."""
+    """The films of a machine that rests at omega rad/s. settled: whether the derivatives of mass-conserving films come
+    from settled_force, else one-sided ones. Raises NotConverged."""
     speeds, near = position.ring_speeds, position.films
     totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
 

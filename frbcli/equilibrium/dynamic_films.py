@@ -1,10 +1,11 @@
 """Machines at rest whose films are mass-conserving: the dynamic stiffness of the films, and eigenvalues of machine and
 oil.
 
-The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of L Z(s) P, by nonlinear inverse iteration from the
+The eigenvalues s of M s^2 + (D + Omega G) s + K + sum of L Z(s) P follow by nonlinear inverse iteration from the
 eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
-motion of the machine onto that of the journals, and of the angles of rings onto the angle by which journal and shell
-turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the drag.
+motion of the machine onto the motion of the journals, and of the angles of rings onto the angle by which journal and
+shell turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the
+drag.
 
 How a film answers depends on where its fronts lie between its cells: fronts cross cells one at a time, and the
 derivative jumps. So Z is the mean over PLACES of the cells. Its error is of first order in the size of the cells:
@@ -36,12 +37,12 @@ from frbcli.film.rectangles.film import FilmForce
 # Cells around, and along a half of the width, with their weights in the extrapolation.
 MESHES = (((96, 12), 2.0), ((48, 6), -1.0))
 PLACES = 8  # of the cells, over one cell
-SPREAD = 2.0  # standard deviations of what the mean over the places leaves that are told as its error
+SPREAD = 2.0  # standard deviations of the mean over the places that are stated as its error
 PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
-# Relative distance to a pole of a projection within which a motion is one of the projection alone: to that of a film
-# with gas belong some that grow and move nothing, next to which the inverse iteration ends at once.
+# Relative distance to a pole of a projection within which a motion belongs to the projection alone: the projection of a
+# film with gas has some that grow and move nothing, next to which the inverse iteration ends at once.
 POLE = 1e-8
 # Difference of the films of both meshes over the smaller one. Next to a pole of the finer mesh it is 1, next to one of
 # the coarser mesh more; at eigenvalues of machines it is 0.01 to 0.3, of those that hardly oscillate up to 0.5.
@@ -58,10 +59,10 @@ INSTANT = 1e-5  # delay over the longest one of all films, below which the oil o
 
 @dataclass(frozen=True)
 class DynamicFilm:
-    """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
-    exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
-    the oil, but for `exact`; lying: of each of MESHES with its cells in each of PLACES, times the weight of the mesh.
-    `turns`: whether it is one beside rings, see LinearFilm.turning."""
+    """A film that may be mass-conserving. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one
+    place, exact: the film that this is a projection of, None of a film without memory; summits: asperities, which all
+    of them include in addition to the oil, except `exact`; lying: of each of MESHES with its cells in each of PLACES,
+    times the weight of the mesh. `turns`: whether it is next to a ring, see LinearFilm.turning."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
@@ -76,7 +77,7 @@ class DynamicFilm:
         return z.real, z.imag / frequency
 
     def on(self, summits: FilmForce) -> DynamicFilm:
-        """The film with the summits of rough surfaces beside it, which have no memory, and whose friction does not
+        """The film with the summits of rough surfaces in parallel, which have no memory, and whose friction does not
         follow the angle by which journal and shell turn together."""
         more = without_memory(*np.zeros((2, *self.own.place.shape)))
         at = slice(0, len(summits.force))

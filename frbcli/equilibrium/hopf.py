@@ -70,8 +70,7 @@ def hopf_points(
 ) -> Iterator[Crossing[Rest]]:
     """The Hopf points between machines at rest whose values are in their order.
 
-    between: the machine at a value between those of two; close: relative error of the value at a Hopf point.
-    """
+    between: the machine at a value between two others; close: relative error of the value at a Hopf point. """
     for low, high in itertools.pairwise(points):
         yield from _within(between, low, high, close, HALVINGS)
 

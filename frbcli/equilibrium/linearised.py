@@ -60,8 +60,8 @@ def rotor_at_rest(
 
 
 def _beside_rings(system: System, rotor: LinearRotor, bodies: Array, places: Array) -> tuple[Array, Array]:
-    """Maps of the films beside rings, L (films, n, c + 1) and P (films, c + 1, n) of dynamic_films; bodies, places: see
-    ring_torques."""
+    """Maps of the films next to rings, L (films, n, c + 1) and P (films, c + 1, n) of dynamic_films; bodies, places:
+    see ring_torques."""
     spins, (films, c, n) = list(system.spins), rotor.journals.shape
     pushes, journals = np.zeros((films, n, c + 1)), np.zeros((films, c + 1, n))
     pushes[:, :, :c] = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
@@ -71,8 +71,8 @@ def _beside_rings(system: System, rotor: LinearRotor, bodies: Array, places: Arr
 
 
 def oscillator(system: System, omega: float, at_rest: FilmsAtRest, films: Sequence[DynamicFilm]) -> Oscillator:
-    """The machine at omega rad/s without its films, which keep their oil. These turn its rings with all of their
-    forces, and summits, which have torques of their own, are taken off here."""
+    """The machine at omega rad/s without its films, which are mass-conserving. The films turn its rings with all of
+    their forces; summits, which have their own torques, are removed here."""
     off, speeds = [(-film.summits.place, -film.summits.rate) for film in films], at_rest.position.ring_speeds
     rotor = rotor_at_rest(system, omega, speeds, at_rest, off)
     here, journals = rotor.at(omega), rotor.journals

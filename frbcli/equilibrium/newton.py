@@ -19,7 +19,7 @@ Films = TypeVar("Films")
 ITERATIONS = 80
 GAP_KEPT = 0.25  # a step may shrink 1 - eps of a journal to this share of it
 SHORTER = 0.5  # of the share of a step that is tried, while the force that is left over does not fall
-NEAR = 0.1  # share that a step leaves of the force left over, below which its change tells what the slopes lack
+NEAR = 0.1  # share that a step leaves of the force left over, below which its change shows what the slopes lack
 STUCK, GAIN = 10, 1e-3  # shortened steps in a row that each take less than this share of the force that is left over
 
 
@@ -116,8 +116,8 @@ def search_rest(
 
 
 def _lacking(before: Array, current: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
-    """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): as the
-    change of what is left over tells it along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
+    """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): from the
+    change of the residual along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
     if not 0.0 < new.left < NEAR * current.left:
         return np.zeros_like(before)
     predicted = 0.5 * (current.slope + new.slope) @ step + before @ step

@@ -4,7 +4,7 @@ The rotor is linear, and the films see its journals only. So it is condensed fir
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
 rings turn with the speeds at which the torques on them balance (ring_speed.py), which follow from the places of the
 journals: they are no unknowns of their own. Films that see tilts have the rotor in all its degrees of freedom, and its
-load does not tell the force of each; there the speeds of the rings are unknowns instead of their angles. """
+load does not determine the force of each; there the speeds of the rings are unknowns instead of their angles. """
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class RestingPosition:
     lacking: Array | None = None
 
     def velocities(self, system: System) -> Array:
-        """(n,) those of all degrees of freedom: the rings turn."""
+        """(n,) velocities of all degrees of freedom: the rings turn."""
         speeds = np.zeros_like(self.displacements)
         speeds[list(system.spins)] = self.ring_speeds
         return speeds
@@ -164,7 +164,7 @@ def _position(
 
 
 def _ring_unit(system: System, omega: float) -> float:
-    """Speed of a ring in rad/s that an unknown of 1 m stands for: a film's clearance for the speed of the rotor."""
+    """Speed of a ring in rad/s per unknown of 1 m: the speed of the rotor over a film's clearance."""
     return max(abs(omega), 1.0) / system.clearances[0]
 
 
@@ -176,7 +176,8 @@ def _parted(system: System, omega: float, unknowns: Array) -> tuple[Array, Array
 
 
 def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Array) -> Array:
-    """(n,) unknowns of a whole rotor at displacements (n,), its rings turning as the drag of their films has it."""
+    """(n,) unknowns of a whole rotor at displacements (n,), with its rings at the speeds given by the drag of their
+    films."""
     drag, unknowns = drags(system, _places(system, held, displacements)), displacements.copy()
     for ring, spin in enumerate(system.spins):
         outer, inner = (system.bodies == ring).T
@@ -201,7 +202,7 @@ def _balance(
     system: System, held: HeldRotor, omega: float, near: tuple[FilmForce, ...], position: Array,
     before: ForceBalance[tuple[FilmForce, ...]] | None,
 ) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
-    """What rotor and films put on the journals; near: films near those of the first position, see _forces."""
+    """What rotor and films put on the journals; near: films near the first position, see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
     near = _foreseen(before.films if before else near, position)
@@ -281,7 +282,7 @@ def _places(system: System, held: HeldRotor, position: Array) -> Array:
 
 
 def _ends(system: System, held: HeldRotor, reach: float, position: Array) -> Array:
-    """See Films.ends, over the reach, 1 or that of an elastic shell; position: the unknowns of the rotor."""
+    """See Films.ends, over the reach, 1 or an elastic shell's; position: the unknowns of the rotor."""
     return np.asarray(system.films.ends(_places(system, held, position)) / reach)
 
 

@@ -55,8 +55,8 @@ def drags(system: System, places: Array, films: Sequence[FilmForce] = ()) -> Arr
 def ring_speeds(
     system: System, held: HeldRotor, omega: float, position: Array, films: Sequence[FilmForce] = ()
 ) -> Array:
-    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in
-    m, where the rotor's load tells the forces of the films; 0 of rings with a pin, which takes what is left over.
+    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in m,
+    where the rotor's load determines the forces of the films; 0 of rings with a pin, which takes what is left over.
     films: see drags."""
     if not system.ring_count:
         return np.zeros(0)
@@ -82,8 +82,9 @@ def balanced_speeds(system: System, held: HeldRotor, omega: float, position: Arr
 
 
 def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Array, drag: float) -> float:
-    """The speed of a ring that its films alone would turn with speeds[ring], and the summits beside them. drag: what
-    the torque of the films falls by per speed, N m s. So does that of friction: the root is the only one."""
+    """The speed of a ring that its films alone would turn with speeds[ring], under films and summits together. drag:
+    decrease of the film torque per speed, N m s. The friction torque falls with the speed, too, so that there is one
+    root only."""
     from scipy.optimize import brentq  # takes long to load
 
     free = float(speeds[ring])
@@ -118,8 +119,8 @@ def across(place: Array) -> Array:
 
 
 def by_total(force: FilmForce, place: Array) -> Array:
-    """(c,) derivative of a film's force by omega_J + omega_S: that of the motion of its gap, as if its journal moved
-    across. A law that follows the speed itself makes Newton's method a little slower, and the rest no other one."""
+    """(c,) derivative of a film's force by omega_J + omega_S, from the motion of its gap, as if its journal moved
+    across. With a law that follows the speed itself Newton's method is a little slower, with the same result."""
     return np.asarray(0.5 * force.by_velocity @ across(place))
 
 
@@ -170,8 +171,8 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
 
 
 def memoryless(film: FilmForce, place: Array | None = None) -> tuple[Array, Array]:
-    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) those (c + 1, c + 1)
-    of a film beside rings, see LinearFilm.turning."""
+    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) (c + 1, c + 1) as of a
+    film next to rings, see LinearFilm.turning."""
     stiffness, damping = -film.by_displacement, -film.by_velocity
     if place is None:
         return stiffness, damping

@@ -34,15 +34,14 @@ from frbcli.scene.planning.plan import make_plan
 
 ON_CELLS = replace(SEARCH, negligible=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
-# Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of finite-volume films lack
-# what the law follows, those of others are exact, and a step leaves its square over the gap.
+# Of other meshes, whose differences are shown to one or two digits, from 3e-5 on: slopes of finite-volume films lack
+# what the law follows, slopes of others are exact, and a step leaves its square over the gap.
 NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, negligible=1e-6)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
-# meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, that of the
-# narrow gap.
+# meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, the narrow gap.
 SCATTER, NARROW = 1.25, 0.15
-CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
+CLOSE = 1e-6  # of the speed: closer machines do not show how their places change
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class MachineAtRest:
 
     @cached_property
     def oscillator(self) -> Oscillator:
-        """The machine without its films, which keep their oil."""
+        """The machine without its films, which are mass-conserving."""
         return oscillator(self.system, self.omega, self.at_rest, self.dynamic)
 
     @cached_property
@@ -80,7 +79,7 @@ class MachineAtRest:
 
     @property
     def modes_on_finer_films(self) -> list[tuple[complex, Complex]]:
-        """Those of the finer of two meshes, instead of the extrapolation from both."""
+        """Modes of the finer of two meshes, instead of the extrapolation from both."""
         return followed(self.oscillator, [film.fine for film in self.dynamic], self.modes)
 
     def foreseen(self, omega: float) -> Array:
@@ -166,7 +165,7 @@ class StaticMachines:
 
 def _nearly(system: System, held: HeldRotor) -> Search:
     """How closely rest is sought on another mesh than cells. LEAST of the load moves a journal by less than LEAST of
-    its clearance, the least error that is stated of its place: to solve the films once more would tell nothing. Moments
+    its clearance, the least error that is stated of its place: solving the films once more would add nothing. Moments
     on films that see tilts have another scale."""
     if system.films.coordinates > 2:
         return NEARLY
@@ -174,7 +173,7 @@ def _nearly(system: System, held: HeldRotor) -> Search:
 
 
 def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) -> Array | float:
-    """See MachineAtRest; that of the machine near it where both are too close to each other to tell."""
+    """Derivative by speed, see MachineAtRest; reuses the neighbour's if the speeds nearly coincide."""
     if near is None:
         return 0.0
     if abs(omega - near.omega) < CLOSE * omega:

@@ -20,7 +20,7 @@ from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
 CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
-APART = 1e-4  # of the speed: machines that are closer do not tell how their temperatures change
+APART = 1e-4  # of the speed: closer machines do not show how their temperatures change
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class FilmTemperature:
 
 @dataclass(frozen=True)
 class RingTemperature:
-    """One ring: inner and outer temperature K; its speed over that of the rotor."""
+    """One ring: inner and outer temperature K; its speed over the rotor's."""
 
     ring: str
     inner: float
@@ -132,7 +132,7 @@ class WarmMachines:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
             start = None if resting is None else resting.displacements
-            neighbour = None if system.remembers else resting  # what fronts of oil leave is not that of another speed
+            neighbour = None if system.remembers else resting  # what fronts of oil leave differs at another speed
             resting = resting_position(system, omega, start, search, neighbour=neighbour)
             bodies = np.concatenate([[omega], resting.ring_speeds])
             power, flow = _film_heat(system, resting.journals, bodies)

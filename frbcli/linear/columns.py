@@ -92,7 +92,7 @@ SHEET = (
            more="what flows back into a groove is not part of it"),
     Column("temperature_rise", "K", "temperature rise of that oil if it took all of the power",
            shown=(Shown("rise", ".3g", table=FILMS),), more="with `oil.density` and `oil.heat_capacity`; if the case "
-           "gives none, 2000 J/(kg K), or with heat that of the oil at 80 degC"),
+           "gives none, 2000 J/(kg K), or with heat the oil's at 80 degC"),
     Column("force_error_relative", "", "relative error of the force, from other meshes", attrgetter("force_error"),
            key="error.force_relative"),
     Column("largest_error", "", "largest relative error of force, h, p, loss and flow",
@@ -106,7 +106,7 @@ SHEET = (
     ERROR,
     PLACE_ERROR,
     Column("film_thickness_min_error", "m", "expected error of the smallest film thickness",
-           attrgetter("film_thickness_error"), more="that of the displacement", key="error.film_thickness_min_m"),
+           attrgetter("film_thickness_error"), more="equals the displacement error", key="error.film_thickness_min_m"),
     Column("p_max_error", "Pa", "expected error of the largest pressure", more="by the mesh, and by the displacement",
            key="error.p_max_Pa"),
     Column("power_error", "W", "expected error of the power", more="likewise", key="error.power_W"),
@@ -129,7 +129,7 @@ MIXED_FRICTION = (
     Column("contact_power", "W", "part of the power that is friction of asperities", _mixed("power"),
            shown=(Shown("contact", ".3g", table=MIXED),)),
     Column("asperity_share_error", "", "expected error of the share of the load", _mixed("share_error"),
-           more="by that of the displacement", key="error.asperity_share"),
+           more="by the error of the displacement", key="error.asperity_share"),
 )  # fmt: skip
 
 

@@ -48,7 +48,7 @@ class MixedFriction:
 
     @classmethod
     def of(cls, system: System, i: int, at_rest: RestingFilm, slip: float, shell: float) -> MixedFriction | None:
-        """That of film i at rest, slip and speed of the shell in rad/s; None between smooth surfaces."""
+        """Mixed friction of film i at rest; slip and speed of the shell in rad/s; None between smooth surfaces."""
         if system.asperities is None:
             return None
         own, out = (cls._at(system, i, each, slip, shell) for each in (at_rest, _further_out(at_rest)))
@@ -67,8 +67,7 @@ class MixedFriction:
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its static equilibrium, SI units: the fields are those of SHEET in columns.py, which tells what they
-    are.
+    """One film in its static equilibrium, SI units: the fields are described by SHEET in columns.py.
 
     error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
     p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the
@@ -128,8 +127,8 @@ class FilmState:
 
 
 def heat_capacity(case: Case) -> float:
-    """The specific heat capacity in J/(kg K) of the temperature rise: given, or with heat that of the oil at 80 degC,
-    else HEAT_CAPACITY."""
+    """The specific heat capacity in J/(kg K) of the temperature rise: given, or with heat the oil's at 80 degC, else
+    HEAT_CAPACITY."""
     if case.heat is not None:
         return case.oil.heat_capacity_at(USUAL_TEMPERATURE)
     return case.oil.heat_capacity or HEAT_CAPACITY
@@ -169,7 +168,7 @@ class Fields:
     def of(
         cls, volume: FieldFilm, places: Sequence[Array], speeds: tuple[float, float], factor: CavitationFactor
     ) -> tuple[Fields, ...]:
-        """Those of a steady film at each of several places d, see FieldFilm. speeds: of journal and shell in rad/s;
+        """Fields of a steady film at each of several places d, see FieldFilm. speeds: of journal and shell in rad/s;
         factor: see loads. Raises NotConverged."""
         journal, shell = speeds
         solvers: dict[VolumeFilm, FilmSolver] = {}

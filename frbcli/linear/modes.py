@@ -35,7 +35,7 @@ SPEEDS = 25  # of the default sweep
 SHOWN = 4  # slowest modes of each direction
 NO_STIFFNESS = 1e-9  # direct over largest stiffness of a film that is round-off
 TINY = 1e-300  # N/m
-RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion is that of a rigid body
+RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion counts as rigid-body motion
 
 
 @dataclass(frozen=True)

@@ -76,13 +76,14 @@ SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"
 class Response(Tabular):
     """The motion at n speeds.
 
-    speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
-    amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
-    2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
-    where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the static equilibria; in_films:
-    (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances: (n, f) m, warm with
-    heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN where it is not known.
-    excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites. """
+    speeds_Hz: (n,), ascending, with a static equilibrium; points: the p points of a run; motion: (n, p, 2) complex
+    amplitudes of x and y in m; films: the names of the f films; elements: the names of the e elements; forces: (n, f +
+    e, 2) complex amplitudes of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least
+    damped whirl: where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the static
+    equilibria; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances:
+    (n, f) m, warm with heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN
+    where it is not known. excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
+    """
 
     case: Case
     speeds_Hz: Array
@@ -261,7 +262,7 @@ def response(
 
 
 def _default_speeds(case: Case, operating_Hz: tuple[float, float] | None) -> tuple[float, ...]:
-    """Those of the range of the case, with the ends of the range of operation that lie in it."""
+    """Speeds over the range of the case, including the ends of the range of operation that lie in it."""
     swept = default_speeds(case, SPEEDS)
     if not swept or operating_Hz is None:
         return swept
@@ -352,7 +353,7 @@ def critical_speeds_of(
     operating_Hz: tuple[float, float] | None,
     solved: Callable[[Sequence[float]], list[StabilityPoint]],
 ) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint]]:
-    """The peaks of the response between points at ascending speeds, and those points with what was solved beside them.
+    """The peaks of the response between points at ascending speeds, and the points including additional solved ones.
 
     solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are;
     without films the points of a curve around each peak are."""

@@ -72,12 +72,12 @@ def stability(
     case : Case
         The machine, see `load_case`.
     speeds_Hz : sequence of float, optional
-        Rotor speeds in Hz, above 0, of the points; by default those of the sweep in which the threshold is sought,
+        Rotor speeds in Hz, above 0, of the points; by default the sweep in which the threshold is sought,
         which is the speed range of the case.
     observe : callable, optional
         Called with each speed's number and their number.
     threshold : bool
-        Whether the threshold is sought beside given speeds, too; without speeds it always is.
+        Whether the threshold is sought with given speeds, too; without speeds it always is.
 
     Returns
     -------
@@ -114,8 +114,8 @@ def threshold_alone(case: Case) -> Stability:
 
 
 def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -> tuple[StabilityPoint, ...]:
-    """Points at some of speeds_Hz on the coarsest mesh, of which those that decide where the threshold lies are
-    replaced by those of `machines`: at every SCOUTED-th speed, and at all where growth may pass zero between these.
+    """Points at some of speeds_Hz on the coarsest mesh, of which the ones that decide where the threshold lies are
+    replaced by points of `machines`: at every SCOUTED-th speed, and at all where growth may pass zero between these.
 
     () where this decides nothing: films are not on cells or keep oil, whose eigenvalues scatter from mesh to mesh,
     there is no rest at some speed, or the meshes differ in whether a deciding point is stable.
@@ -174,10 +174,9 @@ def stability_points(
 ) -> tuple[System, tuple[StabilityPoint, ...]]:
     """The machine, and its points at speeds_Hz, ascending.
 
-    observe: called with each speed's number and their number; frequency: that of the motion in
-    rad/s, by the speed of the rotor in rad/s, see point_at_rest; machines: those of the case, where they are made
-    already. Raises InputError if the case cannot be modelled, a speed is not positive, or a film cannot be linearised.
-    """
+    observe: called with each speed's number and their number; frequency: of the motion in rad/s, by the speed of the
+    rotor in rad/s, see point_at_rest; machines: of the case, where they are made already. Raises InputError if the case
+    cannot be modelled, a speed is not positive, or a film cannot be linearised. """
     check_machine(case, speeds_Hz)
     machines = machines or StaticMachines(case, memory=True)
     return machines.system, _sweep(case, machines, speeds_Hz, observe, frequency)

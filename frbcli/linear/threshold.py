@@ -145,7 +145,7 @@ class _Zero:
 
     @classmethod
     def of(cls, speeds: Array, values: Complex) -> _Zero:
-        """That of eigenvalues (N,) in 1/s at speeds (N,)."""
+        """The zero of the growth of eigenvalues (N,) in 1/s at speeds (N,)."""
         middle = float(speeds.mean())
         line = np.stack([np.ones(len(speeds)), speeds - middle], axis=1)
         here, slope = np.linalg.lstsq(line.astype(complex), values)[0].tolist()

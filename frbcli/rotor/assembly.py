@@ -31,7 +31,7 @@ HELD = 1e-10  # over the length of a port: where it rests
 @dataclass(frozen=True)
 class Link:
     """Where an element acts: from the node `inside` to the node `outside`, or the ground. count: of equal elements that
-    one stands for, 2 in a symmetric rotor; sees: those of the COORDINATES of a node that it acts on."""
+    one represents, 2 in a symmetric rotor; sees: the COORDINATES of a node that it acts on."""
 
     inside: str
     outside: str = GROUND
@@ -202,8 +202,8 @@ def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:
 
 
 def preset(rotor: LinearRotor, films: Sequence[int]) -> LinearRotor:
-    """The rotor with the springs beside these films set so that they carry its static load with the shells in their
-    centres, as far as the other films let the shells feel it. Raises NotConverged as held_rotor."""
+    """The rotor with the springs parallel to these films set so that they carry its static load with the shells in
+    their centres, as far as the other films let the shells feel it. Raises NotConverged as held_rotor."""
     if not films:
         return rotor
     places = rotor.journals[:, : len(PLANE)]

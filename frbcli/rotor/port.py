@@ -38,7 +38,7 @@ class ForceLaw(ABC):
     """How a force at a port follows the motion: a class for each kind. `force` is a plain function, compiled with the
     plain functions of its module that it calls, which see floats, arrays and `math`."""
 
-    quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
+    quantity: ClassVar[str] = ""  # with which the names of its signals begin, then the name of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
 
     @property
@@ -79,7 +79,7 @@ class Slope(NamedTuple):
 @dataclass(frozen=True)
 class Port:
     """A force of a machine. name: of its signal; place: (2, n) the displacement it sees; count: of equal elements that
-    it stands for."""
+    it represents."""
 
     name: str
     place: Array

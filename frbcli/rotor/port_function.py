@@ -22,7 +22,7 @@ _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(types.intp, types.intp, *[_POINTER] * 4)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _SHIPPED = "frbcli."
-force: Any = ForceLaw.force  # stands in the template below for that of one law
+force: Any = ForceLaw.force  # placeholder in the template below for the force of one law
 
 
 @cache
@@ -75,5 +75,5 @@ def _forces(
 
 
 def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
-    """A law, whose function stands for force."""
+    """A law, whose function replaces force."""
     force(carray(numbers, (parameters,)), carray(memory, (kept,)), carray(motion, (MOTION,)), carray(answer, (ANSWER,)))

@@ -104,7 +104,7 @@ class PointForces:
 
 def bending_forces(modes: FreeModes, positions: Sequence[float], offsets: Sequence[complex]) -> PointForces:
     """The forces that bend a free shaft to offsets (k,) in m at distinct positions (k,) in m: of all shapes through
-    these that of least energy, which is the shape of a shaft loaded there alone. modes: all of it."""
+    these the one of least energy, which is the shape of a shaft loaded there alone. modes: all of it."""
     at, count = np.stack([modes.at(place) for place in positions]), len(positions)
     bent = at[:, RIGID:] / modes.frequencies[RIGID:]
     flexibility, rigid = bent @ bent.T, at[:, :RIGID]

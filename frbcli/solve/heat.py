@@ -77,7 +77,7 @@ NO_HEAT = NoHeat(np.zeros((0, 0)))
 
 
 def have_heat(heat: Any) -> bool:
-    """Whether a type that the compiler knows is that of a machine with heat."""
+    """Whether a type that the compiler knows belongs to a machine with heat."""
     return getattr(heat, "instance_class", None) is LumpedHeat
 
 
@@ -108,8 +108,8 @@ class AcceptedStep(NamedTuple):
 def warm_stage(
     heat: Any, films: Any, drag: Array, clearances: Array, wet: Array, bodies: Array, since: float
 ) -> None:  # fmt: skip
-    """Viscosities and clearances <- those of a stage `since` s after the start of a step, in which rotor and rings have
-    the speeds `bodies`."""
+    """Viscosities and clearances <- values of a stage `since` s after the start of a step, in which rotor and rings
+    have the speeds `bodies`."""
     raise NotImplementedError
 
 
@@ -222,9 +222,9 @@ def _carry(
 def _follow(
     heat: LumpedHeat, state: Array, films: Any, drag: Array, clearances: Array, wet: Any, ended: bool
 ) -> int:
-    """Viscosities, clearances and what follows from them <- those of the temperatures of a state. ended: whether a step
-    has, in which films keep the volume of their oil. Returns OVERHEATED, with the film in the books of the state, for
-    one too hot or closed, else RUNNING."""
+    """Viscosities, clearances and what follows from them <- values at the temperatures of a state. ended: whether a
+    step has ended; it conserves the volume of the oil in the films. Returns OVERHEATED, with the film in the books of
+    the state, for one too hot or closed, else RUNNING."""
     capacity, _, made, numbers, growth = heat.model
     ends, now, count = heat.ends, heat.now, clearances.shape[0]
     bodies = state.shape[0] - BOOKS - capacity.shape[0]

@@ -29,10 +29,10 @@ class Inputs(NamedTuple):
     """k tables over time: first (k + 1,) row of each, and their number; times, values (rows,) of all.
 
     supplies, walls, pressures (.., 2): number of a table, and the film whose supply has this temperature in K, the node
-    that has it, the film whose supply has this absolute pressure in Pa. ambient: Pa; least: share of a gauge pressure
-    that counts as none; largest (F,): gauge pressures in Pa that the films were made with; shares (F,): of these now;
-    scales (F,): by which the velocities of tabulated films are multiplied now; ends: finite-volume films as they were
-    made, see Films.heat_ends. """
+    with this temperature, the film whose supply has this absolute pressure in Pa. ambient: Pa; least: share of a gauge
+    pressure that counts as none; largest (F,): gauge pressures in Pa that the films were made with; shares (F,): of
+    these now; scales (F,): by which the velocities of tabulated films are multiplied now; ends: finite-volume films as
+    they were made, see Films.heat_ends. """
 
     first: Indices
     times: Array

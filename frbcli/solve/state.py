@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 
 RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED, STANDSTILL = range(6)  # what advance returns
-# omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.
+# omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by the speeds of rotor and rings.
 SUM, SLIP, GRID, TURNING = range(4)
 
 

@@ -71,8 +71,8 @@ NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
 
 class Own(NamedTuple):
-    """Scratch of this loop beside that of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
-    and journals' velocities; q_new (n,)."""
+    """Scratch of this loop besides the stages': newton (m, m); past (HISTORY + stages - 1, 1 + m) times and journals'
+    velocities; q_new (n,)."""
 
     newton: Array
     past: Array

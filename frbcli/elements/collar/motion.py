@@ -97,12 +97,12 @@ class AxialMotion:
         return [float(state[1]), force / self.mass]
 
     def room(self, t: float, state: Array) -> float:
-        """The smaller gap less that of contact, in m."""
+        """The smaller gap less the gap at contact, in m."""
         return min(float(self._gap(side, state[:1])[0]) for side in self._sides) - self.collar.thin
 
     def missing(self) -> tuple[float, float]:
-        """The largest part of the load in N that a full film carries only by pressures below that of cavitation, as its
-        collar lifts, and its time in s."""
+        """The largest part of the load in N that a full film carries only by pressures below the cavitation pressure,
+        as its collar lifts, and its time in s."""
         times = np.linspace(0.0, self.end, LOOKED_AT)
         lifts = []
         for t in times.tolist():

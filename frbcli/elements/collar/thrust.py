@@ -31,7 +31,7 @@ ALONG = "and does nothing else: a {} rotor moves in translation and does not til
 
 @dataclass(frozen=True)
 class ThrustElement(MachineElement):
-    """Pads beside a collar. stand: the node that the pads stand on; rotor: kind of the rotor, "" without one; collar:
+    """Pads next to a collar. stand: the node that the pads stand on; rotor: kind of the rotor, "" without one; collar:
     what it carries, None without an axial load."""
 
     given: ThrustBearing

@@ -1,7 +1,7 @@
 """Force and stiffness of a ball bearing from the displacement of its inner ring: plain functions, compiled in runs.
 
 A ball between raceway grooves (Harris, Rolling Bearing Analysis, chapter 7; Jones): its centre lies `u` along the axis
-and `v` outwards from the centre of the outer groove, that of the inner groove at
+and `v` outwards from the centre of the outer groove, the centre of the inner groove at
 
     a = A sin(alpha_0) + z,    r = A cos(alpha_0) + x cos(psi) + y sin(psi)
 
@@ -32,13 +32,12 @@ BELOW = -0.5 * math.pi  # where the first ball stands at the cage angle 0: in th
 class BallNumbers(NamedTuple):
     """What a ball bearing is to the kernels, SI units.
 
-    points: places around at which balls stand; share: balls of all rows for each place; axial, radial: distances A
-    sin(alpha_0) and A cos(alpha_0) of the groove centres without load; inner, outer: distances of the centre of a ball
-    from the groove centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball
-    over the square of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on
-    all rows in N, or, of rings that are held, their axial displacement; cage: its speed over that of the shaft, 0 for
-    the mean over its angle.
-    """
+    points: places of balls around; share: balls of all rows for each place; axial, radial: distances A sin(alpha_0) and
+    A cos(alpha_0) of the groove centres without load; inner, outer: distances of the centre of a ball from the groove
+    centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball over the square
+    of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on all rows in N,
+    or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
+    angle. """
 
     points: int
     share: float
@@ -76,7 +75,7 @@ def ball(
     """A ball at rest between the centres of the outer groove, (0, 0), and of the inner one, (a, r), in m.
 
     share, centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
-    derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. Those of this one are left there.
+    derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. The values of this ball are left there.
 
     Returns the force (a, r) in N with which the inner ring presses on the ball, and its derivative (aa, ar, rr) by the
     place of the inner groove.

@@ -50,7 +50,7 @@ def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float 
         hess=lambda q: MICROMETRE**2 * at(q)[2][np.ix_(free, free)],
         options={"gtol": 1e-15, "maxiter": 500},
     ).x  # fmt: skip
-    for _ in range(3):  # beyond what differences of energies tell
+    for _ in range(3):  # beyond what differences of energies resolve
         _, gradient, matrix = at(scaled)
         scaled = scaled - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free])[0] / MICROMETRE
     energy, gradient, matrix = at(scaled)

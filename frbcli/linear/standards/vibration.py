@@ -9,8 +9,7 @@ A critical speed with an amplification factor AF from 2.5 on keeps off the range
 
     17 (1 - 1 / (AF - 1.5)) percent below it,    10 + 17 (1 - 1 / (AF - 1.5)) percent above it,
 
-of the nearer limit of the range. Editions differ: that of the contract decides.
-"""
+of the nearer limit of the range. Editions differ: the one in the contract decides. """
 
 from __future__ import annotations
 
@@ -55,7 +54,7 @@ def zone_limits(speed_Hz: Array | float) -> Array:
 
 def required_margin(speed_Hz: float, factor: float | None, operating_Hz: tuple[float, float]) -> float | None:
     """Share of the nearer limit of the range of operation by which a critical speed has to keep off it; within the
-    range that of one below it. None where its amplification factor is not known."""
+    range as for a speed below it. None where its amplification factor is not known."""
     if factor is None:
         return None
     if factor < WELL_DAMPED:
@@ -96,7 +95,7 @@ class PointVibration:
 
 @dataclass(frozen=True)
 class SpeedMargin:
-    """A critical speed beside the range of operation. required: see required_margin."""
+    """A critical speed and its distance to the range of operation. required: see required_margin."""
 
     peak: CriticalSpeed
     required: float | None
@@ -156,12 +155,11 @@ MARGINS = (
 
 @dataclass(frozen=True, repr=False)
 class VibrationLimits(Tabular):
-    """The vibration of a response beside its limits.
+    """The vibration of a response and its limits.
 
-    operating_Hz: lowest and highest speed of operation; covered_Hz: those of them that the response has, None without
-    any; api, iso: by points of the shaft; margins: of the critical speeds; whirling_Hz: speeds of operation at which a
-    whirl grows, so that the vibration is more than that by the unbalance.
-    """
+    operating_Hz: lowest and highest speed of operation; covered_Hz: the part of it that the response covers, None
+    without any; api, iso: by points of the shaft; margins: of the critical speeds; whirling_Hz: speeds of operation at
+    which a whirl grows, so that the vibration is more than the response to unbalance. """
 
     case: Case
     operating_Hz: tuple[float, float]

@@ -41,7 +41,7 @@ HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ri
 
 def compile_s(cases: Iterable[Case], kernels: Kernels = "loop") -> float:
     """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
-    their own time loop, different from tabulated films. kernels: those of a time loop, of films at rest, or both, each
+    their own time loop, different from tabulated films. kernels: of a time loop, of films at rest, or both, each
     with its own machine code of what both call."""
     cases, spent = list(cases), 0.0
     if kernels != "loop":

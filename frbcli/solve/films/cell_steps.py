@@ -1,9 +1,8 @@
 """Films with cells at both ends of a stage and of a step of the time loop, compiled.
 
 Oil is the state of cells: a stage asks for rate H theta - past = -(net outflow), and the rates of all stages are added
-up as those of the velocities are. What a linearised step leaves of the balance stays in the oil that is carried on, so
-that none is lost.
-"""
+up as for the velocities. What a linearised step leaves of the balance stays in the oil that is carried on, so that none
+is lost. """
 
 from __future__ import annotations
 

@@ -84,10 +84,10 @@ def follow_filling(film: np.record, grid: np.record, flows: Array, g: float, all
     return True
 
 
-# A film in the loop: the angle at which its grid stands, and its speed; where the journal is in it (x, y); whether its
-# cells balance (see OPEN); how far the journals were moved last, and that over the time before; the stage; of its
-# openings, see fillings.py: their filling, and what the stages before make of it; the one before, and what it was off
-# by; by how much less it is off per filling. Its law as follow_law has it.
+# A film in the loop: the angle of its grid, and its speed; where the journal is in it (x, y); whether its cells balance
+# (see OPEN); how far the journals were moved last, and its ratio to the time before; the stage; of its openings, see
+# fillings.py: their filling, and what the stages before make of it; the one before, and what it was off by; by how much
+# less it is off per filling. Its law by follow_law.
 GRID = record(
     ("turn", "f8"),
     ("speed", "f8"),

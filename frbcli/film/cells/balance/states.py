@@ -72,7 +72,7 @@ def follow_law(film: np.record, d_x: float, d_y: float, v_x: float, v_y: float, 
 
 @compiled()
 def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array, states: Array) -> None:
-    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
+    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law of follow_law; all arrays in
     one piece. drop: reduction of the given pressures."""
     m, k = w.shape
     call_cells(film.cells_at, m * k, law, film.scales, w, states)
