@@ -219,7 +219,7 @@ def test_a_run_from_standstill_under_load_is_refused_with_a_speed_that_will_do()
     ("changed", "said"),
     [
         ({"thrust_bearing": None}, "has no thrust bearing that carries its load"),
-        ({"thrust_bearing": [PADS, PADS]}, "beside 2 thrust bearings"),
+        ({"thrust_bearing": [PADS, PADS]}, "with 2 thrust bearings"),
         ({"thrust_bearing": [PADS | {"pads": 2}]}, "fewer than three pads"),
         ({"thrust_bearing": [PADS | {"side": "left"}]}, "pulls the collar off its pads"),
         ({"axial": {"load": "0 N"}, "thrust_bearing": [PADS | {"side": "right"}]}, "is 0: the film pushes the collar"),
