@@ -51,7 +51,7 @@ def _rubbing(force: ForceOf) -> ForceOf:
         case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
     ) -> FilmForce:
         film, c = force(case, plan, cells, motion, near), plan.section.clearance
-        return rubbing_of(case).beside(film, c * np.array(motion.d), c * np.array(motion.v), motion.omega)
+        return rubbing_of(case).with_summits(film, c * np.array(motion.d), c * np.array(motion.v), motion.omega)
 
     return whole
 

@@ -133,7 +133,7 @@ class SpringElement(MachineElement):
     given: Spring
 
     arrow: ClassVar[tuple[str, str] | None] = ("K", "a spring or a stop")
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -158,7 +158,7 @@ class SpringElement(MachineElement):
         problem = problem_of(self.given.own_law) if self.given.law else ""
         return [Fault(self.key, self.given.law, None, problem, "Correct the law.")] if problem else []
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         given, (first, second) = self.given, (each.replace("_", " ") or "the ground" for each in self.nodes)
         values = [display(given.stiffness, "N/m")] if given.stiffness else []
         values += [display(given.cubic, "N/m^3")] if given.cubic else []

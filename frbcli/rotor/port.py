@@ -41,7 +41,7 @@ class ForceLaw(ABC):
     plain functions, compiled with the plain functions of their module that they call, which see floats, arrays and
     `math`."""
 
-    quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
+    quantity: ClassVar[str] = ""  # with which the names of its signals begin, then the name of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
     units: ClassVar[Mapping[str, str]] = {}  # of its fields in a case, e.g. "N/m"; others are plain numbers
 
@@ -129,7 +129,7 @@ class Slope(NamedTuple):
 @dataclass(frozen=True)
 class Port:
     """A force of a machine. name: of its signal; place: (2, n) the displacement it sees; count: of equal elements that
-    it stands for."""
+    it represents."""
 
     name: str
     place: Array
@@ -158,29 +158,29 @@ class Port:
     def signals(self, q: Array, v: Array, omega: Array, angle: Array) -> dict[str, tuple[str, Array]]:
         """Units and values (k,) of its signals in a run, at displacements q and velocities v (k, n)."""
         forces, memories = self.along(q, v, omega, angle)
-        found = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
+        columns = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
         part = self.name.removeprefix(self.law.quantity)
         for quantity, (unit, values) in self.law.inside(memories).items():
-                found[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
-        return found
+                columns[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
+        return columns
 
 
 def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: float = 0.0) -> Array:
     """(n,) N on all degrees of freedom by the ports of a machine, at displacements q and velocities v (n,)."""
-    found = np.zeros(rotor.size)
+    forces = np.zeros(rotor.size)
     for port in rotor.ports:
-        found += port.count * port.place.T @ port.at(q, v, omega, angle).force
-    return found
+        forces += port.count * port.place.T @ port.at(q, v, omega, angle).force
+    return forces
 
 
 def pushed(rotor: LinearRotor) -> Array:
     """(n,) displacements by which its static load pushes each port of a machine over its length."""
-    found = np.zeros(rotor.size)
+    pushes = np.zeros(rotor.size)
     for port in rotor.ports:
         along = port.place @ rotor.static_load
         if size := float(np.linalg.norm(along)):
-            found += port.law.length / size * np.linalg.pinv(port.place) @ along
-    return found
+            pushes += port.law.length / size * np.linalg.pinv(port.place) @ along
+    return pushes
 
 
 def settled(
@@ -201,16 +201,16 @@ def settled(
     for q in starts:
         for iteration in range(ITERATIONS):
             try:
-                there, found = rest(tangent(rotor, omega, q, compiled), q)
+                there, position = rest(tangent(rotor, omega, q, compiled), q)
             except NotConverged as error:
                 reason = reason or error
                 break
             moved = there - q
             if all(float(np.abs(port.place @ moved).max()) < step * port.law.length for port in rotor.ports):
-                return found
+                return position
             q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
     name = rotor.ports[0].name.replace("_", " ")
-    raise reason or NotConverged(f"No resting position: the {name} does not settle. Start a run in the centre.")
+    raise reason or NotConverged(f"No static equilibrium: the {name} does not settle. Start a run in the centre.")
 
 
 def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -> LinearRotor:

@@ -87,7 +87,7 @@ def _forces(
 
 
 def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
-    """A law, whose function stands for force."""
+    """A law, whose function replaces force."""
     force(carray(numbers, (parameters,)), carray(memory, (kept,)), carray(motion, (MOTION,)), carray(answer, (ANSWER,)))
 
 

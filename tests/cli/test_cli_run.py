@@ -134,7 +134,7 @@ def test_no_resting_position_is_exit_3(capsys: pytest.CaptureFixture[str]) -> No
     assert frb(["runup", *QUICK, "--set", "start.position=resting", "--json"]) == 3
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "not-converged"
-    assert "resting position" in said.err
+    assert "static equilibrium" in said.err
 
 
 # --- progress ---

@@ -209,7 +209,7 @@ def test_places_of_a_turbocharger_are_bearings_and_disks() -> None:
 
 FAULTS = {
     "no such place": (push("compresor"), "force.0.at", "no place"),
-    "both": (push(order=2.0, frequency="50 Hz"), "force.0.frequency", "beside order"),
+    "both": (push(order=2.0, frequency="50 Hz"), "force.0.frequency", "with order"),
     "order 0": (push(order=0.0), "force.0.order", "is 0"),
     "frequency 0": (push(frequency="0 Hz"), "force.0.frequency", "is 0"),
     "phase": (push(phase="10 deg"), "force.0.phase", "constant"),

@@ -14,7 +14,7 @@ from frbcli.film.cavitation.law import Law
 
 
 def add_law(law: type[Law]) -> None:
-    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys.
+    """Let film.cavitation take a user-defined law in this process, and [film.NAME] its keys.
 
     Parameters
     ----------

@@ -39,7 +39,7 @@ def as_tables(model: Model) -> dict[str, Any]:
 
 
 def _written(value: Any, unit: str | None) -> Any:
-    """A value as a file has it; None for one that no file can have."""
+    """A value as written in a file; None for one that no file can have."""
     if value is None or isinstance(value, bool | str):
         return value
     if isinstance(value, Model):

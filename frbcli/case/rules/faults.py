@@ -108,7 +108,7 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
         if path[-2:-1] in BY_PLACE and isinstance(element, str) and not isinstance(data, dict):
             continue  # the value itself, which a table by places has without its name
         if isinstance(element, int) and isinstance(data, str | int | float):
-            continue  # one quantity that stands for a matrix
+            continue  # one quantity instead of a matrix
         path = (*path, element)
         kind_seen = False
         data = at(data, (element,))
@@ -181,7 +181,7 @@ def _kinds(loc: Sequence[str | int]) -> list[str]:
 
 
 def _example(field: FieldInfo | None) -> str:
-    """An example of a value as it stands in a file, or nothing."""
+    """An example of a value as written in a file, or nothing."""
     if field is None:
         return ""
     for kind in (Quantity, Count):
@@ -217,10 +217,10 @@ def _half(value: object) -> str:
         return ""
 
 
-def _one_of(found: str, choices: Sequence[str]) -> str:
-    return did_you_mean(found, choices)
+def _one_of(name: str, choices: Sequence[str]) -> str:
+    return did_you_mean(name, choices)
 
 
-def _close(found: str, choices: Sequence[str]) -> str:
+def _close(name: str, choices: Sequence[str]) -> str:
     """The choice nearest to what was found, or nothing."""
-    return next(iter(nearest(found, choices)), "")
+    return next(iter(nearest(name, choices)), "")

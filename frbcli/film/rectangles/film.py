@@ -72,9 +72,9 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 
 @dataclass(frozen=True)
 class FieldSlopes:
-    """How a settled film on cells follows a journal at rest at `place` (c,) in m and rad, and
-    `total`, omega_J + omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the
-    oil fractions by the field; force: (c,) of the force by the total, in N s and N m s."""
+    """How a settled finite-volume film follows a journal at rest at `place` (c,) in m and rad, and `total`, omega_J +
+    omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the oil fractions by the
+    field; force: (c,) of the force by the total, in N s and N m s."""
 
     place: Array
     total: float
@@ -87,7 +87,7 @@ class FieldSlopes:
 @dataclass(frozen=True)
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
-    field: of a film on cells, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
+    field: of a finite-volume film, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
     fractions, None of others; slopes: of the field, None of films without one and where they are not known."""
 
     force: Array
@@ -110,7 +110,7 @@ class FilmForce:
         return replace(self, field=self.field + change, fraction=fraction, slopes=there)
 
     def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
-        """This film with another force beside it, or without it."""
+        """This film with another force added, or subtracted (sign = -1)."""
         return replace(
             self,
             force=self.force + sign * other.force,

@@ -35,7 +35,7 @@ TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
 # Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; larger for wider bearings.
 CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
 CHAIN_FLOOR = 8.5e-4
-CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells: beside rings their largest error is known
+CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells: with rings their largest error is known
 REACHED = 0.95  # error of the cells over the target up to which it counts as met: with the steps that is 1.2 of it
 LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth order
 
@@ -177,7 +177,7 @@ def _size(mesh: Mesh) -> int:
 
 
 def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
-    """Error of any mesh: that of the next coarser one in the tables."""
+    """Error of any mesh, taken from the next coarser one in the tables."""
     table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
     coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]
     coarsest = next(iter(table))

@@ -41,10 +41,10 @@ TWO_PI = 2.0 * math.pi
 @dataclass(frozen=True)
 class KinematicPlan:
     """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
-    rectangle: that of the accurate modal film, None where grooves or bores are cut out; cells: (around, along);
-    steps: per period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure;
-    turning: rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11);
-    model: the bearing model that gives the forces, cavitation is empty then."""
+    rectangle: of the accurate modal film, None where grooves or bores are cut out; cells: (around, along); steps: per
+    period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning:
+    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11); model: the
+    bearing model that gives the forces, cavitation is empty then."""
 
     test: str
     cavitation: str
@@ -80,17 +80,17 @@ class KinematicPlan:
 
     @property
     def modal(self) -> bool:
-        """Whether the pressure is that of the modal film."""
+        """Whether the pressure is from the modal film."""
         return self.form.modal
 
     @property
     def on_cells(self) -> bool:
-        """Whether the force is that of a film on cells."""
+        """Whether the force is from a finite-volume film."""
         return self.form.by_cells
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
-    """Plan a kinematic test of a case for one cavitation model (None: that of the case).
+    """Plan a kinematic test of a case for one cavitation model (None: the one of the case).
 
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """
@@ -164,7 +164,7 @@ def _decisions(
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
     yield from _profile_decision(section)
-    yield Decision("film", *form.told_in_tests(case, law))
+    yield Decision("film", *form.decision_in_tests(case, law))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
     elif law.closed and bearing.ends == "free-to-air":
@@ -208,4 +208,4 @@ def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
 
 def _profile_decision(section: Section) -> list[Decision]:
     shell = section.profile
-    return [] if shell is None else [Decision(shell.key, *shell.told(section.clearance))]
+    return [] if shell is None else [Decision(shell.key, *shell.plan_entry(section.clearance))]

@@ -86,8 +86,8 @@ def begin_stage(
 
 
 def film_error(films: Any, work: Work, flows: Array, weights: Array, defect: Array, step: float) -> float:
-    """Embedded error of what the films have of their own: the filling of openings whose supply gives a flow at the
-    most, over that of a full line. weights, defect: of the method."""
+    """Embedded error of what the films have of their own: the filling of openings with a flow-limited supply, over a
+    full line. weights, defect: of the method."""
     raise NotImplementedError
 
 

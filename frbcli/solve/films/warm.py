@@ -41,7 +41,7 @@ def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
 
 @compiled()
 def _scale_oil(wet: Array, f: int, factor: float) -> None:
-    """keep_oil of films on cells."""
+    """keep_oil of finite-volume films."""
     if factor != 1.0:
         for layer in range(OIL, wet.shape[0]):  # oil and gas with their rates
             for i in range(wet.shape[2]):

@@ -1,7 +1,7 @@
 """Forces at ports, see rotor/port.py, in a stage of the time loop. Compiled. Two kinds:
 
 - an empty tuple: a machine without them, for which nothing is computed;
-- Ports: the displacements and velocities that they see are unknowns of Newton's method beside those of the journals,
+- Ports: the displacements and velocities that they see are unknowns of Newton's method in addition to the journals',
   which they follow in all arrays of a stage.
 
 Which of them a function means is decided by the type of the ports when the loop is compiled, as in loads.py.
