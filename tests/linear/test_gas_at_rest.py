@@ -146,7 +146,7 @@ def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: p
 
 @pytest.mark.nightly
 def test_gas_that_is_released_fast_and_absorbed_slowly_raises_the_threshold() -> None:
-    """By more than both errors; docs/theory.md has the table."""
+    """By more than both errors; docs/theory.md has the values."""
     case = with_rates("0.1 ms", "1 s")
     _, points = stability_points(case, [130.0, 200.0])
     found, note = find_threshold(case, StaticMachines(case, memory=True), points)
