@@ -16,8 +16,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.spectra.spectrum import waterfall as waterfall
     from frbcli.balancing.balance import TrialRun as TrialRun
     from frbcli.balancing.balance import balance as balance
-    from frbcli.case.films.additions import add_law as add_law
-    from frbcli.case.films.additions import remove_law as remove_law
+    from frbcli.case.additions import add_law as add_law
+    from frbcli.case.additions import remove_law as remove_law
     from frbcli.case.reading.load import case_from_dict as case_from_dict
     from frbcli.case.reading.load import load_case as load_case
     from frbcli.case.reading.load import load_case_text as load_case_text
@@ -87,7 +87,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "TrialRun": "frbcli.balancing.balance",
     "accuracy": "frbcli.studies.accuracy",
     "add_force_law": "frbcli.rotor.own_laws",
-    "add_law": "frbcli.case.films.additions",
+    "add_law": "frbcli.case.additions",
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
     "balance_quality": "frbcli.linear.standards.balance_quality",
@@ -119,7 +119,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
     "remove_force_law": "frbcli.rotor.own_laws",
-    "remove_law": "frbcli.case.films.additions",
+    "remove_law": "frbcli.case.additions",
     "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",
     "rundown": "frbcli.runs.run",

@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from frbcli import units
-from frbcli.case.quantities import Quantity
+from frbcli.case.model import Quantity
 from frbcli.units import ANGLE, NUMBER, SPEED, TEMPERATURE_DIFFERENCE, ValueFault, display, quantity
 
 

@@ -10,13 +10,14 @@ from typing import Annotated, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field
 
 from frbcli.case.elements import WITHOUT_FILM, BallBearingKeys, CoefficientsBearing, Element
-from frbcli.case.film_geometry import FilmGeometry, RingFilm
-from frbcli.case.model import AlsoAs, Model, altered
-from frbcli.case.quantities import (
+from frbcli.case.film import FilmGeometry, RingFilm
+from frbcli.case.model import (
+    AlsoAs,
     Damping,
     Expansion,
     Identifier,
     Length,
+    Model,
     Play,
     Position,
     RingInertia,
@@ -25,6 +26,7 @@ from frbcli.case.quantities import (
     Stiffness,
     ThermalConductivity,
     Tilt,
+    altered,
 )
 from frbcli.case.surroundings.over_time import InputTemperature
 from frbcli.case.surroundings.support import Damper, Support

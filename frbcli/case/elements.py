@@ -10,9 +10,9 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
-from frbcli.case.film_geometry import FilmGeometry
-from frbcli.case.model import AlsoAs, Model
-from frbcli.case.quantities import (
+from frbcli.case.film import FilmGeometry
+from frbcli.case.model import (
+    AlsoAs,
     Clearance,
     ContactAngle,
     Count,
@@ -23,6 +23,7 @@ from frbcli.case.quantities import (
     Identifier,
     Label,
     Length,
+    Model,
     Modulus,
     OpeningAngle,
     Play,

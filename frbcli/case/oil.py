@@ -8,9 +8,9 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Discriminator, Field, Tag, model_validator
 
-from frbcli.case.model import Model, with_default
-from frbcli.case.quantities import (
+from frbcli.case.model import (
     KinematicViscosity,
+    Model,
     OilDensity,
     Quantity,
     SpecificHeat,
@@ -19,6 +19,7 @@ from frbcli.case.quantities import (
     ThermalConductivity,
     Viscosity,
     VogelOffset,
+    with_default,
 )
 from frbcli.case.surroundings.over_time import is_over_time
 from frbcli.materials.oils import OILS, OilGrade, conductivity, density, heat_capacity

@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import (
+from frbcli.case.model import (
     Acceleration,
     Angle,
     Count,
@@ -31,6 +30,7 @@ from frbcli.case.quantities import (
     Label,
     Length,
     Mass,
+    Model,
     Modulus,
     Offset,
     Position,

@@ -16,18 +16,15 @@ from typing import Any, Literal
 from pydantic import Field, PrivateAttr
 
 from frbcli.case.bearing import Bearings, FilmBearing
+from frbcli.case.contact import Contact
 from frbcli.case.course.control import Accuracy, Output, Start
 from frbcli.case.course.drive import Drive
 from frbcli.case.course.motion import KinematicMotion
 from frbcli.case.course.speed import SpeedRamp, given_speed_unit
 from frbcli.case.elements import Axial, Element, ThrustBearings
-from frbcli.case.film_geometry import FilmGeometry, RingFilm
-from frbcli.case.film_tables import Cavitation
-from frbcli.case.films.contact import Contact
-from frbcli.case.films.film_model import FilmModel
-from frbcli.case.model import Model, altered
+from frbcli.case.film import Cavitation, FilmGeometry, FilmModel, RingFilm
+from frbcli.case.model import Label, Model, altered
 from frbcli.case.oil import Oil
-from frbcli.case.quantities import Label
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Bow, Disk, Rotor, ShaftSection
 from frbcli.case.surroundings.base import Bases

@@ -6,8 +6,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import Conductance, HeatCapacity, Quantity, Temperature
+from frbcli.case.model import Conductance, HeatCapacity, Model, Quantity, Temperature
 from frbcli.case.surroundings.over_time import InputTemperature, is_over_time
 from frbcli.materials.solids import SOLIDS
 from frbcli.units import NUMBER

@@ -16,7 +16,7 @@ import numpy as np
 
 from frbcli.case.bearing import FilmBearing, GivenBearing
 from frbcli.case.elements import Element
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 from frbcli.elements.support import SupportElement

@@ -11,7 +11,7 @@ import math
 from collections.abc import Iterator
 from typing import TypeVar
 
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.model import Model, altered
 from frbcli.case.rotor import Loss
 from frbcli.case.schema import Case

@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.case.supplies.bores import Bores
-from frbcli.case.supplies.supply import MIDDLE
+from frbcli.case.supplies import MIDDLE, Bores
 from frbcli.errors import Fault
 from frbcli.film.cells.channels.channel import Channel, FeedHole, channel_resistance
 from frbcli.film.cells.film import VolumeFilm

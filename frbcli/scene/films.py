@@ -10,11 +10,10 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.film_geometry import FilmGeometry
-from frbcli.case.films.film_model import FilmModel
+from frbcli.case.film import FilmGeometry, FilmModel
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.case.supplies.bores import Bores
+from frbcli.case.supplies import Bores
 from frbcli.elements.damper import DamperElement
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named

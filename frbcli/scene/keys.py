@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.case.elements import Element
-from frbcli.case.film_geometry import RingFilm
+from frbcli.case.film import RingFilm
 from frbcli.case.schema import Case
 from frbcli.elements.damper import DamperElement
 

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.case.supplies.bores import Bores
-from frbcli.case.supplies.supply import MIDDLE
+from frbcli.case.supplies import MIDDLE, Bores
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.gap import Diffusion, Section, whole_width
 

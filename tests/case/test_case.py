@@ -193,9 +193,9 @@ def test_bounds_of_the_schema_are_written_alike() -> None:
 
 def test_examples_of_the_schema_are_valid() -> None:
     """What remedies tell people to write must itself be right."""
-    from frbcli.case import quantities
+    from frbcli.case import model
 
-    kinds = [getattr(quantities, name).__metadata__[0] for name in dir(quantities) if _is_quantity(quantities, name)]
+    kinds = [getattr(model, name).__metadata__[0] for name in dir(model) if _is_quantity(model, name)]
     assert len(kinds) > 20
     for kind in kinds:
         assert math.isfinite(kind.read(kind.example))
@@ -204,7 +204,7 @@ def test_examples_of_the_schema_are_valid() -> None:
 
 
 def _is_quantity(module: object, name: str) -> bool:
-    from frbcli.case.quantities import Quantity
+    from frbcli.case.model import Quantity
 
     return isinstance(getattr(getattr(module, name), "__metadata__", (None,))[0], Quantity)
 

@@ -20,7 +20,7 @@ from frbcli.case.reading.text import as_tables
 from frbcli.case.reading.toml import parse
 from frbcli.case.rotor import RigidRotor
 from frbcli.case.schema import Case
-from frbcli.case.supplies.circumferential_groove import CircumferentialGroove
+from frbcli.case.supplies import CircumferentialGroove
 from frbcli.errors import Fault, InputError
 from frbcli.results.store import read_run
 from frbcli.runs.run import runup

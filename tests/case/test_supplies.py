@@ -12,8 +12,7 @@ import frbcli
 from frbcli import load_case
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import json_schema
-from frbcli.case.supplies.supply import OilSupply, Outline
-from frbcli.case.supplies.table import SUPPLIES, kind_of, supply_named
+from frbcli.case.supplies import SUPPLIES, OilSupply, Outline, kind_of, supply_named
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.section import film_section
 

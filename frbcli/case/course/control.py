@@ -6,8 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import Count, Displacement, Duration, Hold, Quantity
+from frbcli.case.model import Count, Displacement, Duration, Hold, Model, Quantity
 from frbcli.units import NUMBER
 
 OUTPUT_STEP = 5e-5  # resolves 10 kHz

@@ -14,8 +14,7 @@ from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_va
 from pydantic_core import CoreSchema, core_schema
 
 from frbcli.case.course.speed import SpeedRamp
-from frbcli.case.model import Model, with_default
-from frbcli.case.quantities import Duration, Quantity, Speed, TopSpeed
+from frbcli.case.model import Duration, Model, Quantity, Speed, TopSpeed, with_default
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.machine_table import MachineTable

@@ -6,12 +6,12 @@ from typing import Annotated
 
 from pydantic import Field
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import (
+from frbcli.case.model import (
     Angle,
     Eccentricity,
     Force,
     Label,
+    Model,
     Quantity,
     Rate,
     SignedSpeed,

@@ -8,8 +8,7 @@ from typing import Annotated
 
 from pydantic import Field, model_validator
 
-from frbcli.case.model import Model, with_default
-from frbcli.case.quantities import Count, Duration, FirstSpeed, Hold, Label, Quantity, Speed
+from frbcli.case.model import Count, Duration, FirstSpeed, Hold, Label, Model, Quantity, Speed, with_default
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.units import SpeedUnit, is_per_minute
 

@@ -12,8 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from frbcli.arrays import Array
 from frbcli.case.files.number_table import Refused, with_file
-from frbcli.case.model import Model
-from frbcli.case.quantities import SMALLEST, unit_of
+from frbcli.case.model import SMALLEST, Model, unit_of
 from frbcli.case.reading.lines import Path as Key
 from frbcli.case.reading.tables import Breach, table, tables
 from frbcli.case.surroundings.over_time import OverTime

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
-from frbcli.case.quantities import LARGEST
+from frbcli.case.model import LARGEST
 from frbcli.case.reading.lines import Path as Key
 from frbcli.case.reading.tables import Breach, at, replaced
 from frbcli.results.files import named

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, get_args
 
 from frbcli.case.files.number_table import Refused, text_of
-from frbcli.case.quantities import DampingRate, DampingTime, Density, Inertia, InnerDiameter, Length, Mass, Modulus
+from frbcli.case.model import DampingRate, DampingTime, Density, Inertia, InnerDiameter, Length, Mass, Modulus
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.units import ValueFault
 

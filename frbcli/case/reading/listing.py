@@ -8,8 +8,7 @@ from typing import Any
 
 from pydantic.fields import FieldInfo
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import unit_of
+from frbcli.case.model import Model, unit_of
 from frbcli.case.reading.toml import parse
 from frbcli.case.rules.contact_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case

@@ -6,8 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import unit_of
+from frbcli.case.model import Model, unit_of
 from frbcli.case.reading.toml import to_toml
 from frbcli.units import NUMBER, display, quantity, readable
 

@@ -10,8 +10,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import Count, Quantity
+from frbcli.case.model import Count, Model, Quantity
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import at
 from frbcli.case.rules.checks import Breach

@@ -9,11 +9,11 @@ from typing import Any
 
 from pydantic import TypeAdapter, ValidationError
 
-from frbcli.case.film_geometry import ColdClearance, Profile
+from frbcli.case.film import ColdClearance, Profile
 from frbcli.case.oil import ATMOSPHERE, Grade, Oil, Vogel
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number, table, tables
-from frbcli.case.supplies.table import supply_named
+from frbcli.case.supplies import supply_named
 from frbcli.materials.oils import OILS
 from frbcli.materials.viscosity import VogelLaw
 from frbcli.units import NUMBER, display

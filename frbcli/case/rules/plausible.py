@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from frbcli.case.quantities import LARGEST
+from frbcli.case.model import LARGEST
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, Located, at, number, ring_films, table, tables
 from frbcli.case.rules.film_checks import warm_clearance

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from pydantic import BeforeValidator, Field
 
 from frbcli.case.bearing import ONE_OR_MANY
-from frbcli.case.quantities import Angle, Label, Quantity, Speed
+from frbcli.case.model import Angle, Label, Quantity, Speed
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.force import Order

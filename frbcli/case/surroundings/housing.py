@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.model import AlsoAs, Model
-from frbcli.case.quantities import Fraction, Identifier, Label, Position, Quantity, RingInertia, ShellMass
+from frbcli.case.model import AlsoAs, Fraction, Identifier, Label, Model, Position, Quantity, RingInertia, ShellMass
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.machine_table import MachineTable

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from frbcli.case.quantities import Identifier, Quantity
+from frbcli.case.model import Identifier, Quantity
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.machine_table import MachineTable

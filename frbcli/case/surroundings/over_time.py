@@ -10,8 +10,7 @@ from typing import Annotated, Any
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler
 from pydantic_core import CoreSchema, core_schema
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import LABEL_LENGTH, Label, Quantity
+from frbcli.case.model import LABEL_LENGTH, Label, Model, Quantity
 from frbcli.units import NUMBER, ValueFault, quantity
 
 OVER_TIME = "over time"  # a form of an input in the schema

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field
 
-from frbcli.case.quantities import Damping, Identifier, Length, Quantity, Stiffness
+from frbcli.case.model import Damping, Identifier, Length, Quantity, Stiffness
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.machine_table import MachineTable

@@ -11,9 +11,8 @@ from typing import Annotated
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.film_geometry import RingFilm
-from frbcli.case.model import AlsoAs, Model
-from frbcli.case.quantities import Damping, ShellMass, Stiffness
+from frbcli.case.film import RingFilm
+from frbcli.case.model import AlsoAs, Damping, Model, ShellMass, Stiffness
 
 
 def _both_directions(given: object) -> object:

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from frbcli.case.bearing import FloatingRingBearing
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import PinElement
 from frbcli.errors import Fault

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown
 from frbcli.errors import NotConverged

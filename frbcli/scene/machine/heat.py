@@ -18,7 +18,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBearing
-from frbcli.case.film_geometry import ColdClearance, FilmGeometry
+from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime, largest

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty

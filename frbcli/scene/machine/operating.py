@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 
 from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
-from frbcli.case.film_geometry import ColdClearance, FilmGeometry
+from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, speed_shown
 from frbcli.elements.damper import DamperElement

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.elements.pin import held_by_pins, pin_rows
 from frbcli.film.kinds.contract import Films

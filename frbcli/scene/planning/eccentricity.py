@@ -19,7 +19,7 @@ import math
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
 from frbcli.errors import Fault, InputError

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh

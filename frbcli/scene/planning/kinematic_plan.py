@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.film_geometry import FilmGeometry, RingFilm
+from frbcli.case.film import FilmGeometry, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault

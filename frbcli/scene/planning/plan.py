@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing
-from frbcli.case.film_geometry import FilmGeometry
+from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFilmBearing
 from frbcli.case.elements import BallBearingKeys, CoefficientsBearing
-from frbcli.case.film_geometry import RingFilm
-from frbcli.case.film_tables import adopt
-from frbcli.case.films.film_model import FilmModel
+from frbcli.case.film import FilmModel, RingFilm, adopt
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.support import Damper
 from frbcli.film.cavitation import table

@@ -1,17 +1,19 @@
-"""The geometry of one film: its gap, its ends and its supply.
+"""The films of a case: the geometry of one film, how films are computed, and the tables [film.NAME] of cavitation laws.
 
 Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are of the whole
-bearing, both symmetric halves. """
+bearing, both symmetric halves.
+"""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from collections.abc import Iterable, Iterator
+from functools import cache
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
-from pydantic import Discriminator, Field, Tag
+from pydantic import Discriminator, Field, Tag, create_model
+from pydantic.fields import FieldInfo
 
-from frbcli.case.film_tables import Cavitation
-from frbcli.case.model import Model
-from frbcli.case.quantities import (
+from frbcli.case.model import (
     Angle,
     Clearance,
     Count,
@@ -19,6 +21,7 @@ from frbcli.case.quantities import (
     Expansion,
     Fraction,
     Length,
+    Model,
     Position,
     Preload,
     Quantity,
@@ -26,10 +29,77 @@ from frbcli.case.quantities import (
     Temperature,
     Viscosity,
 )
-from frbcli.case.supplies.none import NoSupply
-from frbcli.case.supplies.table import Supply
+from frbcli.case.supplies import NoSupply, Supply
 from frbcli.case.thermal import ROOM_TEMPERATURE
+from frbcli.film.cavitation.law import Key, Law
+from frbcli.film.cavitation.table import law_named, laws, names
 from frbcli.film.gap import NO_BATH, LobedShell, ShellProfile, TabledShell
+from frbcli.units import NUMBER
+
+THEORIES = ("auto", "short", "finite")
+if TYPE_CHECKING:
+    Cavitation = str
+    Theory = str
+else:
+    Cavitation = Literal[names()]
+    Theory = Literal[THEORIES]
+
+CAVITATION = "cavitation"  # the key that takes the name of a law
+
+
+class FilmTable(Model):
+    """A table [film.NAME], made from the keys of a law."""
+
+
+def attribute(of: type[Law]) -> str:
+    """The attribute of a FilmModel that holds the table of a law."""
+    return of.name.replace("-", "_")
+
+
+def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
+    """Give the model of [film] the table of every law that has keys and of no other, and its `cavitation` and that of
+    `others` the names of all laws. Models that hold one of these have to be rebuilt by the caller."""
+    fields = film.model_fields
+    for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
+        del fields[name]
+    for of in _with_keys():
+        alias = None if attribute(of) == of.name else of.name
+        made = Field(default=_table(of)(), alias=alias, description=f"keys of the model {of.label}")
+        fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
+    for model in (film, *others):
+        its = model.model_fields[CAVITATION]
+        all_laws: Any = Literal[names()]
+        its.annotation = all_laws if its.default is not None else all_laws | None
+        model.model_rebuild(force=True)
+
+
+def __getattr__(name: str) -> Any:
+    """The model of the table of this name: where copies of a case find it."""
+    for of in _with_keys():
+        if _table(of).__name__ == name:
+            return _table(of)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
+
+def _with_keys() -> Iterator[Any]:
+    return (law for law in laws() if law.keys)
+
+
+@cache
+def _table(of: Any) -> type[FilmTable]:
+    entries: dict[str, Any] = {key.name: _entry(key) for key in of.keys}
+    return create_model(of.__name__, __base__=FilmTable, __doc__=of.meaning, __module__=__name__, **entries)
+
+
+def _entry(key: Key) -> Any:
+    """Type and default of a key, as a model takes them."""
+    kind: Any = Literal[key.choices]
+    if not key.choices:
+        unit = key.unit or NUMBER
+        kind = Annotated[float, Quantity(unit, key.example, key.above, key.least, key.below, key.most)]
+    if key.default is None:
+        kind = kind | None
+    return kind, Field(default=key.default, description=key.meaning or None)
 
 
 class ColdClearance(Model):
@@ -180,3 +250,46 @@ class RingFilm(FilmGeometry):
     """A film inside or outside of a floating ring, which may have a cavitation model of its own."""
 
     cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
+
+
+Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
+
+
+class FilmModel(Model):
+    """How the films are computed."""
+
+    theory: Theory = Field(
+        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+    )
+    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
+    cavitation_factor: Literal["global", "local", "none"] = Field(
+        default="global",
+        description="torque of a cavitated film: reduced by the mean oil fraction (4.46), the local one, or not",
+    )
+    torque: Literal["all", "couette", "simple"] = Field(
+        default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
+    )
+    coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
+    grid: Literal["auto", "fixed", "half-speed"] = Field(
+        default="auto",
+        description="fixed cells, or turning with the mean surface speed; auto: turning for mass-conserving plain gaps",
+    )
+    solution: Literal["auto", "table", "cells"] = Field(
+        default="auto", description="in runs: tabulated before the run where possible, or solved as finite volumes"
+    )
+    tilt: Literal["none", "follows"] = Field(
+        default="none",
+        description="the gap is constant along the axis, or follows the tilt of journals and rings",
+    )
+
+    if TYPE_CHECKING:  # the tables of the laws, which these declare
+
+        def __getattr__(self, name: str) -> Any: ...
+
+    def given(self, cavitation: str) -> Any:
+        """The values of the table [film.NAME] of a cavitation law by attribute, None if the law has no keys."""
+        law = law_named(cavitation)
+        return getattr(self, attribute(law)) if law.keys else None
+
+
+adopt(FilmModel)

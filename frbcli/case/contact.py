@@ -6,10 +6,10 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import (
+from frbcli.case.model import (
     BoundaryFriction,
     Length,
+    Model,
     Modulus,
     Quantity,
     Roughness,

@@ -1,4 +1,4 @@
-"""The contract of all supplies of oil: what differs between the kinds is in their own files.
+"""How oil enters a film: the contract of all supplies, a class for each kind, and their table, a row each.
 
 Angles are phi of the developed gap, z counts from the end of the bearing in m. The pressure of a supply is absolute in
 the case file; everything that is made of it takes the gauge pressure, over the ambient one, 0 where nothing supplies.
@@ -9,21 +9,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, NamedTuple, Union, get_args
 
 from pydantic import Field
 
-from frbcli.case.model import Model
-from frbcli.case.quantities import Flow, RiseTime
+from frbcli.case.model import Angle, Count, Flow, Fraction, Length, Model, OpeningAngle, RiseTime
 from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach, number
 from frbcli.case.surroundings.over_time import InputPressure, OverTime, largest, values_of
 from frbcli.errors import Fault
 from frbcli.film.gap import AxialGroove, Edge, Hole
 from frbcli.units import NUMBER, display
-
-if TYPE_CHECKING:
-    from frbcli.case.supplies.bores import Bores
 
 MIDDLE = 0.5  # of the width
 TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
@@ -234,3 +230,205 @@ class SpacedSupply(PressureSupply):
     @property
     def words(self) -> str:
         return f"{self.count} {super().words}" if self.count > 1 else super().words
+
+
+class NoSupply(OilSupply):
+    """No supply: oil enters at the ends only."""
+
+    kind: Literal["none"] = Field(default="none", description="no groove, feed hole or pocket")
+
+    plain: ClassVar[bool] = True
+    feeds: ClassVar[bool] = False
+    rectangular: ClassVar[bool] = True
+
+    @property
+    def gap(self) -> tuple[str, str]:
+        return "1 rectangle", "plain bearing: the film is symmetric about its middle"
+
+
+SHOWN = 0.06  # half of its width over the bearing's in a sketch: not given in a case
+ONE_LAND = 0.25  # flow of one land of the whole width over the flow of two lands of half of it
+
+
+class CircumferentialGroove(PressureSupply):
+    """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
+
+    kind: Literal["circumferential-groove"] = Field(description="a groove around the bearing")
+    axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+    flow: LargestFlow = None
+
+    plain: ClassVar[bool] = True
+    side_flow_factor: ClassVar[float] = 1.0
+
+    @property
+    def rectangular(self) -> bool:
+        return self.axial_position in (0.0, MIDDLE, 1.0)
+
+    @property
+    def splits(self) -> bool:
+        return self.axial_position == MIDDLE
+
+    @property
+    def mirrored(self) -> bool:
+        """The groove of a section lies at z = 1."""
+        return self.axial_position < MIDDLE
+
+    @property
+    def land_share(self) -> float:
+        return 1.0 if self.splits else ONE_LAND
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        """See OilSupply; all around, and as wide as a sketch shows it."""
+        return (Outline(0.0, self.axial_position * width, math.pi, SHOWN * width, through=True),)
+
+    def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
+        return Openings(2 if self.splits else 1, "groove", self.gauge(ambient))
+
+    @property
+    def gap(self) -> tuple[str, str]:
+        if self.splits:
+            return "2 equal rectangles", "a central circumferential groove splits the width; one section is solved"
+        return "1 rectangle", "a circumferential groove at one end: one section of the whole width"
+
+    def faults(self, key: str) -> list[Fault]:
+        if self.rectangular:
+            return []
+        problem = "is neither in the middle nor at an end: the two films would differ."
+        return [Fault(f"{key}.axial_position", f"{self.axial_position:g}", None, problem, "Write 0.5, 0 or 1.")]
+
+
+class AxialGrooves(SpacedSupply):
+    """Axial grooves in the shell, evenly spaced."""
+
+    kind: Literal["axial-grooves"] = Field(description="grooves along the axis, in the shell")
+    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="number of grooves")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
+    opening_angle: OpeningAngle = Field(description="angle of one groove")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+    flow: LargestFlow = None
+
+    divides: ClassVar[bool] = True
+    rectangular: ClassVar[bool] = True
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        return tuple(Outline(at, 0.5 * width, 0.5 * self.opening_angle, 0.5 * width) for at in self.positions)
+
+    def openings(self, radius: float, width: float, ends: Edge, ambient: float) -> Openings:
+        gauge = self.gauge(ambient)
+        return Openings(grooves=tuple(AxialGroove(at, self.opening_angle, gauge) for at in self.positions))
+
+    @property
+    def gap(self) -> tuple[str, str]:
+        why = "axial grooves divide the circumference; the film is symmetric about its middle"
+        return f"{self.count} rectangles", why
+
+
+class Bores(SpacedSupply):
+    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
+
+    kind: Literal["bores"] = Field(description="round feed holes")
+    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
+    diameter: Length = Field(description="of a feed hole")
+    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
+    position: Angle = Field(default=0.0, description="phi of the first feed hole")
+    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+    flow: LargestFlow = None
+
+    @property
+    def surface(self) -> Literal["journal", "shell", "housing"]:
+        return self.on
+
+    @property
+    def channels(self) -> Bores | None:
+        return self
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        axial, size = self.axial_position * width, 0.5 * self.diameter
+        return tuple(Outline(at, axial, size / radius, size, round=True, through=True) for at in self.positions)
+
+    @property
+    def words(self) -> str:
+        return super().words.replace("bores", "feed holes")
+
+    @classmethod
+    def breaches(
+        cls, path: Path, given: Mapping[str, Any], diameter: float | None, width: float | None, ambient: float | None
+    ) -> Iterator[Breach]:
+        yield from super().breaches(path, given, diameter, width, ambient)
+        count, bore = number(given, "count", NUMBER, 1.0), number(given, "diameter", "m")
+        place = number(given, "axial_position", NUMBER, 0.5)
+        if count and bore and diameter and count * bore >= math.pi * diameter:
+            problem = f"makes {count:.0f} feed holes overlap on a circumference of {display(math.pi * diameter, 'm')}."
+            yield Breach((*path, "diameter"), problem, "Make it smaller, or take fewer feed holes.")
+        if bore and width and bore <= width and place is not None and 0 <= place <= 1:
+            over = 0.5 * bore - width * min(place, 1.0 - place)
+            if over > 0.0:
+                problem = f"places the feed holes {display(over, 'm')} outside the film."
+                least = 0.5 * bore / width
+                remedy = f"Take a value from {least:.3g} to {1.0 - least:.3g}, or smaller feed holes."
+                yield Breach((*path, "axial_position"), problem, remedy)
+
+
+class Pocket(PressureSupply):
+    """A pocket in the shell, in the middle of the width."""
+
+    kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
+    position: Angle = Field(description="phi of the middle of the pocket")
+    opening_angle: OpeningAngle = Field(description="angle of the pocket")
+    width: Length = Field(description="axial width of the pocket")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+    flow: LargestFlow = None
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        return (Outline(self.position, 0.5 * width, 0.5 * self.opening_angle, 0.5 * self.width),)
+
+
+class AxialSlots(SpacedSupply):
+    """Axial slots in the shell, in the middle of the width, evenly spaced; lands at their ends hold the pressure."""
+
+    kind: Literal["axial-slots"] = Field(description="slots along the axis over a part of the width, in the shell")
+    count: Annotated[int, Count(1, 24, 2)] = Field(default=1, description="number of slots")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first slot")
+    opening_angle: OpeningAngle = Field(description="angle of one slot")
+    length: Length = Field(description="axial length of a slot")
+    pressure: SupplyPressure
+    ramp: Ramp = 0.0
+    flow: LargestFlow = None
+
+    openings_word: ClassVar[str] = "slots"
+    sizes: ClassVar[tuple[str, ...]] = ("length",)
+
+    def outlines(self, radius: float, width: float) -> tuple[Outline, ...]:
+        half_angle, half_length = 0.5 * self.opening_angle, 0.5 * self.length
+        return tuple(Outline(at, 0.5 * width, half_angle, half_length) for at in self.positions)
+
+
+SUPPLIES: tuple[type[OilSupply], ...] = (
+    NoSupply,
+    CircumferentialGroove,
+    AxialGrooves,
+    Bores,
+    Pocket,
+    AxialSlots,
+)
+
+if TYPE_CHECKING:
+    Supply = OilSupply  # others ask a supply by its base alone
+else:
+    Supply = Annotated[Union[SUPPLIES], Field(discriminator="kind")]  # noqa: UP007
+
+
+def kind_of(supply: type[OilSupply]) -> str:
+    """The word of the key `kind` of a supply."""
+    return str(get_args(supply.model_fields["kind"].annotation)[0])
+
+
+def supply_named(kind: object) -> type[OilSupply]:
+    """The class of a kind of supply, their base for a word that is none."""
+    return next((supply for supply in SUPPLIES if kind_of(supply) == kind), OilSupply)

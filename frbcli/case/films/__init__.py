@@ -1,1 +1,0 @@
-"""How films are computed and surfaces touch; laws that were added from Python."""
