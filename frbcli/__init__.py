@@ -55,9 +55,9 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.plot.picture import picture as picture
     from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
-    from frbcli.rotor.own_laws import add_force_law as add_force_law
-    from frbcli.rotor.own_laws import remove_force_law as remove_force_law
     from frbcli.rotor.port import ForceLaw as ForceLaw
+    from frbcli.rotor.port import add_force_law as add_force_law
+    from frbcli.rotor.port import remove_force_law as remove_force_law
     from frbcli.runs.run import rundown as rundown
     from frbcli.runs.run import runup as runup
     from frbcli.scene.planning.plan import make_plan as make_plan
@@ -86,7 +86,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "Measurement": "frbcli.analysis.measured",
     "TrialRun": "frbcli.balancing.balance",
     "accuracy": "frbcli.studies.accuracy",
-    "add_force_law": "frbcli.rotor.own_laws",
+    "add_force_law": "frbcli.rotor.port",
     "add_law": "frbcli.case.additions",
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
@@ -118,7 +118,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "order_track": "frbcli.analysis.orders.order_tracking",
     "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
-    "remove_force_law": "frbcli.rotor.own_laws",
+    "remove_force_law": "frbcli.rotor.port",
     "remove_law": "frbcli.case.additions",
     "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from frbcli.errors import InputError
-from frbcli.nearest import did_you_mean, nearest
+from frbcli.errors import InputError, did_you_mean, nearest
 from frbcli.results.signals import Signal
 from frbcli.results.store import Run
 

@@ -18,7 +18,7 @@ from frbcli.analysis.orders.tacho import MARK, Tacho, tacho_speed
 from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
 from frbcli.arrays import Array
-from frbcli.nearest import did_you_mean
+from frbcli.errors import did_you_mean
 from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
 from frbcli.results.records import LARGEST, SMALLEST, wrong_values

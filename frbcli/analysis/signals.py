@@ -10,8 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
-from frbcli.errors import input_error
-from frbcli.nearest import did_you_mean
+from frbcli.errors import did_you_mean, input_error
 from frbcli.results.records import TIME
 from frbcli.results.store import CRITICAL_SPEED, CRITICAL_SPEEDS
 

@@ -20,12 +20,10 @@ from frbcli.arrays import Array, Complex, Truths
 from frbcli.balancing.influence import computed_influence, planes_named
 from frbcli.balancing.vectors import SynchronousVectors, marked, shaft_points, synchronous_vectors
 from frbcli.case.reading.load import load_case_text
-from frbcli.columns import Column, Shown, Table, speed_shown, table_of
-from frbcli.errors import NotConverged, input_error
-from frbcli.html import Tabular
+from frbcli.columns import Column, Shown, Table, Tabular, speed_shown, table_of
+from frbcli.errors import NotConverged, did_you_mean, input_error
 from frbcli.linear.critical_speeds import larger_semi_axis
 from frbcli.linear.response import SOUND, Response
-from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
 
 ERROR = 0.01  # error of vectors and of influence coefficients over the vectors of the same point, at least

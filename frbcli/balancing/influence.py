@@ -9,9 +9,8 @@ import numpy as np
 from frbcli.arrays import Complex
 from frbcli.case.schema import Case
 from frbcli.equilibrium.coefficients import coefficients_of
-from frbcli.errors import NotConverged, input_error
+from frbcli.errors import NotConverged, did_you_mean, input_error
 from frbcli.linear.response import Response, forced_motion, response
-from frbcli.nearest import did_you_mean
 from frbcli.scene.shafts.shaft import BalancingPlane
 from frbcli.scene.shafts.table import shaft_of
 

@@ -16,18 +16,17 @@ from frbcli.bearing_tests.stribeck import StribeckCurve, stribeck_curve
 from frbcli.bearing_tests.tested_film import tested_film
 from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, Tabular, table_of
 from frbcli.compilation import working_time
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
-from frbcli.html import Tabular
 from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.remedies import advised, film_advice
 from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
-from frbcli.thermal.steady import SteadyHeat
+from frbcli.thermal.model import SteadyHeat
 
 Observer = Callable[[int, int], None]
 

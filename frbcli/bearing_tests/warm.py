@@ -15,7 +15,7 @@ from frbcli.film.cells.motion import Motion, Path
 from frbcli.scene.machine.heat import heat_of, warm_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
 from frbcli.scene.tilt import tilt_rate_of
-from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
+from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
 Placed = Callable[[Case, KinematicPlan], Motion]
 Dissipated = Callable[[Case, KinematicPlan], tuple[float, float]]  # power in W and side flow in m^3/s

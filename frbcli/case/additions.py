@@ -6,7 +6,7 @@ from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, SingleFil
 from frbcli.case.elements import BallBearingKeys, CoefficientsBearing
 from frbcli.case.film import FilmModel, RingFilm, adopt
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.support import Damper
+from frbcli.case.surroundings.supports import Damper
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 

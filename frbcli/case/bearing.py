@@ -29,9 +29,9 @@ from frbcli.case.model import (
     altered,
 )
 from frbcli.case.surroundings.over_time import InputTemperature
-from frbcli.case.surroundings.support import Damper, Support
+from frbcli.case.surroundings.supports import Damper, Support
 from frbcli.case.thermal import AnyWall, Material
-from frbcli.materials.solids import SOLIDS, Solid
+from frbcli.materials import SOLIDS, Solid
 
 
 class BearingWalls(Model):

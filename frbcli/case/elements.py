@@ -35,8 +35,8 @@ from frbcli.case.model import (
     TopSpeed,
 )
 from frbcli.case.surroundings.over_time import Input, OverTime, is_over_time
-from frbcli.case.surroundings.support import Damper, Support
-from frbcli.materials.solids import ROLLING, Elastic
+from frbcli.case.surroundings.supports import Damper, Support
+from frbcli.materials import ROLLING, Elastic
 
 Entry = Annotated[float, Quantity("N/m", "1e6 N/m")]
 DampingEntry = Annotated[float, Quantity("N*s/m", "1e3 N*s/m")]

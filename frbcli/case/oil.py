@@ -22,8 +22,7 @@ from frbcli.case.model import (
     with_default,
 )
 from frbcli.case.surroundings.over_time import is_over_time
-from frbcli.materials.oils import OILS, OilGrade, conductivity, density, heat_capacity
-from frbcli.materials.viscosity import VogelLaw, through_three, walther
+from frbcli.materials import OILS, OilGrade, VogelLaw, conductivity, density, heat_capacity, through_three, walther
 from frbcli.units import KINEMATIC, NUMBER, ValueFault, is_kinematic, quantity
 
 ATMOSPHERE = 1e5

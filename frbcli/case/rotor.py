@@ -40,9 +40,8 @@ from frbcli.case.model import (
     Stiffness,
     Unbalance,
 )
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach
-from frbcli.case.surroundings.machine_table import MachineTable
+from frbcli.case.reading.tables import Breach, Path
+from frbcli.case.surroundings.places import MachineTable
 from frbcli.units import display
 
 if TYPE_CHECKING:

@@ -17,25 +17,20 @@ from pydantic import Field, PrivateAttr
 
 from frbcli.case.bearing import Bearings, FilmBearing
 from frbcli.case.contact import Contact
-from frbcli.case.course.control import Accuracy, Output, Start
 from frbcli.case.course.drive import Drive
-from frbcli.case.course.motion import KinematicMotion
-from frbcli.case.course.speed import SpeedRamp, given_speed_unit
+from frbcli.case.course.run import Accuracy, KinematicMotion, Output, SpeedRamp, Start, given_speed_unit
 from frbcli.case.elements import Axial, Element, ThrustBearings
 from frbcli.case.film import Cavitation, FilmGeometry, FilmModel, RingFilm
 from frbcli.case.model import Label, Model, altered
 from frbcli.case.oil import Oil
 from frbcli.case.reading.text import as_text
 from frbcli.case.rotor import Bow, Disk, Rotor, ShaftSection
-from frbcli.case.surroundings.base import Bases
-from frbcli.case.surroundings.force import AppliedForce
-from frbcli.case.surroundings.housing import Housing
-from frbcli.case.surroundings.magnetic_pull import MagneticPull
+from frbcli.case.surroundings.forces import AppliedForce, Bases, MagneticPull, Spring
 from frbcli.case.surroundings.over_time import largest
-from frbcli.case.surroundings.spring import Spring
+from frbcli.case.surroundings.supports import Housing
 from frbcli.case.thermal import AnyThermal, Thermal
+from frbcli.columns import html_table
 from frbcli.errors import Fault, InputError
-from frbcli.html import html_table
 from frbcli.units import SpeedUnit
 
 Confirmation = Literal["surface-speed", "gap-growth", "clearance"]

@@ -8,7 +8,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag
 
 from frbcli.case.model import Conductance, HeatCapacity, Model, Quantity, Temperature
 from frbcli.case.surroundings.over_time import InputTemperature, is_over_time
-from frbcli.materials.solids import SOLIDS
+from frbcli.materials import SOLIDS
 from frbcli.units import NUMBER
 
 ROOM_TEMPERATURE = 293.15

@@ -183,7 +183,7 @@ class LazyGroup(click.Group):
         """Find a command as click does; the error for an unknown name proposes the nearest ones."""
         name = args[0]
         if name not in COMMANDS and not name.startswith("-"):
-            from frbcli.nearest import did_you_mean
+            from frbcli.errors import did_you_mean
 
             ctx.fail(f"No such command {name!r}. {did_you_mean(name, COMMANDS, '`frb --help` lists them.')}")
         return super().resolve_command(ctx, args)

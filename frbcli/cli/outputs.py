@@ -21,7 +21,7 @@ from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
 
 if TYPE_CHECKING:
-    from frbcli.html import Tabular
+    from frbcli.columns import Tabular
     from frbcli.plot.style import Picture
     from frbcli.results.files.kinds import Kind
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 
-from frbcli.case.rules.machine_keys import machine_fault
+from frbcli.case.reading.listing import machine_fault
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MOST_UNKNOWNS, Changing

@@ -9,9 +9,8 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, Tabular, table_of
 from frbcli.cycles.method.balance import motion_along
-from frbcli.html import Tabular
 
 SPEED = "speed"  # what diagrams go over
 SUBCRITICAL, SUPERCRITICAL = "subcritical", "supercritical"

@@ -16,14 +16,13 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.forces import Spring
 from frbcli.case.surroundings.places import node_at
-from frbcli.case.surroundings.spring import Spring
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.elements.force import equal_places
+from frbcli.elements.forces import equal_places
 from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND, Link
 from frbcli.rotor.loads import LinearPart
-from frbcli.rotor.own_laws import fingerprint, problem_of
 from frbcli.rotor.port import (
     D_X,
     D_Y,
@@ -41,6 +40,8 @@ from frbcli.rotor.port import (
     YX,
     YY,
     ForceLaw,
+    fingerprint,
+    problem_of,
 )  # fmt: skip
 from frbcli.units import display
 

@@ -5,18 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
-from frbcli.elements.base import BaseElement
 from frbcli.elements.coefficients import GivenCoefficients
-from frbcli.elements.collar.thrust import ThrustElement
-from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import MachineElement
-from frbcli.elements.force import ForceElement
-from frbcli.elements.housing import HousingElement
-from frbcli.elements.magnetic_pull import MagneticPullElement
+from frbcli.elements.forces import BaseElement, ForceElement, MagneticPullElement
 from frbcli.elements.pin import PinElement
 from frbcli.elements.rolling.ball import BallBearingElement
 from frbcli.elements.spring import SpringElement
-from frbcli.elements.support import SupportElement
+from frbcli.elements.supports import DamperElement, HousingElement, SupportElement
+from frbcli.elements.thrust import ThrustElement
 
 ELEMENTS: tuple[type[MachineElement], ...] = (
     GivenCoefficients, BallBearingElement, PinElement, DamperElement, SupportElement, HousingElement, ThrustElement,

@@ -17,7 +17,7 @@ from frbcli.elements.pin import DAMPING, STIFFNESS
 from frbcli.equilibrium.coefficients import FilmsAtRest
 from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.ring_speed import SUM, memoryless, ring_torques, rubbed_rings, turned_by
-from frbcli.rotor.linear import LinearRotor, with_precession
+from frbcli.rotor.assembly import LinearRotor, with_precession
 from frbcli.rotor.port import tangent
 from frbcli.scene.machine.system import System
 

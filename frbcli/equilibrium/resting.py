@@ -31,8 +31,7 @@ from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.elastic_shell import ElasticShell
-from frbcli.rotor.assembly import HeldRotor, held_rotor, whole_rotor
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, whole_rotor
 from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System
 

@@ -18,9 +18,8 @@ from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.fields import EvenFilm, FieldFilm
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import LinearRotor, Link, assembled
 from frbcli.rotor.body import point_mass
-from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, volume_film
 from frbcli.scene.forms.cells import CELLS as ON_CELLS
 from frbcli.scene.forms.form import FilmForm

@@ -124,7 +124,7 @@ class StaticMachines:
     def _check_axis(self, omega: float) -> None:
         """Raises NotConverged where an axial load is carried by no film."""
         if self._case.axial is not None:
-            from frbcli.elements.collar.collar import collar_at_rest, collar_of  # films on pads take long to import
+            from frbcli.elements.collar import collar_at_rest, collar_of  # films on pads take long to import
 
             if (collar := collar_of(self._case)) is not None:
                 collar_at_rest(collar, omega)

@@ -17,7 +17,7 @@ from frbcli.scene.machine.heat import Heat, heat_of, warm_system
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
+from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
 CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
 APART = 1e-4  # of the speed: closer machines do not show how their temperatures change

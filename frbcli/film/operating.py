@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from frbcli.materials.solids import Solid
+from frbcli.materials import Solid
 
 LAMINAR_BELOW = 2300.0  # (3.3)
 RING_SPEED = 0.3  # of the rotor's, by table A.1: what a floating ring reaches at most

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Table, table_of
+from frbcli.columns import Column, Table, Tabular, table_of
 from frbcli.equilibrium.coefficients import RestingFilm, coefficient_error, place_error, resting_film
 from frbcli.equilibrium.ring_speed import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
@@ -23,7 +23,6 @@ from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
-from frbcli.html import Tabular
 from frbcli.linear.columns import sheet_columns
 from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.assembly import held_rotor

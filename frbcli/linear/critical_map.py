@@ -19,9 +19,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Table, spread_table
+from frbcli.columns import Column, Table, Tabular, spread_table
 from frbcli.errors import Fault, InputError
-from frbcli.html import Tabular
 from frbcli.linear.modes import direct_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled

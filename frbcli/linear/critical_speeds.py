@@ -27,7 +27,7 @@ from frbcli.equilibrium.linearised import small_motions
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import FrbError, NotConverged
 from frbcli.linear.stability_point import eigenvalues
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import EQUAL
 from frbcli.rotor.port import tangent
 from frbcli.scene.films import full_films, rings

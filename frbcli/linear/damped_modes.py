@@ -9,18 +9,17 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, Tabular, table_of
 from frbcli.equilibrium.coefficients import coefficients_of
 from frbcli.equilibrium.hopf import oscillating
 from frbcli.equilibrium.linearised import eigenpairs
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
-from frbcli.html import Tabular
 from frbcli.linear.columns import DAMPED_MODES
 from frbcli.linear.critical_speeds import larger_semi_axis, whirl_direction
 from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import first_largest, ranks
 from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of

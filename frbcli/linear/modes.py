@@ -15,10 +15,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Table, named, table_of
+from frbcli.columns import Table, Tabular, named, table_of
 from frbcli.elements.coefficients import GivenCoefficients
 from frbcli.errors import Fault, InputError
-from frbcli.html import Tabular
 from frbcli.linear.columns import NATURAL_MODES, SPEED
 from frbcli.rotor.loads import first_largest, ranks
 from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes

@@ -26,12 +26,11 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex, Truths
 from frbcli.case.schema import Case
-from frbcli.columns import Table, spread_table
+from frbcli.columns import Table, Tabular, spread_table
 from frbcli.equilibrium.coefficients import LEAST, coefficients_of
 from frbcli.equilibrium.linearised import linearised
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.errors import Fault, input_error
-from frbcli.html import Tabular
+from frbcli.errors import Fault, did_you_mean, input_error
 from frbcli.linear.columns import RESPONSE_POINTS
 from frbcli.linear.critical_speeds import (
     CLOSE,
@@ -47,8 +46,7 @@ from frbcli.linear.critical_speeds import (
 )
 from frbcli.linear.stability import check_machine, stability_points
 from frbcli.linear.stability_point import StabilityPoint
-from frbcli.nearest import did_you_mean
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import BOW, Harmonic
 from frbcli.scene.changes import after_losses, has_lost, loss_times
 from frbcli.scene.gate.gate import require

@@ -17,10 +17,9 @@ from operator import attrgetter
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.columns import Table, named, table_of
+from frbcli.columns import Table, Tabular, named, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.html import Tabular
 from frbcli.linear.columns import film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, deciding, find_threshold

@@ -18,7 +18,7 @@ from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
 from frbcli.film.cells.dynamic_stiffness import DynamicStiffness
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import fastest_first, ranks
 
 if TYPE_CHECKING:  # films on pads take long to import

@@ -11,7 +11,7 @@ from typing import Any
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
-from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.case.reading.text import TomlFault, parse
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import MOST_MARKED, plain

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
-from frbcli.elements.collar.collar import pad_of
+from frbcli.elements.collar import pad_of
 from frbcli.film.pads.geometry import MESH
 from frbcli.film.pads.mesh import pad_mesh
 from frbcli.linear.thrust.sheet import ThrustSheet

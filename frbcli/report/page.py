@@ -17,7 +17,7 @@ from markupsafe import Markup
 from frbcli import __version__
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.run import given_speed_unit
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable

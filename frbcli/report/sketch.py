@@ -18,8 +18,7 @@ from frbcli.case.bearing import FilmBearing, GivenBearing
 from frbcli.case.elements import Element
 from frbcli.case.film import FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.elements.damper import DamperElement
-from frbcli.elements.support import SupportElement
+from frbcli.elements.supports import DamperElement, SupportElement
 from frbcli.elements.table import elements_of, symbols_at
 from frbcli.report.svg import FLAT, HIGH, box, curve, drawing, element, height, line, stack, text
 from frbcli.scene.films import HOUSING as STILL

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.nearest import did_you_mean
+from frbcli.errors import did_you_mean
 from frbcli.results.files.container import refuse
 from frbcli.results.store import Run
 

@@ -18,9 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
-from frbcli.columns import table_of
-from frbcli.html import html_table
-from frbcli.nearest import did_you_mean
+from frbcli.columns import html_table, table_of
+from frbcli.errors import did_you_mean
 from frbcli.results.columns import EVENTS
 from frbcli.results.files import parts
 from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole

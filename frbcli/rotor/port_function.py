@@ -18,8 +18,7 @@ from numba.np.unsafe import ndarray
 
 from frbcli.arrays import Array
 from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
-from frbcli.rotor.own_laws import keys_of
-from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw, by_differences
+from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw, by_differences, keys_of
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(types.intp, types.intp, *[_POINTER] * 4)

@@ -12,7 +12,7 @@ import numpy as np
 
 from frbcli.analysis.signals import films, joined
 from frbcli.case.schema import Case
-from frbcli.elements.collar.thrust import COLLAR
+from frbcli.elements.thrust import COLLAR
 from frbcli.results.records import WHOLE
 from frbcli.results.store import Run
 from frbcli.runs.heat import hot_film

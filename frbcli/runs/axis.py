@@ -9,7 +9,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.elements.collar.motion import AxialMotion, axial_motion
+from frbcli.elements.collar_motion import AxialMotion, axial_motion
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.scene.machine.rotor import collar_tilt

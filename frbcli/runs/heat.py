@@ -39,8 +39,7 @@ from frbcli.thermal.exchange import (
     VISCOSITY,
     arrays_of,
 )
-from frbcli.thermal.model import clearances_at, viscosities_at
-from frbcli.thermal.steady import closed_gap
+from frbcli.thermal.model import clearances_at, closed_gap, viscosities_at
 
 QUANTITIES = ("temperature_{}_K", "viscosity_{}_Pa_s", "clearance_{}_m", "power_{}_W", "flow_{}_m3_s")
 AT_END = [POWER, FLOW]  # what the films did at the end of a step, from which the signals go on

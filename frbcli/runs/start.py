@@ -11,14 +11,13 @@ from dataclasses import replace
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.course.control import Start
+from frbcli.case.course.run import Start
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.film.roughness.asperities import Asperities
-from frbcli.rotor.assembly import held_rotor
+from frbcli.rotor.assembly import LinearRotor, held_rotor, unbalance_shares
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.rotor.port import port_forces
 from frbcli.scene.costs.course import longest_step, steps_of_a_turn

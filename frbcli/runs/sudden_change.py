@@ -12,7 +12,7 @@ import math
 import numpy as np
 
 from frbcli.film.cells.motion import turned
-from frbcli.rotor.linear import unbalance_shares
+from frbcli.rotor.assembly import unbalance_shares
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.drive import rotation_of
 from frbcli.runs.oil import displacement, grid_angle

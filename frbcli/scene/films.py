@@ -14,7 +14,7 @@ from frbcli.case.film import FilmGeometry, FilmModel
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.supplies import Bores
-from frbcli.elements.damper import DamperElement
+from frbcli.elements.supports import DamperElement
 from frbcli.film.cavitation.law import FilmOil, Law
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.film import VolumeFilm

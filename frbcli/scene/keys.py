@@ -5,7 +5,7 @@ from __future__ import annotations
 from frbcli.case.elements import Element
 from frbcli.case.film import RingFilm
 from frbcli.case.schema import Case
-from frbcli.elements.damper import DamperElement
+from frbcli.elements.supports import DamperElement
 
 
 def bearing_key(case: Case, index: int) -> str:

@@ -14,9 +14,8 @@ from tempfile import TemporaryDirectory
 from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
-from frbcli.errors import Fault, InputError, NotConverged, input_error
+from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
 from frbcli.linear.stability import stability
-from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
 from frbcli.runs.march import Progress
 from frbcli.runs.run import runup

@@ -14,9 +14,8 @@ from frbcli.analysis.measured import events_at
 from frbcli.analysis.signals import bearing_clearance, joined, located
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.arrays import Array
-from frbcli.columns import Column, Shown, Table, named, spread_table
+from frbcli.columns import Column, Shown, Table, Tabular, named, spread_table
 from frbcli.errors import input_error
-from frbcli.html import Tabular
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 

@@ -15,11 +15,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
-from frbcli.errors import Fault, InputError, NotConverged, input_error
+from frbcli.columns import Table, Tabular, table_of
+from frbcli.errors import Fault, InputError, NotConverged, did_you_mean, input_error
 from frbcli.film.cavitation.table import law_named, laws, names
-from frbcli.html import Tabular
-from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER

@@ -22,13 +22,11 @@ from frbcli.analysis.signals import bearing_clearance
 from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.spectra.spectrum import window_length
 from frbcli.arrays import Array, Truths
+from frbcli.case.reading.listing import machine_fault
 from frbcli.case.reading.listing import values as listed
-from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, table_of
-from frbcli.errors import Fault, FrbError, InputError, input_error
-from frbcli.html import Tabular
-from frbcli.nearest import did_you_mean
+from frbcli.columns import Column, Shown, Table, Tabular, table_of
+from frbcli.errors import Fault, FrbError, InputError, did_you_mean, input_error
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.runs.run import runup

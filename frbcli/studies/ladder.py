@@ -9,8 +9,7 @@ from operator import attrgetter, itemgetter
 from typing import Any
 
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, named, short_number, table_of
-from frbcli.html import Tabular
+from frbcli.columns import Column, Shown, Table, Tabular, named, short_number, table_of
 
 RESOLVED = 0.01  # Hz; resolution of the terminal's table
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from case_texts import SMALL, TURBOCHARGER, faults_of
 
-from frbcli.case.reading.lines import key_lines
 from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.tables import key_lines
 from frbcli.errors import InputError
 
 ASPERITIES = "[contact]\nmodel = 'asperities'\nsummit_radius = '20 um'\nsummit_density = '1e10 1/m^2'"

@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from frbcli.case.files.ross_file import RossElement
-from frbcli.case.files.ross_rotor import _rotor
+from frbcli.case.files.ross import RossElement, _rotor
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
-from frbcli.case.reading.toml import to_toml
+from frbcli.case.reading.text import to_toml
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.linear.modes import natural_modes

@@ -10,7 +10,7 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.materials.viscosity import walther
+from frbcli.materials import walther
 
 TWO = '{ points = [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]] }'
 

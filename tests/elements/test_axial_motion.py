@@ -11,8 +11,8 @@ import pytest
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.elements.collar.collar import collar_of
-from frbcli.elements.collar.motion import AxialMotion, axial_motion
+from frbcli.elements.collar import collar_of
+from frbcli.elements.collar_motion import AxialMotion, axial_motion
 from frbcli.errors import InputError
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.rotor.loads import speed_profile

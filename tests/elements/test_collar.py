@@ -13,8 +13,8 @@ from marches import DISK, SPAN, D, rigid_shaft
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.elements.collar.collar import NotCarried, collar_of
-from frbcli.elements.collar.thrust import ThrustElement
+from frbcli.elements.collar import NotCarried, collar_of
+from frbcli.elements.thrust import ThrustElement
 from frbcli.equilibrium.linearised import linearised, states
 from frbcli.errors import InputError
 from frbcli.linear.thrust.axial import axial_state

@@ -14,7 +14,7 @@ from scipy.optimize import brentq
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.case.surroundings.spring import Spring
+from frbcli.case.surroundings.forces import Spring
 from frbcli.elements.spring import SpringForce
 from frbcli.errors import InputError
 from frbcli.linear.response import response

@@ -3,7 +3,7 @@
 from math import radians
 
 from frbcli.elements.rolling.bearing import BallBearing
-from frbcli.materials.solids import ROLLING
+from frbcli.materials import ROLLING
 
 STEEL, NITRIDE = ROLLING["steel"], ROLLING["silicon nitride"]
 A = BallBearing(8, 3.175e-3, 14e-3, radians(15.0), 0.53, 0.53, STEEL, STEEL, preload=60.0)

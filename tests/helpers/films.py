@@ -13,7 +13,7 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.tables import TableFilms
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.scene.films import HOUSING, ROTOR
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.film_choice import DEFAULT_MESH

@@ -19,9 +19,8 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.film.rectangles.film import evaluate, make_film
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import LinearRotor, Link, assembled
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
-from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import SpeedProfile, speed_profile
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.machine.system import System

@@ -23,7 +23,7 @@ from frbcli.film.rectangles.untabulated import direct_force
 from frbcli.linear import stability as stability_room
 from frbcli.linear.stability import Stability, stability
 from frbcli.linear.stability_point import StabilityPoint, eigenvalues
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

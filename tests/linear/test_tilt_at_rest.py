@@ -13,7 +13,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.machines.stability import _point as document_of
 from frbcli.columns import table_of
-from frbcli.elements.housing import HousingElement
+from frbcli.elements.supports import HousingElement
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_films import static_films as films_of
 from frbcli.errors import InputError

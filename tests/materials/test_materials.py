@@ -10,9 +10,17 @@ from paths import DOCS
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError
 from frbcli.film.cells.channels.channel import channel_resistance
-from frbcli.materials.oils import OILS, conductivity, density, heat_capacity
-from frbcli.materials.solids import SOLIDS
-from frbcli.materials.viscosity import ZERO_CELSIUS, VogelLaw, through_three, walther
+from frbcli.materials import (
+    OILS,
+    SOLIDS,
+    ZERO_CELSIUS,
+    VogelLaw,
+    conductivity,
+    density,
+    heat_capacity,
+    through_three,
+    walther,
+)
 
 KELVIN = tuple(t + ZERO_CELSIUS for t in (40.0, 100.0, 150.0))
 

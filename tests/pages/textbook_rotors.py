@@ -13,7 +13,7 @@ import numpy as np
 
 import frbcli
 from frbcli.case.reading.load import case_from_dict
-from frbcli.case.reading.toml import to_toml
+from frbcli.case.reading.text import to_toml
 from frbcli.linear.stability import stability
 from frbcli.rotor.beam import BeamSection
 from frbcli.scene.shafts.table import shaft_of

@@ -8,9 +8,8 @@ import numpy as np
 import pytest
 
 from frbcli.arrays import Array
-from frbcli.rotor.assembly import Link, assembled, held_rotor
+from frbcli.rotor.assembly import LinearRotor, Link, assembled, held_rotor
 from frbcli.rotor.body import jeffcott_rotor, point_mass
-from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import LinearPart
 
 GRAVITY = 9.81

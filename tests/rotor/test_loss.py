@@ -19,7 +19,7 @@ from frbcli.arrays import Array, Complex
 from frbcli.case.reading.load import case_from_dict, load_case
 from frbcli.errors import InputError
 from frbcli.linear.response import response
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.runs.march import March
 from frbcli.scene.changes import after_losses, case_at
 from frbcli.scene.machine.rotor import make_rotor

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from frbcli.linear.stability_point import StabilityPoint, eigenvalues
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import fastest_first, first_largest, largest_first, ranks
 
 

@@ -23,9 +23,8 @@ from frbcli.errors import InputError
 from frbcli.film.cells.tilted.force import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import Link, assembled, without_spins
 from frbcli.rotor.body import COORDINATES, PLANE, spin, tilting_ring
-from frbcli.rotor.linear import without_spins
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.record.film_signals import tilt_signals
 from frbcli.runs.start import state_at

@@ -22,9 +22,8 @@ from frbcli.errors import InputError
 from frbcli.linear.modes import direct_springs, film_springs, natural_modes
 from frbcli.linear.stability_point import eigenvalues
 from frbcli.plot.machine.modes import modes_figure
-from frbcli.rotor.assembly import Link, assembled
+from frbcli.rotor.assembly import LinearRotor, Link, assembled, without_spins
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
-from frbcli.rotor.linear import LinearRotor, without_spins
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.shafts.table import shaft_of
 

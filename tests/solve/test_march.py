@@ -29,8 +29,8 @@ from scipy.integrate import solve_ivp
 from scipy.linalg import block_diag
 
 from frbcli.film.rectangles.film import evaluate
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.body import planar
-from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.solve.state import FINISHED, STEP, STEPS, State
 from frbcli.solve.tableau import METHODS, Method, Tableau

@@ -9,7 +9,7 @@ import pytest
 from marches import BEARING, control, forces, jeffcott, march, modal_rotor, rigid, start, with_short_films
 from scipy.integrate import simpson
 
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.start import rotor_data
 from frbcli.solve.state import CONTACT, FINISHED, LARGEST_EPS, RUNNING, STEPS, TIME, make_output

@@ -19,7 +19,7 @@ from scipy.sparse import lil_matrix
 from scipy.sparse.linalg import spsolve
 
 from frbcli.arrays import Array
-from frbcli.materials.viscosity import VogelLaw
+from frbcli.materials import VogelLaw
 
 AROUND, ALONG = 72, 8  # cells; along over half the width
 ROUNDS = 40

@@ -19,7 +19,7 @@ from frbcli.equilibrium import warm_machine as warm_machines
 from frbcli.equilibrium.warm_machine import WarmMachines, warm_machine
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
-from frbcli.materials.oils import OILS
+from frbcli.materials import OILS
 from frbcli.scene.machine.heat import warm_case, warm_system
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -26,7 +26,7 @@ from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.bearing_sheet import sommerfeld_chart
-from frbcli.materials.oils import OILS
+from frbcli.materials import OILS
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -16,7 +16,7 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import NotConverged
-from frbcli.materials.oils import OILS
+from frbcli.materials import OILS
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.results.store import Run
 from frbcli.runs.march import March

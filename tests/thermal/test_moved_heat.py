@@ -9,7 +9,7 @@ from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, w
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
-from frbcli.thermal.steady import SteadyHeat
+from frbcli.thermal.model import SteadyHeat
 
 SUPPLIED = 50.0 + 273.15
 WARM = [

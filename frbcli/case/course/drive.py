@@ -13,12 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal
 from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, model_validator
 from pydantic_core import CoreSchema, core_schema
 
-from frbcli.case.course.speed import SpeedRamp
+from frbcli.case.course.run import SpeedRamp
 from frbcli.case.model import Duration, Model, Quantity, Speed, TopSpeed, with_default
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach
-from frbcli.case.surroundings.machine_table import MachineTable
+from frbcli.case.reading.tables import Breach, Path
 from frbcli.case.surroundings.over_time import Entry, over_time_problem
+from frbcli.case.surroundings.places import MachineTable
 from frbcli.units import SPEED, ValueFault, display, quantity
 
 if TYPE_CHECKING:

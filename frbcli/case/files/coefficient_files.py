@@ -16,7 +16,7 @@ from typing import Any
 from frbcli.case.elements import AXES
 from frbcli.case.files.number_table import Columns, Refused, finite, number_table, text_of, with_file
 from frbcli.case.reading.tables import Breach, tables
-from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.case.reading.text import TomlFault, parse
 
 MOST_SPEEDS = 2000
 SPEED = "speed_Hz"

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.model import LARGEST
-from frbcli.case.reading.lines import Path as Key
 from frbcli.case.reading.tables import Breach, at, replaced
+from frbcli.case.reading.tables import Path as Key
 from frbcli.results.files import named
 from frbcli.results.files.named import NoFile, NoText, Unreadable
 

@@ -21,7 +21,7 @@ from scipy.sparse.csgraph import connected_components
 from frbcli.arrays import Array
 from frbcli.case.elements import AXES
 from frbcli.case.files.number_table import Refused
-from frbcli.case.files.ross_file import REMEDY, RossElement, ross_elements, shaft_of_file
+from frbcli.case.files.ross import REMEDY, RossElement, ross_elements, shaft_of_file
 
 MASS = "PointMass"
 COUPLED = 1e-6  # of the largest damping of the modes of a housing: that between two of them

@@ -12,8 +12,7 @@ from typing import Any
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_folder
 from frbcli.case.schema import Case
-from frbcli.errors import Fault, InputError
-from frbcli.nearest import did_you_mean
+from frbcli.errors import Fault, InputError, did_you_mean
 
 LIST = "hard-cases.toml"
 WITHIN_s = 600.0  # compilation included, where nothing is compiled yet

@@ -9,27 +9,25 @@ from typing import Any
 
 from pydantic import ValidationError
 
-from frbcli.case.course.speed_points import with_speed_points
-from frbcli.case.course.time_tables import with_input_files, with_time_tables
+from frbcli.case.course.time_tables import with_input_files, with_speed_points, with_time_tables
 from frbcli.case.files.coefficient_files import with_coefficient_files
 from frbcli.case.files.housing_modes import with_housing_file
-from frbcli.case.files.ross_rotor import with_rotor_file
+from frbcli.case.files.ross import with_rotor_file
 from frbcli.case.model import Model
-from frbcli.case.reading import lines
 from frbcli.case.reading.settings import with_setting, with_value
 from frbcli.case.reading.shipped import find_shipped, nearest, shipped_names
-from frbcli.case.reading.tables import at
-from frbcli.case.reading.text import as_tables
-from frbcli.case.reading.toml import DEEPEST, TomlFault, parse, to_toml
+from frbcli.case.reading.tables import Path as KeyPath
+from frbcli.case.reading.tables import at, key_lines
+from frbcli.case.reading.text import DEEPEST, TomlFault, as_tables, parse, to_toml
 from frbcli.case.rules.checks import Breach, breaches
 from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_kinds
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.machine_table import machine_breaches
+from frbcli.case.surroundings.places import machine_breaches
 from frbcli.errors import Fault, InputError
 from frbcli.results.files.kinds import RUN_BEGINS
 from frbcli.results.files.named import NoFile, NoText, Unreadable, begins_with, text_of
 
-_Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], lines.Path]]  # sets one key; raises TomlFault
+_Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], KeyPath]]  # sets one key; raises TomlFault
 
 LARGEST_FILE = 262_144  # bytes; a case has some thousand
 LONGEST_SHOWN = 150  # characters of a value or a path in a fault
@@ -215,7 +213,7 @@ def _refused(source: str, faults: Sequence[Fault]) -> InputError:
     return InputError(source, tuple(sorted(faults, key=lambda fault: (fault.line or LARGEST_FILE, fault.key))))
 
 
-def _plain(value: Any, path: lines.Path = ()) -> Any:
+def _plain(value: Any, path: KeyPath = ()) -> Any:
     """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
     if len(path) > DEEPEST:
         raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as in a case file."))
@@ -256,13 +254,13 @@ def _unreadable(source: str | Path, problem: str, remedy: str) -> InputError:
     return InputError(shown, (Fault("CASE", shown, None, problem, remedy),))
 
 
-def _with_value(data: Mapping[str, Any], key: object, value: object) -> tuple[dict[str, Any], lines.Path]:
+def _with_value(data: Mapping[str, Any], key: object, value: object) -> tuple[dict[str, Any], KeyPath]:
     return with_value(data, str(key), _plain(value))
 
 
-def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, Any], list[lines.Path], list[Fault]]:
+def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, Any], list[KeyPath], list[Fault]]:
     """`data` with the settings, their paths, and their faults."""
-    overridden: list[lines.Path] = []
+    overridden: list[KeyPath] = []
     faults: list[Fault] = []
     for setting in settings:
         try:
@@ -276,8 +274,8 @@ def _apply(data: dict[str, Any], settings: Iterable[_Set]) -> tuple[dict[str, An
 def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     """The case in `data`, None if the models reject it, and all faults."""
     case, guess = None, data
-    guessed: list[lines.Path] = []
-    faults: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
+    guessed: list[KeyPath] = []
+    faults: dict[KeyPath, Breach] = {}  # one per key: the first says why the value cannot be taken at all
     try:
         case = Case.model_validate(data)
     except ValidationError as error:
@@ -292,7 +290,7 @@ def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     return case, [breach for breach in faults.values() if not _follows(breach, faults.values(), guessed)]
 
 
-def _follows(breach: Breach, others: Iterable[Breach], guessed: Sequence[lines.Path]) -> bool:
+def _follows(breach: Breach, others: Iterable[Breach], guessed: Sequence[KeyPath]) -> bool:
     """Whether a fault is of the form of a table whose kind was guessed, and whose other keys belong to another kind."""
     for path in guessed:
         of_form = [each for each in others if each.path[: len(path)] == path and each.path[len(path) :] != ("kind",)]
@@ -301,9 +299,9 @@ def _follows(breach: Breach, others: Iterable[Breach], guessed: Sequence[lines.P
     return False
 
 
-def _located(flaws: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:
+def _located(flaws: Sequence[Breach], data: dict[str, Any], overridden: Sequence[KeyPath], text: str) -> list[Fault]:
     """The breaches as faults with the lines of their keys; what came from a setting has no line."""
-    known = lines.key_lines(text)
+    known = key_lines(text)
     faults = []
     for breach in flaws:
         from_setting = any(breach.path[: len(path)] == path for path in overridden)
@@ -312,11 +310,11 @@ def _located(flaws: Sequence[Breach], data: dict[str, Any], overridden: Sequence
     return faults
 
 
-def _dotted(path: lines.Path) -> str:
+def _dotted(path: KeyPath) -> str:
     return _printable(".".join(map(str, path)))
 
 
-def _shown(data: Any, path: lines.Path) -> str:
+def _shown(data: Any, path: KeyPath) -> str:
     """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
     value = at(data, path)
     if value is None or isinstance(value, dict | list):

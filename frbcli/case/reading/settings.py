@@ -6,8 +6,8 @@ import re
 from collections.abc import Mapping
 from typing import Any
 
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.case.reading.tables import Path
+from frbcli.case.reading.text import TomlFault, parse
 from frbcli.errors import Fault
 
 DEEPEST_KEY = 8

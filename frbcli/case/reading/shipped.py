@@ -7,8 +7,7 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-from frbcli.errors import Fault, InputError
-from frbcli.nearest import did_you_mean
+from frbcli.errors import Fault, InputError, did_you_mean
 
 
 def shipped_cases() -> dict[str, str]:

@@ -10,19 +10,23 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from frbcli.case.course.control import OUTPUT_STEP
-from frbcli.case.course.speed import DEFAULT_HOLD
+from frbcli.case.course.run import DEFAULT_HOLD, OUTPUT_STEP
 from frbcli.case.oil import ATMOSPHERE
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, ring_films, table, tables
+from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
 from frbcli.case.rotor import OF_SECTIONS, SYMMETRIC
-from frbcli.case.rules.cartridge_checks import cartridge_breaches, pin_breaches, positions, tilt_breaches
-from frbcli.case.rules.contact_checks import contact_breaches
-from frbcli.case.rules.element_checks import balls_alone, element_breaches, has_films
-from frbcli.case.rules.film_checks import film_breaches, law_breaches
+from frbcli.case.rules.element_checks import (
+    balls_alone,
+    cartridge_breaches,
+    element_breaches,
+    has_films,
+    pin_breaches,
+    positions,
+    thrust_alone,
+    thrust_breaches,
+    tilt_breaches,
+)
+from frbcli.case.rules.film_checks import contact_breaches, film_breaches, law_breaches, thermal_breaches
 from frbcli.case.rules.plausible import implausible
-from frbcli.case.rules.thermal_checks import thermal_breaches
-from frbcli.case.rules.thrust_checks import thrust_alone, thrust_breaches
 from frbcli.units import NUMBER, display
 
 __all__ = ["Breach", "breaches"]

@@ -1,4 +1,8 @@
-"""Rules that tie the keys of elements without a film together, and rules of cases without any film. See checks.py."""
+"""Rules that tie the keys of elements together, see checks.py.
+
+Those of elements without a film, of cases without any film, of a cartridge, its two places and its body, of inertias
+and pins of rings, and of thrust bearings.
+"""
 
 from __future__ import annotations
 
@@ -8,9 +12,10 @@ from typing import Any
 
 from frbcli.case.elements import EMPTY_MATRIX, WITHOUT_FILM, BallBearingKeys
 from frbcli.case.files.coefficient_files import MASSES, column_lengths, is_negative, over_speed_problem
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table, tables
-from frbcli.units import NUMBER, display
+from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
+from frbcli.case.rotor import OF_SECTIONS
+from frbcli.case.surroundings.over_time import values_of
+from frbcli.units import ANGLE, NUMBER, SPEED, display
 
 CURVATURES = tuple((key, BallBearingKeys.model_fields[key].default) for key in ("inner_curvature", "outer_curvature"))
 GIVEN = ("stiffness", "damping", "mass")
@@ -146,3 +151,134 @@ def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
     problem = over_speed_problem([s or 0.0 for s in speeds], [[m or 0.0 for m in column] for column in masses])
     if problem:
         yield Breach((*path, "speed" if "ascend" in problem else "mxx"), problem, "Correct it.")
+
+
+BODY = {"mass": "9 g", "inertia": "0.2 kg*mm^2", "tilt_inertia": "1 kg*mm^2"}
+
+
+def cartridge_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of a cartridge."""
+    ring = table(bearing, "ring")
+    for key, example in BODY.items() if isinstance(bearing.get("ring"), dict) else ():
+        if key not in ring:
+            problem = "is missing: the body of a cartridge does not follow from its films."
+            yield Breach((*path, "ring", key), problem, f'Add e.g. {key} = "{example}".')
+    if "width" in ring:
+        yield Breach((*path, "ring", "width"), "has no effect: the mass of a cartridge is given.", "Remove it.")
+    yield from tilt_breaches(path, bearing)
+    places = [place for _, place in positions(path, bearing)]
+    if len(places) == 2 and None not in places and not places[0] < places[1]:  # type: ignore[operator]
+        problem = "are equal: the ring has two places." if places[0] == places[1] else "descend."
+        yield Breach((*path, "positions"), problem, 'Write them from left to right, e.g. ["20 mm", "60 mm"].')
+
+
+def tilt_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    """A ring whose inertias no body has."""
+    ring = table(bearing, "ring")
+    polar, tilt = number(ring, "inertia", "kg*m^2"), number(ring, "tilt_inertia", "kg*m^2")
+    if polar and tilt and tilt < 0.5 * polar * (1.0 - 1e-9):
+        problem = f"is less than half of ring.inertia, {display(polar, 'kg*m^2')}, which is not possible."
+        yield Breach((*path, "ring", "tilt_inertia"), problem, "Exchange or correct the two.")
+
+
+def pin_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    """A pin of a ring that does not turn, and one outside of the ring."""
+    if table(bearing, "ring").get("spin") == "blocked" and "pin" in bearing:
+        remedy = 'Remove it, or write ring.spin = "free".'
+        yield Breach((*path, "pin"), "has no effect: the ring is blocked, as by a pin without play.", remedy)
+    radius = number(table(bearing, "pin"), "radius", "m")
+    for (_, inside), (_, outside) in ring_films(bearing)[:1]:
+        inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
+        if radius and inner and outer and not inner <= 2.0 * radius <= outer:
+            within = f"{display(0.5 * inner, 'm')} and {display(0.5 * outer, 'm')}"
+            problem = f"is {display(radius, 'm')}, and the ring lies between {within} from the axis."
+            remedy = f'Write e.g. "{display(0.25 * (inner + outer), "m")}", the middle of the ring.'
+            yield Breach((*path, "pin", "radius"), problem, remedy)
+
+
+def positions(path: Path, bearing: Mapping[str, Any]) -> list[tuple[Path, float | None]]:
+    """The places of a cartridge in m with their paths, None for one that cannot be read."""
+    given = bearing.get("positions")
+    items = given if isinstance(given, list) else []
+    return [((*path, "positions", index), number({"": item}, "", "m")) for index, item in enumerate(items)]
+
+
+MOST_PADS = 10**6
+ROUND = 1e-9
+FEWEST = 3  # pads of a collar under load
+ONE_SIDE = ("left", "right")
+
+
+def thrust_alone(data: Mapping[str, Any]) -> bool:
+    """Whether a case is of thrust bearings alone, without a rotor or a bearing."""
+    return bool(tables(data, "thrust_bearing")) and not {"bearing", "rotor", "motion"} & data.keys()
+
+
+def thrust_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of thrust bearings."""
+    for path, bearing in tables(data, "thrust_bearing"):
+        yield from _pads(path, bearing)
+        if bearing.get("side", "both") == "both" and "end_play" not in bearing:
+            problem = "is missing; the gaps of pads on both sides follow from it."
+            remedy = 'Add e.g. end_play = "100 um", or write side = "left" or "right".'
+            yield Breach((*path, "end_play"), problem, remedy)
+        if table(data, "rotor").get("kind") in OF_SECTIONS and "position" not in bearing:
+            yield Breach((*path, "position"), "is missing.", 'Add e.g. position = "80 mm", where the collar stands.')
+    if "axial" in data:
+        yield from _loaded(data)
+
+
+def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
+    inner, outer = (number(bearing, key, "m") for key in ("inner_radius", "outer_radius"))
+    if inner and outer and inner >= outer:
+        problem = f"is {display(inner, 'm')}, not below the outer radius of {display(outer, 'm')}."
+        yield Breach((*path, "inner_radius"), problem, "Exchange the two radii, or correct them.")
+    angle, taper_angle = (number(bearing, key, ANGLE) for key in ("pad_angle", "taper_angle"))
+    pads = bearing.get("pads")
+    if not isinstance(pads, int) or isinstance(pads, bool) or pads > MOST_PADS:  # has a fault of its own
+        pads = 0
+    if angle and pads * angle > 2.0 * math.pi * (1.0 + ROUND):
+        degrees = math.degrees(angle)
+        problem = f"makes the pads overlap: {pads} of {degrees:.5g} deg are {pads * degrees:.5g} deg."
+        remedy = f'With {pads} pads write at most pad_angle = "{360.0 / pads:.5g} deg", or take fewer pads.'
+        yield Breach((*path, "pad_angle"), problem, remedy)
+    if angle and taper_angle and taper_angle > angle * (1.0 + ROUND):
+        problem = f"is {math.degrees(taper_angle):.5g} deg, longer than the pad of {math.degrees(angle):.5g} deg."
+        yield Breach((*path, "taper_angle"), problem, "Make it shorter, at most as long as pad_angle.")
+
+
+def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of a collar under an axial load."""
+    bearings, key = tables(data, "thrust_bearing"), ("axial", "load")
+    if not bearings:
+        remedy = "Add [[thrust_bearing]], or remove the table; see docs/thrust.md."
+        yield Breach(("axial",), "has no thrust bearing that carries its load.", remedy)
+        return
+    if len(bearings) > 1:
+        problem = f"is given with {len(bearings)} thrust bearings, and one collar carries it."
+        yield Breach(key, problem, 'Keep one, with side = "both" where pads stand on both sides.')
+    if "oil" not in data:
+        yield Breach(("oil",), "is missing.", "Add the table [oil].")
+    first = number(table(data, "speed"), "from", SPEED)
+    if first is not None and first < 0.0:
+        problem = "turns the collar the other way, in which its pads carry nothing."
+        yield Breach(("speed", "from"), problem, 'Write from = "0 Hz" or more, or remove [axial].')
+    path, bearing = bearings[0]
+    pads = bearing.get("pads")
+    if isinstance(pads, int) and not isinstance(pads, bool) and 0 < pads < FEWEST:
+        problem = f"is {pads}: fewer than three pads do not hold a collar alike in all directions."
+        yield Breach((*path, "pads"), problem, "Write pads = 3 or more, or remove [axial].")
+    yield from _side(key, table(data, "axial").get("load"), bearing.get("side", "both"))
+
+
+def _side(key: Path, given: Any, side: object) -> Iterator[Breach]:
+    """A load towards the side without pads."""
+    values = values_of(given.get("load") if isinstance(given, dict) and "load" in given else given, "N")
+    if side not in ONE_SIDE or not values:
+        return
+    towards = min(values) if side == "right" else -max(values)
+    if towards > 0.0 or (towards == 0.0 < max(values, key=abs)):
+        return
+    away = "is 0: the film pushes the collar off" if not any(values) else "pulls the collar off its pads, which stand"
+    problem = f"{away}{' its pads, which stand' if not any(values) else ''} on its {side} side alone."
+    yield Breach(key, problem, 'A load above 0 acts towards larger positions, to the right. Or write side = "both".')

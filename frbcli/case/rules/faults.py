@@ -11,11 +11,10 @@ from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from frbcli.case.model import Count, Model, Quantity
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import at
+from frbcli.case.reading.tables import Path, at
 from frbcli.case.rules.checks import Breach
 from frbcli.case.schema import Case
-from frbcli.nearest import did_you_mean, nearest
+from frbcli.errors import did_you_mean, nearest
 from frbcli.units import ValueFault, display, quantity
 
 _FORMS = {

@@ -1,4 +1,4 @@
-"""Rules that tie the keys of one film together: its gap, its supply, its oil. See checks.py for how they read."""
+"""Rules that tie the keys of films together: gap, supply, oil, heat, contact. See checks.py for how they read."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from pydantic import TypeAdapter, ValidationError
 
 from frbcli.case.film import ColdClearance, Profile
 from frbcli.case.oil import ATMOSPHERE, Grade, Oil, Vogel
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, number, table, tables
+from frbcli.case.reading.tables import Breach, Path, number, ring_films, table, tables
 from frbcli.case.supplies import supply_named
-from frbcli.materials.oils import OILS
-from frbcli.materials.viscosity import VogelLaw
+from frbcli.case.surroundings.over_time import is_over_time, values_of
+from frbcli.case.thermal import HOTTEST_FILM
+from frbcli.materials import OILS, VogelLaw
 from frbcli.units import NUMBER, display
 
 PROFILE: TypeAdapter[tuple[tuple[float, float], ...]] = TypeAdapter(Profile)
@@ -147,3 +147,126 @@ def warm_clearance(film: Mapping[str, Any], diameter: float | None) -> float | N
         return ColdClearance.model_validate(given).warm(diameter) if diameter else None
     except ValidationError:
         return None
+
+
+WALLS = ("shaft", "housing")
+
+
+def thermal_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Every broken rule of heat in the tables of a case."""
+    thermal, oil = table(data, "thermal"), table(data, "oil")
+    if not thermal or thermal.get("model") == "none":
+        yield from _without_heat(data)
+        return
+    if "viscosity" in oil and not isinstance(oil["viscosity"], dict) and "vogel" not in oil:
+        problem = "is constant, but [thermal] has films that warm up."
+        remedy = 'Give a grade, { grade = "SAE 10W-40" }, or oil.vogel in its place.'
+        yield Breach(("oil", "viscosity"), problem, remedy)
+    hottest = number(thermal, "hottest_film", "K", HOTTEST_FILM)
+    for path, value in _temperatures(data, thermal):
+        yield from law_breaches(oil, value, path)
+        if value is not None and hottest is not None and value >= hottest:
+            problem = f"is {display(value, 'K')}, not below thermal.hottest_film, {display(hottest, 'K')}."
+            yield Breach(path, problem, "Lower it. Temperatures in degrees Celsius have the unit degC.")
+    for path, bearing in tables(data, "bearing"):
+        films = [((*path, *at), film) for end in ring_films(bearing) for at, film in end]
+        for film_path, film in films or [(path, bearing)]:
+            yield from _film(film_path, film)
+
+
+def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
+    """Keys of a film that heat makes superfluous."""
+    if "viscosity" in film:
+        problem = "is constant, but [thermal] has films that warm up."
+        remedy = "Remove it: the viscosity follows from [oil] at the film's temperature."
+        yield Breach((*path, "viscosity"), problem, remedy)
+    if "temperature" in film:
+        problem = "has no effect: [thermal] finds the film's temperature."
+        yield Breach((*path, "temperature"), problem, 'Remove it, or write thermal.model = "none".')
+    if "clearance_steps" in film and isinstance(film.get("clearance"), dict):
+        problem = "gives clearances of no temperature, and the clearance before them is a cold one."
+        remedy = "Give that at thermal.reference_temperature as a length, as the steps do."
+        yield Breach((*path, "clearance_steps"), problem, remedy)
+
+
+def _temperatures(data: Mapping[str, Any], thermal: Mapping[str, Any]) -> Iterator[tuple[Path, float | None]]:
+    """The temperatures that the oil meets, by their keys."""
+    if "start_temperature" in thermal:
+        yield ("thermal", "start_temperature"), number(thermal, "start_temperature", "K")
+    places: list[tuple[Path, Mapping[str, Any]]] = [(("thermal",), thermal), *tables(data, "bearing")]
+    for path, holder in places:
+        for key in ("supply_temperature", *WALLS):
+            if key in holder and holder[key] != "adiabatic":
+                values = values_of(holder[key], "K")
+                yield from (((*path, key), limit(values)) for limit in (min, max) if values)
+
+
+def _without_heat(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Keys of bearings that have an effect with heat only."""
+    if "thermal" in data:
+        yield from _inputs_without_heat(data)
+        return
+    for path, bearing in tables(data, "bearing"):
+        for key in (*WALLS, "supply_temperature"):
+            if key in bearing:
+                yield Breach((*path, key), "has no effect without heat.", "Remove it, or add the table [thermal].")
+
+
+def _inputs_without_heat(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Temperatures over time where [thermal] has no model."""
+    for path, holder in ((("thermal",), table(data, "thermal")), *tables(data, "bearing")):
+        for key in (*WALLS, "supply_temperature"):
+            if is_over_time(holder.get(key)):
+                problem = "changes over time, and without heat all films keep their temperature."
+                yield Breach((*path, key), problem, 'Write thermal.model = "lumped", or one temperature.')
+
+
+OF_SPRING = ("policy", "stiffness")
+OF_ASPERITIES = {"roughness": '"0.5 um"', "summit_radius": '"20 um"', "summit_density": '"1e10 1/m^2"'}
+WITH_DEFAULT = (  # of asperities, too
+    "mean_height", "modulus", "hardness", "friction", "wear", "flow_factors", "journal_roughness",
+)  # fmt: skip
+STEEPEST = 0.3  # roughness over summit_radius: summits of rough surfaces are flat
+MOST_CROWDED = math.sqrt(2.0) / math.pi  # density, radius and roughness: all of the area, pi^2 N^2 b^2 s^2 F_2(0) = 1
+
+
+def contact_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
+    """Keys of the other model, keys that are missing, and summits that are no summits."""
+    contact = table(data, "contact")
+    if contact.get("model", "spring") == "spring":
+        if contact.get("policy") == "elastic" and "stiffness" not in contact:
+            problem = "is missing; elastic contact needs it."
+            yield Breach(("contact", "stiffness"), problem, 'Add stiffness = "1e8 N/m".')
+        for key in (*OF_ASPERITIES, *WITH_DEFAULT):
+            if key in contact:
+                problem = "has an effect on rough surfaces only."
+                yield Breach(("contact", key), problem, 'Add model = "asperities", or remove it.')
+    elif contact["model"] == "asperities":
+        yield from _breaches_of_asperities(contact)
+
+
+def _breaches_of_asperities(contact: Mapping[str, Any]) -> Iterator[Breach]:
+    for key in OF_SPRING:
+        if key in contact:
+            yield Breach(("contact", key), "has an effect between smooth surfaces only.", "Remove it.")
+    for key, example in OF_ASPERITIES.items():
+        if key not in contact:
+            yield Breach(("contact", key), "is missing; asperities need it.", f"Add {key} = {example}.")
+    if "wear" in contact and "hardness" not in contact:
+        yield Breach(("contact", "hardness"), "is missing; wear goes with 1 / hardness.", 'Add hardness = "2 GPa".')
+    roughness, radius = number(contact, "roughness", "m"), number(contact, "summit_radius", "m")
+    journal = number(contact, "journal_roughness", "m")
+    if journal is not None and contact.get("flow_factors") is not True:
+        problem = "has an effect on flow factors only."
+        yield Breach(("contact", "journal_roughness"), problem, "Add flow_factors = true, or remove it.")
+    elif journal and roughness and journal > roughness:
+        problem = "is more than roughness, which holds for both surfaces together."
+        yield Breach(("contact", "journal_roughness"), problem, "Correct one of the two.")
+    if roughness and radius and roughness > STEEPEST * radius > 0.0:
+        problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."
+        yield Breach(("contact", "roughness"), problem, "Correct one of the two.")
+    density = number(contact, "summit_density", "1/m^2")
+    if roughness and radius and density and (crowd := density * radius * roughness) > MOST_CROWDED:
+        problem = f"lets summits touch on {(crowd / MOST_CROWDED) ** 2:.3g} times the area, where the mean planes meet."
+        remedy = f'Give no more than "{MOST_CROWDED / (radius * roughness):.2g} 1/m^2" with this radius and roughness.'
+        yield Breach(("contact", "summit_density"), problem, remedy)

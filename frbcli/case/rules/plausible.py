@@ -8,11 +8,10 @@ from dataclasses import dataclass
 from typing import Any
 
 from frbcli.case.model import LARGEST
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach, Located, at, number, ring_films, table, tables
+from frbcli.case.reading.tables import Breach, Located, Path, at, number, ring_films, table, tables
 from frbcli.case.rules.film_checks import warm_clearance
 from frbcli.film.operating import RING_SPEED, ring_rotation_strains, shaft_rotation_strain
-from frbcli.materials.solids import BRASS, STEEL
+from frbcli.materials import BRASS, STEEL
 from frbcli.units import SPEED, display, readable
 
 FASTEST_SURFACE = 500.0  # m/s; limit of the strength of steel shafts

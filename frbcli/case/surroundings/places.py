@@ -1,15 +1,15 @@
-"""The places of a machine that forces can act on."""
+"""Places of a machine that forces can act on, and tables of a case with the rules that tie them to its machine."""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.model import Model
-from frbcli.case.reading.lines import Path
-from frbcli.case.reading.tables import Breach
+from frbcli.case.reading.tables import Breach, Path
 from frbcli.case.surroundings.over_time import OverTime, over_time_problem
-from frbcli.nearest import did_you_mean
+from frbcli.errors import did_you_mean
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -60,3 +60,27 @@ def table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str,
     problem = over_time_problem(table.time, *table.both)
     if problem:
         yield Breach((*path, "over_time"), problem, "Order its rows by rising times.")
+
+
+class MachineTable(Model):
+    """A table of a case, or one of several with the same key, that has no effect without a rotor."""
+
+    alone: ClassVar[bool] = False  # a single one has no number in its key
+
+    @abstractmethod
+    def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
+        """Every rule that it breaks in a case with a rotor. path: its key in the case file, with its number."""
+
+
+def machine_breaches(case: Case) -> Iterator[Breach]:
+    """Every rule that tables of this kind break in a case."""
+    for name, field in type(case).model_fields.items():
+        given, key = getattr(case, name), field.alias or name
+        for number, table in enumerate(given if isinstance(given, tuple) else (given,)):
+            if isinstance(table, MachineTable):
+                single = table is given or (table.alone and len(given) == 1)
+                path: Path = (key,) if single else (key, number)
+                if case.given_rotor is None:
+                    yield Breach(path, "has no effect: a kinematic test moves its journal.", "Remove it.")
+                else:
+                    yield from table.breaches(case, path)

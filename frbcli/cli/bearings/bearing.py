@@ -110,7 +110,7 @@ def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ros
 
 
 def _check_film(case: Case, film: str | None) -> None:
-    from frbcli.nearest import did_you_mean
+    from frbcli.errors import did_you_mean
     from frbcli.scene.films import bearing_films
 
     names = [place.name for place in bearing_films(case)]

@@ -9,7 +9,7 @@ if TYPE_CHECKING:
 
     from frbcli.cli.common import Terminal
     from frbcli.equilibrium.warm_machine import FilmTemperature, WarmMachine
-    from frbcli.thermal.steady import SteadyHeat
+    from frbcli.thermal.model import SteadyHeat
 
 
 def heat_document(warm: WarmMachine) -> dict[str, object]:

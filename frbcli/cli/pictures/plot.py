@@ -73,7 +73,7 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.run import given_speed_unit
     from frbcli.results.store import read_run
 
     if animate and what not in MOVING:

@@ -84,7 +84,7 @@ def command(
     """
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.run import given_speed_unit
     from frbcli.results.columns import EVENTS
 
     if listed:

@@ -85,7 +85,7 @@ def command(
     with the same columns; --x a,b takes several probes.
     """
     from frbcli.balancing.balance import TrialRun, balance
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.run import given_speed_unit
     from frbcli.results.files.kinds import TABLES
 
     check_outputs((csv, TABLES["csv"]))

@@ -148,7 +148,7 @@ def beside_measured(
     outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.run import given_speed_unit
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 

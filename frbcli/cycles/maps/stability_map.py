@@ -13,7 +13,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, Tabular, table_of
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
@@ -33,7 +33,6 @@ from frbcli.cycles.method.cycle import FOLD, HOPF, amplitude, eccentricities, wi
 from frbcli.cycles.method.equilibria import hopf_at, settled
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.errors import NotConverged, input_error
-from frbcli.html import Tabular
 
 BAUTIN, CUSP = "bautin", "cusp"
 ACROSS = 200  # values of the first number at which the growth at rest is evaluated

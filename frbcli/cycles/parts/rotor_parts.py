@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array, Complex
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 
 SMALLEST = 16  # degrees of freedom from which on two parts are solved faster than one
 ALIKE = 1e-9  # by which planes that count as the same may differ, relative

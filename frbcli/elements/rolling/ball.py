@@ -16,7 +16,7 @@ from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.elements.rolling.force import ball_bearing_force, ball_numbers
 from frbcli.elements.rolling.rest import at_displacement, balls_of
-from frbcli.materials.solids import ROLLING, Elastic
+from frbcli.materials import ROLLING, Elastic
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
 from frbcli.rotor.port import ANGLE, D_X, D_Y, F_X, F_Y, SPEED, XX, XY, YX, YY, ForceLaw

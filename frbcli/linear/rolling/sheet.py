@@ -11,13 +11,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
+from frbcli.columns import Table, Tabular, table_of
 from frbcli.elements.rolling.ball import BallBearingElement
-from frbcli.elements.rolling.life import rating_life
-from frbcli.elements.rolling.rest import RestingRings, under_load
+from frbcli.elements.rolling.rest import RestingRings, rating_life, under_load
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.html import Tabular
 from frbcli.linear.rolling.columns import BALL_SHEET
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS

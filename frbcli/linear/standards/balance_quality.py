@@ -25,9 +25,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import input_error
-from frbcli.html import Tabular
 from frbcli.scene.gate.gate import require
 from frbcli.scene.shafts.shaft import Shaft
 from frbcli.scene.shafts.table import shaft_of

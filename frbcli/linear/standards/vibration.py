@@ -23,8 +23,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, speed_shown, table_of
-from frbcli.html import Tabular
+from frbcli.columns import Column, Shown, Table, Tabular, speed_shown, table_of
 from frbcli.linear.critical_speeds import CriticalSpeed
 from frbcli.linear.response import Response
 from frbcli.units import PER_MINUTE

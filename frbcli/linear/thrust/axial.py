@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.elements.collar.collar import collar_at_rest, collar_of
+from frbcli.elements.collar import collar_at_rest, collar_of
 from frbcli.linear.thrust.state import ThrustState, thrust_films
 from frbcli.scene.shafts.table import shaft_of
 

@@ -9,10 +9,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.case.schema import Case
-from frbcli.columns import Table, table_of
-from frbcli.elements.collar.collar import BOTH, Collar, NotCarried, collar_of, collar_under
+from frbcli.columns import Table, Tabular, table_of
+from frbcli.elements.collar import BOTH, Collar, NotCarried, collar_of, collar_under
 from frbcli.errors import input_error
-from frbcli.html import Tabular
 from frbcli.linear.thrust.columns import THRUST
 from frbcli.linear.thrust.faults import no_gap, require_sheet
 from frbcli.linear.thrust.state import ThrustFilms, ThrustState, thrust_films

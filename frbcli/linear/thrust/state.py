@@ -13,13 +13,13 @@ from frbcli.case.elements import ThrustBearing
 from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
 from frbcli.case.thermal import Thermal
-from frbcli.elements.collar.collar import BOTH, pad_of
+from frbcli.elements.collar import BOTH, pad_of
 from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import COARSE, MESH, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
 
 if TYPE_CHECKING:
-    from frbcli.elements.collar.heat import PadHeat
+    from frbcli.elements.collar import PadHeat
 
 COEFFICIENTS = "stiffness", "damping"
 OilAt = tuple[PadOil, float | None]  # of a film, and its temperature in K
@@ -144,7 +144,7 @@ def thrust_films(case: Case, bearing: ThrustBearing) -> ThrustFilms:
 
 
 def _heat(oil: Oil, thermal: Thermal) -> PadHeat:
-    from frbcli.elements.collar.heat import PadHeat  # its kernels are compiled
+    from frbcli.elements.collar import PadHeat  # its kernels are compiled
 
     return PadHeat(oil, thermal)
 

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Circle
 
 from frbcli.analysis.signals import joined, points, speed_at
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.run import given_speed_unit
 from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
 from frbcli.plot.run.envelope import at_times
 from frbcli.plot.run.orbit import LAST_s

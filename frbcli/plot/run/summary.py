@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.run import given_speed_unit
 from frbcli.plot.run.eccentricity import draw_distances, draw_eccentricity
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends, events, heading, is_searchable, uncertain_times

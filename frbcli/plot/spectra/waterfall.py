@@ -21,7 +21,7 @@ from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectra.spectrum import waterfall as spectra
 from frbcli.arrays import Array
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.run import given_speed_unit
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.plot.run.envelope import at_times, extremes

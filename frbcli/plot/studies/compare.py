@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.run import given_speed_unit
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends

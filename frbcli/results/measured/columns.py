@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.errors import InputError, input_error, printable
-from frbcli.nearest import FEW, did_you_mean, nearest
+from frbcli.errors import FEW, InputError, did_you_mean, input_error, nearest, printable
 from frbcli.results.measured.delimited import without_unit
 from frbcli.results.records import LARGEST
 

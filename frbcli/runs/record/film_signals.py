@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
 from frbcli.film.roughness.asperities import rub_along
+from frbcli.rotor.assembly import LinearRotor, unbalance_shares
 from frbcli.rotor.body import PLANE
-from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.drive import Rotation, friction_signal
 from frbcli.runs.record.film_numbers import FilmNumbers, unchanged

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.course.control import FilmFrames
+from frbcli.case.course.run import FilmFrames
 from frbcli.film.cells.motion import Motion, turned
 from frbcli.film.state import GAS, OIL
 from frbcli.results import kept_films

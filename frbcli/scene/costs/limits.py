@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from frbcli.case.course.control import MACRO_STEP, STEPS_PER_REVOLUTION
+from frbcli.case.course.run import MACRO_STEP, STEPS_PER_REVOLUTION
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError

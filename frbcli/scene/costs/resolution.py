@@ -19,8 +19,7 @@ from frbcli.arrays import Array
 from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.rotor.assembly import held_rotor
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor, held_rotor
 from frbcli.rotor.loads import Harmonic, Tabulated, speed_profile
 from frbcli.scene.costs.course import expected_course
 from frbcli.scene.gate.rule import run_omega

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.case.schema import Case
-from frbcli.elements.damper import DamperElement
+from frbcli.elements.supports import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.support import Damper
-from frbcli.elements.damper import DamperElement
+from frbcli.case.surroundings.supports import Damper
+from frbcli.elements.supports import DamperElement
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
 

@@ -9,9 +9,9 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.elements.magnetic_pull import MagneticPullElement
+from frbcli.elements.forces import MagneticPullElement
 from frbcli.errors import Fault
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.units import display
 

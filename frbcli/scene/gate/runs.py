@@ -83,7 +83,7 @@ def axial_faults(case: Case) -> Iterator[Fault]:
     """A collar does not lie on its pads at the speeds of a case."""
     if case.axial is None:
         return
-    from frbcli.elements.collar.collar import uncarried_faults  # films on pads take a second to import
+    from frbcli.elements.collar import uncarried_faults  # films on pads take a second to import
 
     yield from uncarried_faults(case)
 

@@ -9,8 +9,7 @@ from frbcli.case.bearing import FilmBearing, FloatingRingBearing, SingleFilmBear
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
-from frbcli.nearest import did_you_mean
+from frbcli.errors import Fault, did_you_mean
 from frbcli.scene.channels import coupled
 from frbcli.scene.films import bearing_films
 from frbcli.scene.keys import bearing_key, film_keys

@@ -10,15 +10,12 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.coefficients import GivenCoefficients
-from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.elements.housing import HousingElement
 from frbcli.elements.rolling.ball import BallBearingElement
-from frbcli.elements.support import SupportElement
+from frbcli.elements.supports import DamperElement, HousingElement, SupportElement
 from frbcli.elements.table import elements_of
 from frbcli.errors import Fault
-from frbcli.rotor.assembly import GROUND, Link
-from frbcli.rotor.linear import LinearRotor
+from frbcli.rotor.assembly import GROUND, LinearRotor, Link
 from frbcli.rotor.loads import Harmonic, Tabulated
 from frbcli.scene.shafts.table import shaft_of
 

@@ -22,11 +22,11 @@ from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime, largest
-from frbcli.case.surroundings.support import Damper
+from frbcli.case.surroundings.supports import Damper
 from frbcli.case.thermal import QUASI_STEADY, Thermal, WallNode
-from frbcli.elements.damper import DamperElement
+from frbcli.elements.supports import DamperElement
 from frbcli.film.operating import ring_rotation_strains, shaft_rotation_strain
-from frbcli.materials.solids import SOLIDS
+from frbcli.materials import SOLIDS
 from frbcli.scene.channels import coupled, opens_to_groove
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.machine.system import System, make_system

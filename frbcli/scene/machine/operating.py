@@ -10,7 +10,7 @@ from frbcli.case.bearing import FloatingRingBearing, SingleFilmBearing
 from frbcli.case.film import ColdClearance, FilmGeometry
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, speed_shown
-from frbcli.elements.damper import DamperElement
+from frbcli.elements.supports import DamperElement
 from frbcli.film.operating import (
     LAMINAR_BELOW,
     RING_SPEED,
@@ -18,7 +18,7 @@ from frbcli.film.operating import (
     ring_rotation_strains,
     shaft_rotation_strain,
 )
-from frbcli.materials.solids import SOLIDS, STEEL, Solid
+from frbcli.materials import SOLIDS, STEEL, Solid
 
 
 @dataclass(frozen=True)

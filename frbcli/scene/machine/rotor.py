@@ -9,12 +9,11 @@ from dataclasses import replace
 from frbcli.arrays import Array
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing, GivenBearing
 from frbcli.case.schema import Case
-from frbcli.elements.collar.thrust import COLLAR
-from frbcli.elements.damper import DamperElement
 from frbcli.elements.element import Parts
-from frbcli.rotor.assembly import Link, assembled, preset
+from frbcli.elements.supports import DamperElement
+from frbcli.elements.thrust import COLLAR
+from frbcli.rotor.assembly import LinearRotor, Link, assembled, preset
 from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
-from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.elements import element_parts, site_of
 from frbcli.scene.shafts.table import shaft_of

@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown
 from frbcli.errors import NotConverged
-from frbcli.rotor.assembly import held_rotor
+from frbcli.rotor.assembly import LinearRotor, held_rotor
 from frbcli.rotor.body import COORDINATES, PLANE
-from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import ROTOR, film_places
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.rotor import make_rotor

@@ -17,8 +17,8 @@ from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import Asperities, make_asperities
 from frbcli.film.roughness.elastic_shell import ElasticShell
 from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.body import COORDINATES, PLANE
-from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
 from frbcli.scene.machine.machine_films import make_films
 from frbcli.scene.machine.rotor import make_rotor

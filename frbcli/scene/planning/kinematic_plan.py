@@ -9,11 +9,10 @@ from dataclasses import dataclass
 from frbcli.case.film import FilmGeometry, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
+from frbcli.errors import Fault, did_you_mean
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient, whole_width
-from frbcli.nearest import did_you_mean
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm

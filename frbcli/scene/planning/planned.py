@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from frbcli.columns import html_table
 from frbcli.film.grid import Mesh
-from frbcli.html import html_table
 
 if TYPE_CHECKING:
     from frbcli.scene.forms.form import FilmForm

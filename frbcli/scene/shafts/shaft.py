@@ -12,8 +12,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.body import Body
-from frbcli.rotor.linear import LinearRotor
 
 if TYPE_CHECKING:
     from frbcli.rotor.reduction import FreeModes, Reduction

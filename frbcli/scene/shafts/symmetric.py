@@ -10,8 +10,8 @@ from typing import ClassVar
 import numpy as np
 
 from frbcli.case.rotor import JeffcottRotor, RigidRotor, unbalance_sizes, with_loss
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.body import Body, jeffcott_rotor, point_mass
-from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.shafts.shaft import STANDS, TURNS, BalancingPlane, Shaft, Stations, symmetric_stations
 from frbcli.units import ANGLE, display
 

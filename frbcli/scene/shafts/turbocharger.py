@@ -13,11 +13,11 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.rotor import Disk, ShaftSection, TurbochargerRotor, bow_places, unbalance_sizes, with_loss
-from frbcli.elements.collar.thrust import COLLAR
+from frbcli.elements.thrust import COLLAR
 from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.beam import ELEMENTS, BeamSection
 from frbcli.rotor.body import Body
-from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.reduction import (
     EXACT,
     MOST,

@@ -14,10 +14,9 @@ import joblib
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_names
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.compilation import counted
 from frbcli.errors import NotConverged
-from frbcli.html import Tabular
 from frbcli.runs.record.interrupt import deaf
 from frbcli.studies.kernels.short_analyses import ShortAnalysis, short_analyses
 

@@ -19,9 +19,8 @@ from typing import Any
 
 from frbcli import __version__
 from frbcli.case.schema import Case
-from frbcli.columns import Column, Shown, Table, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import InputError
-from frbcli.html import Tabular
 from frbcli.results.files.kinds import MARK, TABLES
 from frbcli.results.files.lock import locked
 from frbcli.results.files.write import write_table as write_csv

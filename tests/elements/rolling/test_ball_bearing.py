@@ -11,9 +11,8 @@ from paths import DATA
 
 from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.elements.rolling.force import ball_bearing_force
-from frbcli.elements.rolling.life import rating_life
 from frbcli.elements.rolling.plain import solve_plain
-from frbcli.elements.rolling.rest import at_displacement, under_load
+from frbcli.elements.rolling.rest import at_displacement, rating_life, under_load
 
 BEARINGS = {"A": A, "B": B}
 # independent program: Hertz contacts by elliptic integrals, centrifugal force of the balls, no friction, no gyroscopic

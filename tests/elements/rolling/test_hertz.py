@@ -5,8 +5,8 @@ from math import pi, sqrt
 import pytest
 from ball_bearings import STEEL, A, B
 
-from frbcli.elements.rolling.hertz import contact
-from frbcli.materials.solids import Elastic
+from frbcli.elements.rolling.bearing import contact
+from frbcli.materials import Elastic
 
 RADIUS = 5e-3
 

@@ -20,10 +20,9 @@ from frbcli.bearing_tests.kinematic import KinematicResult, rotation, squeeze, w
 from frbcli.case.reading.hard import HardCase, hard_cases, hard_folder
 from frbcli.case.schema import Case
 from frbcli.cli.casefiles.hard import HARD_CASE
-from frbcli.columns import Column, Shown, Table, named, short_number, table_of
+from frbcli.columns import Column, Shown, Table, Tabular, named, short_number, table_of
 from frbcli.compilation import working_time
 from frbcli.errors import InputError, NotConverged
-from frbcli.html import Tabular
 from frbcli.results.store import Run
 from frbcli.runs.run import rundown, runup
 

@@ -17,7 +17,7 @@ from frbcli.arrays import Array
 from frbcli.case.elements import LoadAtSpeed
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.elements.collar.collar import BOTH, LEFT, Collar, collar_of, pad_of, rests_over_speed
+from frbcli.elements.collar import BOTH, LEFT, Collar, collar_of, pad_of, rests_over_speed
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.film.pads.film import PadOil, RunnerMotion, pad_film
 from frbcli.film.pads.geometry import COARSE, SOMMERFELD

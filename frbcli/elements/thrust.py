@@ -14,14 +14,14 @@ from typing import TYPE_CHECKING, Self
 from frbcli.case.elements import ThrustBearing
 from frbcli.case.schema import Case
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.elements.housing import NODE
+from frbcli.elements.supports import NODE
 from frbcli.errors import Fault, NotConverged
 from frbcli.rotor.assembly import GROUND, Link
 from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.loads import LinearPart
 
-if TYPE_CHECKING:  # films on pads take a second to import
-    from frbcli.elements.collar.collar import Collar
+if TYPE_CHECKING:
+    from frbcli.elements.collar import Collar
 
 COLLAR = "collar"  # the node of the shaft
 TILTS = COORDINATES[len(PLANE) :]
@@ -44,7 +44,7 @@ class ThrustElement(MachineElement):
     def of(cls, case: Case) -> Iterator[Self]:
         collar = None
         if case.axial is not None:
-            from frbcli.elements.collar.collar import collar_of
+            from frbcli.elements.collar import collar_of
 
             collar = collar_of(case)
         stand = GROUND if case.housing is None or case.housing.modes else NODE
@@ -57,7 +57,7 @@ class ThrustElement(MachineElement):
         """Stiffness and damping in tilt over the speed, None of a collar that does not act in tilt."""
         if self.collar is None or not self.tilts:
             return None
-        from frbcli.elements.collar.collar import tilt_part
+        from frbcli.elements.collar import tilt_part
 
         return tilt_part(self.collar)
 

@@ -1,17 +1,64 @@
-"""Oils by grade: viscosity, density, heat capacity and conductivity over temperature, each figure with its origin.
+"""Properties of oils and solids over temperature, by name, each figure with its source.
+
+Viscosity over temperature follows Vogel's law (3.12), from coefficients, from three or from two measured values.
 
 An oil of a grade varies: SAE J300 leaves 12.5 to 16.3 mm^2/s at 100 degC to a grade 40, ISO 3448 10 % either way at 40
 degC. The figures here are typical ones; a data sheet of the oil in use is better, as Vogel's coefficients in the case.
 docs/heat.md states which figures were compared with a source and which are a choice.
+
+Solids of shafts, rings, housings and rolling bearings are near room temperature.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 
-from frbcli.materials.viscosity import ZERO_CELSIUS, VogelLaw, through_three, walther
+ZERO_CELSIUS = 273.15
+LARGEST_EXPONENT = 700.0  # of the exponential of a float
+
+
+@dataclass(frozen=True)
+class VogelLaw:
+    """eta(T) = eta_0 exp(A / (T + C)) in Pa s (3.12), T in K; eta_0 in Pa s, A and C in K."""
+
+    eta_0: float
+    a: float
+    c: float
+
+    def at(self, temperature: float) -> float:
+        """The dynamic viscosity in Pa s at a temperature in K; infinite below the pole of the law."""
+        if temperature + self.c <= 0.0:
+            return math.inf
+        exponent = self.a / (temperature + self.c)
+        return self.eta_0 * math.exp(exponent) if exponent < LARGEST_EXPONENT else math.inf
+
+    def times(self, factor: float) -> VogelLaw:
+        """The law of an oil that shear makes thinner by a factor."""
+        return replace(self, eta_0=factor * self.eta_0)
+
+
+def through_three(temperatures: Sequence[float], viscosities: Sequence[float]) -> VogelLaw:
+    """The law through three viscosities in Pa s at ascending temperatures in K.
+
+    Of y = ln eta the differences give C: (y1 - y2)/(y2 - y3) (T3 - T2)/(T2 - T1) = (T3 + C)/(T1 + C).
+    """
+    (t1, t2, t3), (y1, y2, y3) = temperatures, (math.log(value) for value in viscosities)
+    ratio = (y1 - y2) / (y2 - y3) * (t3 - t2) / (t2 - t1)
+    c = (t3 - ratio * t1) / (ratio - 1.0)
+    a = (y1 - y2) * (t1 + c) * (t2 + c) / (t2 - t1)
+    return VogelLaw(math.exp(y1 - a / (t1 + c)), a, c)
+
+
+def walther(temperature: float, first: tuple[float, float], second: tuple[float, float]) -> float:
+    """Kinematic viscosity in mm^2/s at a temperature in K by the line of ASTM D341 through two (K, mm^2/s):
+    log log(nu + 0.7) is linear in log T."""
+    (t1, w1), (t2, w2) = ((math.log(t), math.log(math.log10(nu + 0.7))) for t, nu in (first, second))
+    w = w1 + (w2 - w1) * (math.log(temperature) - t1) / (t2 - t1)
+    return float(10.0 ** math.exp(w) - 0.7)
+
 
 TEMPERATURES = (40.0, 100.0, 150.0)  # degC of the viscosities of a grade
 EXPANSION = 7.0e-4  # 1/K, of the volume: engine oil of Incropera and DeWitt, table A.5
@@ -100,3 +147,70 @@ _GRADES = (
     _two("ISO VG 68", 867.0, 57.0722, 7.66498, _ROSS),
 )
 OILS: dict[str, OilGrade] = {grade.name: grade for grade in _GRADES}
+
+
+@dataclass(frozen=True)
+class Solid:
+    """A linear elastic material: modulus in Pa, Poisson's ratio, density in kg/m^3, thermal expansion in 1/K,
+    conductivity in W/(m K), heat_capacity in J/(kg K)."""
+
+    modulus: float
+    poisson: float
+    density: float
+    expansion: float
+    conductivity: float
+    heat_capacity: float
+    source: str
+
+
+@dataclass(frozen=True)
+class Elastic:
+    """An elastic body: modulus in Pa, Poisson's ratio, density in kg/m^3."""
+
+    modulus: float
+    poisson: float
+    density: float
+    source: str = ""
+
+    @property
+    def compliance(self) -> float:
+        """(1 - nu^2) / E in 1/Pa."""
+        return (1.0 - self.poisson**2) / self.modulus
+
+
+_A2 = "modulus, Poisson's ratio, density, expansion: table A.2"
+_HEAT = "conductivity, heat capacity: Incropera, A.1"
+_TYPICAL = "typical value"
+
+STEEL = Solid(210e9, 0.27, 7870.0, 1.18e-5, 60.5, 434.0, f"{_A2} (shaft); {_HEAT}, plain carbon steel")
+BRASS = Solid(78e9, 0.37, 8860.0, 1.85e-5, 110.0, 380.0, f"{_A2} (floating ring); {_HEAT}, cartridge brass")
+SOLIDS: dict[str, Solid] = {
+    "steel": STEEL,
+    "brass": BRASS,
+    "bronze": Solid(
+        110e9, 0.34, 8780.0, 1.8e-5, 54.0, 355.0,
+        f"{_HEAT}, with density, phosphor gear bronze; modulus, Poisson's ratio: MakeItFrom, C51000; "
+        "expansion: Callister, table B.6, C93200",
+    ),
+    "stainless steel": Solid(
+        193e9, 0.30, 7900.0, 1.72e-5, 14.9, 477.0,
+        f"{_HEAT}, with density, AISI 304; modulus, expansion: Callister, tables B.2 and B.6, 304; "
+        f"Poisson's ratio: {_TYPICAL}",
+    ),
+    "Inconel X-750": Solid(
+        214e9, 0.29, 8280.0, 1.26e-5, 11.7, 439.0,
+        f"{_HEAT}; density: Special Metals, SMC-067; modulus, and Poisson's ratio by the shear modulus: Tokkin, X-750; "
+        f"expansion: {_TYPICAL}",
+    ),
+    "aluminium": Solid(
+        71e9, 0.33, 2790.0, 2.29e-5, 168.0, 883.0,
+        f"{_HEAT}, with density, cast alloy 195; modulus, Poisson's ratio: MakeItFrom, 295.0; "
+        "expansion: Callister, table B.6, 2024",
+    ),
+}  # fmt: skip
+
+# Of balls and rings of rolling bearings
+ROLLING: dict[str, Elastic] = {
+    "steel": Elastic(207e9, 0.3, 7800.0, "Harris, Rolling Bearing Analysis, chapter 6; density: typical, AISI 52100"),
+    "silicon nitride": Elastic(310e9, 0.27, 3200.0, "typical, hot isostatically pressed, as in hybrid bearings"),
+}

@@ -1,4 +1,14 @@
-"""The housing of all bearings: a rigid body on mounts, or the modes of an elastic one.
+"""What bearings stand on: supports, squeeze film dampers, the housing.
+
+The support of a bearing: its shell is a body on springs and dampers, M u'' + C u' + K u = weight + what acts on it.
+
+Film or coefficients act between the shaft, or the ring, and that body. Equal bearings of a symmetric rotor move alike:
+one body represents both, with twice their mass, stiffness and damping.
+
+A squeeze film damper: the shell of a bearing is a body that moves in a film, on a centring spring, without turning.
+
+The film is one of the machine's films, between the shell and its seat; the spring acts in parallel. Equal bearings of a
+symmetric rotor move alike: one body represents both shells.
 
 A rigid housing moves by q = [x, y, a, b]: its centre of mass, and the slopes of its axis in the planes x z and y z; a
 bearing at a distance l of the centre moves by (x + l a, y + l b). Both ends of a symmetric rotor move alike, and so its
@@ -20,10 +30,99 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
-from frbcli.case.surroundings.housing import KEY, SYMMETRIC_PLACE, Housing, shape
+from frbcli.case.surroundings.supports import KEY, SYMMETRIC_PLACE, Damper, Housing, Support, shape
 from frbcli.elements.element import Line, MachineElement, Parts, Site
-from frbcli.rotor.body import Body, free_body
+from frbcli.rotor.assembly import Link
+from frbcli.rotor.body import Body, free_body, point_mass
+from frbcli.rotor.loads import LinearPart
 from frbcli.units import display
+
+
+@dataclass(frozen=True)
+class SupportElement(MachineElement):
+    """The shell of a bearing as a body. bearing: its name."""
+
+    bearing: str
+    given: Support
+
+    symbol: ClassVar[str] = "spring"
+    besides_bearings: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
+            if bearing.support is not None:
+                yield cls(f"{key}.support", bearing.name, bearing.support)
+
+    @property
+    def node(self) -> str:
+        """Name of the node of the shell."""
+        return f"support_{self.bearing}".rstrip("_")
+
+    def parts(self, site: Site) -> Parts:
+        mount = LinearPart.of(np.diag(self.given.stiffness), np.diag(self.given.damping))
+        link = Link(self.node, site.ground(self.bearing), site.count)
+        return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
+
+    def plan_line(self, site: Site) -> Line:
+        springs = directions(self.given.stiffness, "N/m")
+        damping = f", {directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
+        value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")
+        why = "the shell is a body with its weight; what acts in the bearing acts between shaft and shell"
+        return "support", value, f"{springs}{damping}; {why}"
+
+
+def directions(both: tuple[float, float], unit: str) -> str:
+    """Quantities of x and y in words."""
+    x, y = (display(each, unit) for each in both)
+    return x if x == y else f"{x} in x and {y} in y"
+
+
+FILM = "the shell moves without turning, and the film acts by squeezing alone"
+
+
+@dataclass(frozen=True)
+class DamperElement(MachineElement):
+    """The shell of a bearing in a damper. bearing: its name."""
+
+    bearing: str
+    given: Damper
+
+    symbol: ClassVar[str] = "damper"
+    besides_bearings: ClassVar[bool] = True
+
+    @classmethod
+    def of(cls, case: Case) -> Iterator[Self]:
+        for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
+            if bearing.damper is not None:
+                yield cls(f"{key}.damper", bearing.name, bearing.damper)
+
+    @property
+    def node(self) -> str:
+        """Name of the node of the shell."""
+        return f"shell_{self.bearing}".rstrip("_")
+
+    @property
+    def film(self) -> str:
+        """The name of its film."""
+        return f"{self.bearing}_damper".lstrip("_")
+
+    def parts(self, site: Site) -> Parts:
+        spring = LinearPart.of(np.diag(self.given.spring))
+        return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((self.link(site), spring),))
+
+    def link(self, site: Site) -> Link:
+        """The link between shell and seat on which spring and film act."""
+        return Link(self.node, site.seat(self.bearing), site.count)
+
+    def plan_line(self, site: Site) -> Line:
+        value = f"{self.bearing}: {display(self.given.mass, 'kg')} in a film".removeprefix(": ")
+        spring = "no centring spring: it sinks under a static load"
+        if any(self.given.spring):
+            spring = f"centring spring {directions(self.given.spring, 'N/m')}, which carries the static load"
+            spring += ", the shell in the centre" if self.given.centred else ""
+        return "damper", value, f"{spring}; {FILM}"
+
 
 NODE = "housing"  # the centre of mass, or all of the housing of a symmetric rotor
 

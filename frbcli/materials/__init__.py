@@ -1,1 +1,0 @@
-"""Properties of oils and solids over temperature, by name, each figure with its source."""
