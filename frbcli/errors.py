@@ -79,7 +79,7 @@ class NotConverged(FrbError):
 
 class FilmUnsolved(NotConverged):
     """A film found no solution; says what happened. What to change depends on the case, which a film does not know:
-    `frbcli.scene.remedies.advised` adds it."""
+    `frbcli.scene.supply.advised` adds it."""
 
 
 class OutOfMemory(FrbError):

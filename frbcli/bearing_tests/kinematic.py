@@ -22,9 +22,9 @@ from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.operating import sommerfeld_number
-from frbcli.scene.gate.tested import tested_case
+from frbcli.scene.gate.kinematic import tested_case
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
-from frbcli.scene.remedies import advised, film_advice
+from frbcli.scene.supply import advised, film_advice
 from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
 from frbcli.thermal.model import SteadyHeat
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from frbcli.case.schema import Case
     from frbcli.runs.march import Progress
-    from frbcli.scene.costs.preparation import Kernels
+    from frbcli.scene.cost import Kernels
 
 REFRESH_Hz = 8
 PRINT_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
@@ -171,7 +171,7 @@ def compilation_shown(
 ) -> Iterator[None]:
     """Within it, a display shows the progress of the compilation; case, also, kernels: see `computing`."""
     from frbcli.compilation import counted  # heavy: only where kernels are used
-    from frbcli.scene.costs.preparation import compile_s
+    from frbcli.scene.cost import compile_s
 
     shown_s, about = 0.0, ""
 

@@ -30,7 +30,7 @@ from frbcli.scene.gate.cycles import by_shooting
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.remedies import advised
+from frbcli.scene.supply import advised
 
 
 def limit_cycles(

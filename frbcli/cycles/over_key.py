@@ -23,7 +23,7 @@ from frbcli.cycles.result import LimitCycles
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.remedies import advised
+from frbcli.scene.supply import advised
 
 POINTS = 41  # static equilibria of the diagram
 

@@ -29,7 +29,7 @@ from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import BEARING, CHART, LOADED
-from frbcli.scene.remedies import advised
+from frbcli.scene.supply import advised
 
 Observer = Callable[[int, int], None]
 

@@ -25,8 +25,8 @@ from frbcli.linear.modes import direct_springs
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.assembly import Link, assembled
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import first_without_film, support_faults
 from frbcli.scene.machine.findings import findings
+from frbcli.scene.machine.rotor import first_without_film, support_faults
 from frbcli.scene.shafts.table import shaft_of
 
 STIFFNESSES = 61

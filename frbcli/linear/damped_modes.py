@@ -21,8 +21,8 @@ from frbcli.linear.stability import check_machine
 from frbcli.linear.stability_point import machine_rotor, point_at_rest, with_errors
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import first_largest, ranks
-from frbcli.scene.remedies import advised
 from frbcli.scene.shafts.table import shaft_of
+from frbcli.scene.supply import advised
 
 UNMOVED = 1e-12  # of a ring that turns on its pin, in m over rad, below which nothing else moves
 

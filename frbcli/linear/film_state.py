@@ -22,9 +22,8 @@ from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import rub
-from frbcli.scene.films import film_places
+from frbcli.scene.films import film_places, film_section
 from frbcli.scene.machine.system import System
-from frbcli.scene.section import film_section
 
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them

@@ -23,7 +23,7 @@ from frbcli.rotor.loads import first_largest, ranks
 from frbcli.rotor.reduction import FreeModes, Reduction, ReductionError, whirl_modes
 from frbcli.scene.films import bearing_springs
 from frbcli.scene.gate.gate import require
-from frbcli.scene.machine.elements import element_springs, support_faults
+from frbcli.scene.machine.rotor import element_springs, support_faults
 from frbcli.scene.shafts.table import shaft_of
 
 if TYPE_CHECKING:

@@ -51,7 +51,7 @@ from frbcli.rotor.loads import BOW, Harmonic
 from frbcli.scene.changes import after_losses, has_lost, loss_times
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE
-from frbcli.scene.machine.elements import element_forces, harmonics_of
+from frbcli.scene.machine.rotor import element_forces, harmonics_of
 from frbcli.scene.machine.system import System, elastic_shell
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds

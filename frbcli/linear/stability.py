@@ -27,8 +27,8 @@ from frbcli.linear.thrust.columns import AXIAL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE, STABILITY
 from frbcli.scene.machine.system import System
-from frbcli.scene.remedies import advised
 from frbcli.scene.speeds import default_speeds
+from frbcli.scene.supply import advised
 from frbcli.units import SpeedUnit
 
 NOT_SOUGHT = "Given speeds alone are computed: --threshold seeks the threshold of stability, too."

@@ -15,7 +15,7 @@ from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged
 from frbcli.linear.stability_point import StabilityPoint, critical_eigenvalue, other_eigenvalues, point_at_rest
-from frbcli.scene.remedies import advised
+from frbcli.scene.supply import advised
 from frbcli.units import SpeedUnit
 
 THRESHOLD_TOLERANCE = 1e-9  # relative, of the speed

@@ -25,8 +25,7 @@ from frbcli.scene.films import film_places
 from frbcli.scene.planning.cell_choice import gap_ratio
 from frbcli.scene.planning.eccentricity import expected_eccentricity
 from frbcli.scene.planning.film_choice import choose_films, form_of
-from frbcli.scene.remedies import film_remedies, remedies_sentence
-from frbcli.scene.supply import unfed_films
+from frbcli.scene.supply import film_remedies, remedies_sentence, unfed_films
 from frbcli.solve.state import STEP
 from frbcli.solve.step import SMALLEST_STEP
 from frbcli.units import display

@@ -34,14 +34,12 @@ from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, r
 from frbcli.runs.record.wear import RunWear
 from frbcli.runs.start import control_of, first_state, in_turn, micro_cost, rotor_data
 from frbcli.runs.sudden_change import largest_eccentricity, with_clearances, with_unbalance
-from frbcli.scene.costs.cost import expected_cost
-from frbcli.scene.costs.course import expected_course
-from frbcli.scene.costs.preparation import film_error_s
+from frbcli.scene.cost import expected_cost, film_error_s
 from frbcli.scene.coupling import coupling_named
-from frbcli.scene.machine.segments import Segment, make_segments
-from frbcli.scene.machine.system import System
+from frbcli.scene.course import expected_course
+from frbcli.scene.machine.system import Segment, System, make_segments
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.remedies import advised
+from frbcli.scene.supply import advised
 from frbcli.solve.cosimulation.macro_step import advance_in_turn
 from frbcli.solve.state import (
     CONTACT,
@@ -95,7 +93,7 @@ class Progress:
 class March:
     """A run: the constant parts, the state, the clock.
 
-    Its machine may change (scene/machine/segments.py): all segments exist from the start, and one is current.
+    Its machine may change (scene/machine/system.py): all segments exist from the start, and one is current.
     """
 
     def __init__(self, case: Case, plan: Plan, segments: Sequence[Segment], profile: SpeedProfile) -> None:

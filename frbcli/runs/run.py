@@ -23,11 +23,11 @@ from frbcli.runs.record.header import header
 from frbcli.runs.record.interrupt import held_back
 from frbcli.runs.record.restored import WrongCheckpoint
 from frbcli.runs.record.wear import standing_run
-from frbcli.scene.costs.cost import ExpectedCost
-from frbcli.scene.costs.limits import require_affordable
-from frbcli.scene.machine.segments import Segment, make_segments
-from frbcli.scene.planning.coarser_plan import cost_of_run, is_cheap, second_run_s
+from frbcli.scene.cost import ExpectedCost
+from frbcli.scene.cost_limits import require_affordable
+from frbcli.scene.machine.system import Segment, make_segments
 from frbcli.scene.planning.eccentricity import run_down_profile, run_up_profile
+from frbcli.scene.planning.error_runs import cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING, STANDSTILL

@@ -20,8 +20,8 @@ from frbcli.rotor.assembly import LinearRotor, held_rotor, unbalance_shares
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.loads import SpeedProfile, loads_at, no_part
 from frbcli.rotor.port import port_forces
-from frbcli.scene.costs.course import longest_step, steps_of_a_turn
 from frbcli.scene.coupling import coupling_named
+from frbcli.scene.course import longest_step, steps_of_a_turn
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS

@@ -1,21 +1,24 @@
-"""What changes suddenly during a run: clearances, in steps by heat or wear, and the unbalance by a loss. Times, values,
-and the case after each change.
+"""What changes during a run: clearances, in steps by heat or wear, unbalance by a loss, inputs over time, the drive.
 
-The rotor keeps its displacement and velocity, a mass-conserving film its oil (runs/sudden_change.py). The motion of
-the gap while it changes is left out.
+Sudden changes have times, values and the case after each of them; inputs and the drive their lines in a plan, times and
+faults. The rotor keeps its displacement and velocity at a sudden change, a mass-conserving film its oil
+(runs/sudden_change.py). The motion of the gap while it changes is left out.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import TypeVar
 
+from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import Model, altered
 from frbcli.case.rotor import Loss
 from frbcli.case.schema import Case
+from frbcli.errors import Fault
 from frbcli.scene.films import film_places
+from frbcli.scene.machine.rotor import span_faults
 from frbcli.units import ANGLE, display
 
 Unbalanced = TypeVar("Unbalanced", bound=Model)  # a rotor or a disk
@@ -96,3 +99,52 @@ def _lost(part: Unbalanced, loss: Loss | None, time: float) -> Unbalanced:
 def _film_at(film: FilmGeometry, time: float) -> FilmGeometry:
     passed = [step.clearance for step in film.clearance_steps if step.time <= time]
     return altered(film, {"given_clearance": passed[-1], "clearance_steps": ()}) if passed else film
+
+
+AXIAL_LOAD = "axial.load"
+
+
+def input_times(case: Case) -> Sequence[float]:
+    """The times in s of all rows of the inputs of a case."""
+    return sorted({time for each in inputs_of(case) for time in each.values.time})
+
+
+def input_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
+    """The faults of inputs over time that do not last from begin to end of a run, in s."""
+    for each in inputs_of(case):
+        yield from span_faults(each.key, each.values.source, each.values.time, begin, end)
+
+
+def input_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
+    """What the plan says of inputs over time: choice, value, reason."""
+    for each in inputs_of(case):
+        if each.key == AXIAL_LOAD:  # shown in the line of the thrust bearing
+            continue
+        x, time = each.values.x, each.values.time
+        value = f"{each.key}: {display(min(x), each.unit)} to {display(max(x), each.unit)}"
+        span = f"{each.values.origin}, {time[0]:g} to {time[-1]:g} s"
+        yield "input", value, f"{span}; runs follow it, all other analyses have the largest value"
+
+
+def drive_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
+    """What the plan says of a speed that is free: choice, value, reason."""
+    drive, words = case.drive, case.speed_unit.words
+    if drive is None:
+        return
+    reaction = "with" if drive.reaction else "without"
+    turns = f"J = {1e6 * case.polar_inertia:.4g} kg*mm^2, from {words(drive.start)} on"
+    yield "speed", "free", f"{turns}; {reaction} the reaction of the unbalance"
+    if drive.points is not None:
+        low, high = (display(limit(drive.points.torque), "N*m") for limit in (min, max))
+        yield "drive", f"{low} to {high}", f"{len(drive.points.at)} points over the {drive.points.over}"
+    else:
+        value = display(drive.torque, "N*m") if drive.torque else "no torque"
+        yield "drive", value, f"for {display(drive.duration, 's')}" if drive.torque else "the rotor runs down"
+    powers = {"N*m": drive.load.constant, "N*m*s": drive.load.linear, "N*m*s^2": drive.load.square}
+    load = " + ".join(display(size, unit) for unit, size in powers.items() if size)
+    if load:
+        yield "load", load, "brakes the rotor; times powers of its speed in rad/s"
+    if drive.end is not None:
+        yield "governor", words(drive.end), "takes the torque away below this speed"
+    reason = "the most that is expected, without friction of films"
+    yield "top speed", words(max(case.speed.start, case.speed.end)), reason

@@ -26,7 +26,7 @@ from frbcli.runs.run import PROFILES
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import COMPARISON
-from frbcli.scene.planning.coarser_plan import cost_of_run
+from frbcli.scene.planning.error_runs import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT

@@ -11,7 +11,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.plot.studies.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure
 from frbcli.runs.run import runup
-from frbcli.scene.costs.cost import expected_cost
+from frbcli.scene.cost import expected_cost
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.studies.accuracy import accuracy

@@ -22,10 +22,9 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.runs.errors.trial import tried_error
 from frbcli.runs.run import runup
-from frbcli.scene.costs.trial import end_of_trial, planned_trial
 from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.planning.expected_error import expected_error
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.error_runs import end_of_trial, planned_trial
+from frbcli.scene.planning.plan import expected_error, make_plan
 from frbcli.studies.differences import difference
 
 TARGETS = (1e-2, 3e-3, 1e-3)

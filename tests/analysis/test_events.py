@@ -25,7 +25,7 @@ from frbcli.plot.run.summary import _words
 from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.costs.preparation import CRITICAL_s, before_s
+from frbcli.scene.cost import CRITICAL_s, before_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.units import HERTZ
 

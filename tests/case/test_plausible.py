@@ -14,7 +14,7 @@ from frbcli.case.reading.shipped import shipped_names
 from frbcli.cli.main import run as frb
 from frbcli.errors import Fault, InputError
 from frbcli.runs.run import run_cost
-from frbcli.scene.machine.operating import operating_points
+from frbcli.scene.machine.findings import operating_points
 
 
 def faults_of(name: str, *settings: str) -> dict[str, Fault]:

@@ -13,8 +13,7 @@ from frbcli import load_case
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import json_schema
 from frbcli.case.supplies import SUPPLIES, OilSupply, Outline, kind_of, supply_named
-from frbcli.scene.films import film_places, is_plain
-from frbcli.scene.section import film_section
+from frbcli.scene.films import film_places, film_section, is_plain
 
 PACKAGE = Path(frbcli.__file__).parent
 ASKED = re.compile(r"isinstance\([a-z_.]*supply|getattr\([a-z_.]*supply|supply\.kind (?:==|!=|in|not in)")

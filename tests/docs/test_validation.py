@@ -18,8 +18,7 @@ from frbcli.case.reading.shipped import shipped_names
 from frbcli.linear.rolling.sheet import ball_bearing_sheet
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
-from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.planning.thrust_plan import thrust_plan
+from frbcli.scene.planning.plan import make_plan, thrust_plan
 
 PRINTED = {row["id"]: row for row in validate.printed_rows()}
 

@@ -18,8 +18,7 @@ from frbcli.elements.thrust import ThrustElement
 from frbcli.equilibrium.linearised import linearised, states
 from frbcli.errors import InputError
 from frbcli.linear.thrust.axial import axial_state
-from frbcli.scene.machine.elements import site_of
-from frbcli.scene.machine.rotor import make_rotor
+from frbcli.scene.machine.rotor import make_rotor, site_of
 
 SPEED, TOP = 2.0 * math.pi * 500.0, 500.0
 LENGTH, DIAMETER, DENSITY, SPRING, ARM = 0.08, 0.008, 7850.0, 2e6, 0.03

@@ -13,7 +13,7 @@ from frbcli.errors import InputError
 from frbcli.film.gap import LobedShell
 from frbcli.film.operating import reynolds_number, ring_rotation_strains, shaft_rotation_strain
 from frbcli.materials import BRASS, STEEL
-from frbcli.scene.machine.operating import operating_points
+from frbcli.scene.machine.findings import operating_points
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan
 
 CAR, ENGINE = 2.0 * math.pi * 5000.0, 2.0 * math.pi * 1500.0  # rad/s, tables A.1 and A.2

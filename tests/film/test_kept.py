@@ -19,7 +19,7 @@ from frbcli.film.penalty_table import film as penalty_film
 from frbcli.film.rectangles import film
 from frbcli.film.rectangles.table import force_table
 from frbcli.scene.films import film_places
-from frbcli.scene.machine.machine_films import source_film
+from frbcli.scene.machine.system import source_film
 
 MESH = Mesh(axial=4, circumferential=16)
 

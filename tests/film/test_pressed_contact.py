@@ -24,8 +24,7 @@ from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
 from frbcli.film.state import WET
 from frbcli.runs.march import March
-from frbcli.scene.machine.segments import Segment
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.machine.system import Segment, System, make_system
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.films.cells import EMPTY, OPEN, cell_response, move_cells

@@ -29,7 +29,7 @@ from frbcli.cli.progress import Display, compilation_shown
 from frbcli.compilation import counted
 from frbcli.compiled import compiled
 from frbcli.runs.run import runup
-from frbcli.scene.costs.preparation import compile_s
+from frbcli.scene.cost import compile_s
 from frbcli.solve import time_loop
 from frbcli.studies.accuracy import by_theory
 

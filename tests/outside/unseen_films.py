@@ -18,8 +18,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import FrbError
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
-from frbcli.scene.planning.expected_error import expected_error
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.plan import expected_error, make_plan
 from frbcli.studies.differences import difference
 
 TARGETS = (1e-2, 3e-3)

@@ -49,9 +49,7 @@ from frbcli.linear.standards.balance_quality import COLUMNS as BALANCE_QUALITY
 from frbcli.linear.standards.vibration import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.linear.thrust.columns import AXIAL, THRUST
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
-from frbcli.scene.machine.findings import FILM_LOADS
-from frbcli.scene.machine.operating import FILM_OPERATION
-from frbcli.scene.machine.shaft_tilt import FILM_TILTS
+from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
 from frbcli.studies.comparison_columns import HEAT, VARIANT
 from frbcli.studies.fit import FITTED

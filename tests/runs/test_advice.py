@@ -18,8 +18,7 @@ from frbcli.runs.advice import RunEnd, accuracy_advice, run_advice, run_end
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.remedies import advised
-from frbcli.scene.supply import unfed_films
+from frbcli.scene.supply import advised, unfed_films
 
 AIR = "bearing.ends=free-to-air"
 PLAIN = 'bearing.supply={kind="none"}'

@@ -23,8 +23,7 @@ from frbcli.runs.errors.fewer_cells import (
     on_fewer_cells,
 )
 from frbcli.runs.run import runup
-from frbcli.scene.machine.segments import make_segments
-from frbcli.scene.machine.system import make_system
+from frbcli.scene.machine.system import make_segments, make_system
 from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan

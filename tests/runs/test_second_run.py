@@ -21,11 +21,10 @@ from frbcli.runs.errors import second_run
 from frbcli.runs.errors.account import about_certainty
 from frbcli.runs.march import March
 from frbcli.runs.run import run_cost, runup
-from frbcli.scene.costs.cost import expected_cost
-from frbcli.scene.costs.preparation import memory_B, signal_count
-from frbcli.scene.machine.segments import make_segments
-from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
+from frbcli.scene.cost import expected_cost, memory_B, signal_count
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
+from frbcli.scene.planning.error_runs import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING
 from frbcli.solve.tableau import METHODS

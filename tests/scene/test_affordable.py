@@ -14,7 +14,7 @@ from frbcli.case.reading import load
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.runs.run import runup
-from frbcli.scene.costs.course import MOST_SAMPLES, longest_step
+from frbcli.scene.course import MOST_SAMPLES, longest_step
 from frbcli.scene.planning.plan import make_plan
 
 

@@ -14,7 +14,7 @@ from frbcli.cli.main import run as frb
 from frbcli.film.gap import LEAST, graded_ring
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.tilted import TiltedFilms
-from frbcli.scene.machine.machine_films import make_films
+from frbcli.scene.machine.system import make_films
 from frbcli.scene.planning.plan import make_plan
 
 TURN = 2.0 * np.pi

@@ -11,7 +11,7 @@ import pytest
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.runs.run import runup
-from frbcli.scene.costs.resolution import CHOICE, highest_frequency
+from frbcli.scene.course import CHOICE, highest_frequency
 from frbcli.scene.planning.plan import make_plan
 
 MACHINE = {

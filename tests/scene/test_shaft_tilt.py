@@ -10,8 +10,7 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
-from frbcli.scene.machine.findings import findings
-from frbcli.scene.machine.shaft_tilt import film_tilts
+from frbcli.scene.machine.findings import film_tilts, findings
 
 L, D, E, RHO = 0.2, 0.01, 2.1e11, 7850.0
 SECOND, AREA = math.pi / 64.0 * D**4, math.pi / 4.0 * D**2

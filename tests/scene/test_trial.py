@@ -18,11 +18,10 @@ from frbcli.compilation import CompilationNeededError
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.errors import trial as tried
-from frbcli.scene.costs.trial import Trial, planned_trial
-from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.scene.planning.expected_error import expected_error
-from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.planning.error_runs import Trial, planned_trial
+from frbcli.scene.planning.plan import expected_error, make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.state import RUNNING
 

@@ -21,9 +21,8 @@ from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data
-from frbcli.scene.costs.course import STAGES
-from frbcli.scene.machine.machine_films import settled_share
-from frbcli.scene.machine.system import System, make_system
+from frbcli.scene.course import STAGES
+from frbcli.scene.machine.system import System, make_system, settled_share
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan

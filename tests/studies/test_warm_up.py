@@ -20,7 +20,7 @@ from frbcli.cli.main import run
 from frbcli.compilation import counted
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data
-from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.studies.kernels.short_analyses import CELLS, OTHERS, ShortAnalysis, machine_kernels, short_analyses
 from frbcli.studies.kernels.warm_up import _compile

@@ -22,7 +22,7 @@ from frbcli.results.store import Run
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.machine.heat import heat_of, warm_case
-from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING

@@ -15,7 +15,7 @@ from frbcli.errors import InputError
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.scene.changes import case_at
-from frbcli.scene.machine.segments import make_segments
+from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import FINISHED, RUNNING

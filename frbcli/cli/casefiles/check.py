@@ -19,10 +19,9 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.rotor.loads import SpeedProfile
     from frbcli.runs.errors.trial import TriedError
-    from frbcli.scene.costs.cost import ExpectedCost
-    from frbcli.scene.machine.findings import Findings
-    from frbcli.scene.machine.operating import FilmOperation
-    from frbcli.scene.planning.expected_error import ExpectedError
+    from frbcli.scene.cost import ExpectedCost
+    from frbcli.scene.machine.findings import FilmOperation, Findings
+    from frbcli.scene.planning.plan import ExpectedError
     from frbcli.scene.planning.planned import Decision, Plan
 
 LEAST_TURNING = 0.02  # of the gap
@@ -37,15 +36,13 @@ BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of thei
 def command(case: Case, everything: bool, terminal: Terminal) -> None:
     """Validate CASE; show what it amounts to and the plan: what will be modelled, what is left out, and why."""
     from frbcli.case.reading.listing import values
-    from frbcli.scene.costs.limits import require_affordable
-    from frbcli.scene.costs.preparation import compile_B
-    from frbcli.scene.machine.findings import findings, remarks
-    from frbcli.scene.machine.operating import FILM_OPERATION, operating_points
-    from frbcli.scene.planning.coarser_plan import cost_of_run
+    from frbcli.scene.cost import compile_B
+    from frbcli.scene.cost_limits import require_affordable
+    from frbcli.scene.machine.findings import FILM_OPERATION, findings, operating_points, remarks
     from frbcli.scene.planning.eccentricity import run_up_profile
-    from frbcli.scene.planning.expected_error import expected_error
+    from frbcli.scene.planning.error_runs import cost_of_run
     from frbcli.scene.planning.kinematic_plan import kinematic_plan
-    from frbcli.scene.planning.plan import make_plan
+    from frbcli.scene.planning.plan import expected_error, make_plan
 
     listed = values(case)
     terminal.result(f"{case.name}: {case.title}".rstrip(": "))
@@ -106,7 +103,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
 def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
     """What `frb thrust` models of a case of thrust bearings alone."""
     from frbcli.linear.thrust.faults import require_sheet
-    from frbcli.scene.planning.thrust_plan import thrust_plan
+    from frbcli.scene.planning.plan import thrust_plan
 
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
@@ -195,8 +192,7 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
 
 
 def _findings_document(case: Case, loads: Findings) -> dict[str, object]:
-    from frbcli.scene.machine.findings import FILM_LOADS
-    from frbcli.scene.machine.shaft_tilt import FILM_TILTS
+    from frbcli.scene.machine.findings import FILM_LOADS, FILM_TILTS
     from frbcli.scene.shafts.table import shaft_of
 
     return {
@@ -212,7 +208,7 @@ def _findings_document(case: Case, loads: Findings) -> dict[str, object]:
 def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) -> tuple[TriedError | None, str]:
     """The error of the run as two short ones find it; None without them, and where they would need a compiler, with a
     remark for that."""
-    from frbcli.scene.costs.trial import planned_trial
+    from frbcli.scene.planning.error_runs import planned_trial
 
     trial = planned_trial(case, plan, profile)
     if trial is None or (terminal.quiet and not terminal.json):  # nobody reads it
@@ -249,8 +245,8 @@ def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError
 
 def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple[Decision, ...]:
     """Expected cost, the last lines of the plan; compile_B: memory of the first start, which compiles."""
-    from frbcli.scene.costs.cost import clock
-    from frbcli.scene.costs.limits import memory
+    from frbcli.scene.cost import clock
+    from frbcli.scene.cost_limits import memory
     from frbcli.scene.planning.planned import Decision
 
     solved = f", {cost.film_solves} film solves" if with_films else ""
@@ -267,8 +263,7 @@ def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple
 
 
 def _show_findings(case: Case, loads: Findings, terminal: Terminal) -> None:
-    from frbcli.scene.machine.findings import FILM_LOADS
-    from frbcli.scene.machine.shaft_tilt import FILM_TILTS
+    from frbcli.scene.machine.findings import FILM_LOADS, FILM_TILTS
     from frbcli.scene.shafts.table import shaft_of
 
     if loads.mass is not None:
@@ -312,7 +307,7 @@ def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
 
 
 def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
-    from frbcli.scene.machine.operating import FILM_OPERATION
+    from frbcli.scene.machine.findings import FILM_OPERATION
 
     if films:
         terminal.show("films at the top speed", table_of(FILM_OPERATION, films))

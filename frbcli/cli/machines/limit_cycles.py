@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
     from frbcli.plot.spectra.orders import RunTrack
     from frbcli.plot.style import Picture
-    from frbcli.scene.costs.preparation import Kernels
+    from frbcli.scene.cost import Kernels
 
 ASKED = "asked"
 KINDS = {"hopf": "Hopf points", "fold": "folds"}

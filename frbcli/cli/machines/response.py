@@ -189,7 +189,7 @@ def _excitation(motion: Response) -> list[str]:
     """Sentences on the loads of the case, which do not excite together, and on its losses."""
     from frbcli.rotor.loads import BOW
     from frbcli.scene.changes import has_lost, loss_note
-    from frbcli.scene.machine.elements import harmonics_of
+    from frbcli.scene.machine.rotor import harmonics_of
 
     loads = {load.name: load for load in harmonics_of(motion.case)}
     if motion.excitation in loads:

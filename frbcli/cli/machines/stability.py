@@ -145,7 +145,7 @@ def _springs(analysis: Stability) -> list[tuple[tuple[float, ...] | None, float]
 
 
 def _beside_bearings(analysis: Stability) -> bool:
-    from frbcli.scene.machine.elements import beside_bearings
+    from frbcli.scene.machine.rotor import beside_bearings
 
     return bool(beside_bearings(analysis.case))
 

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frbcli.results.store import Run
     from frbcli.runs.march import Progress
     from frbcli.runs.run import Observer
-    from frbcli.scene.costs.cost import ExpectedCost
+    from frbcli.scene.cost import ExpectedCost
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 Transient = Callable[..., "Run"]
@@ -138,8 +138,8 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
 
 def cost_line(cost: ExpectedCost) -> str:
     """Expected cost of a run."""
-    from frbcli.scene.costs.cost import clock
-    from frbcli.scene.costs.limits import memory
+    from frbcli.scene.cost import clock
+    from frbcli.scene.cost_limits import memory
 
     before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > SHOWN_BEFORE_s else ""
     return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
@@ -148,7 +148,7 @@ def cost_line(cost: ExpectedCost) -> str:
 def _watch(terminal: Terminal, shown: Display) -> Observer:
     """Shows the progress on a terminal, elsewhere as a line every now and then, and warns once if a run takes much
     longer than its plan expected."""
-    from frbcli.scene.costs.cost import clock
+    from frbcli.scene.cost import clock
 
     said, show = False, shown.now_and_then()
 

@@ -31,7 +31,7 @@ from frbcli.results.columns import event_name
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
-from frbcli.scene.machine.elements import harmonics_of
+from frbcli.scene.machine.rotor import harmonics_of
 from frbcli.units import SpeedUnit
 
 Over = Literal["time", "speed"]

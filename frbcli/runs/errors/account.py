@@ -9,7 +9,7 @@ from typing import Any
 from frbcli.results.columns import event_name
 from frbcli.results.store import Run
 from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
-from frbcli.scene.costs.cost import clock
+from frbcli.scene.cost import clock
 from frbcli.units import HERTZ, SpeedUnit
 
 LATE = 0.5  # of the time until which the error is stated: from then on its growth is reported

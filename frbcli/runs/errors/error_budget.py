@@ -21,9 +21,8 @@ from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import control_of
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.films import bearing_springs
-from frbcli.scene.machine.elements import element_springs
-from frbcli.scene.machine.segments import Segment
-from frbcli.scene.machine.system import System
+from frbcli.scene.machine.rotor import element_springs
+from frbcli.scene.machine.system import Segment, System
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.solve.stage.contact import felt_motion

@@ -21,7 +21,7 @@ from frbcli.errors import NotConverged
 from frbcli.results.store import Run
 from frbcli.runs.errors.cell_errors import FewerCells
 from frbcli.runs.march import March, Progress
-from frbcli.scene.costs.course import ERROR_ORDERS
+from frbcli.scene.course import ERROR_ORDERS
 from frbcli.scene.films import film_places
 from frbcli.scene.forms.cells import FRONT_ORDER, cells_of
 from frbcli.scene.machine.system import System

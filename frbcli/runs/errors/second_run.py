@@ -16,7 +16,7 @@ from frbcli.equilibrium.static_films import share_of_cells
 from frbcli.errors import NotConverged
 from frbcli.results.store import Run
 from frbcli.runs.march import March, Progress
-from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan
+from frbcli.scene.planning.error_runs import LOOSER, coarser_plan
 from frbcli.solve.state import CONTACT, FINISHED, RUNNING, STANDSTILL
 
 SECOND_RUN, SECOND_RUN_PREDICTED = "second_run_cpu_s", "second_run_predicted_cpu_s"  # of the cost of a run

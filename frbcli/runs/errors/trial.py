@@ -13,7 +13,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import FrbError
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.kept import kept_beside
-from frbcli.scene.costs.trial import Trial
+from frbcli.scene.planning.error_runs import Trial
 
 if TYPE_CHECKING:
     from frbcli.runs.march import March
@@ -55,7 +55,7 @@ def _difference(case: Case, trial: Trial) -> float:
     """Largest difference of the eccentricities of both runs; NaN if one of them does not reach the end."""
     from frbcli.runs.errors.cell_errors import FewerCells  # a difference that is kept on disk needs no time loop
     from frbcli.runs.march import March
-    from frbcli.scene.machine.segments import make_segments
+    from frbcli.scene.machine.system import make_segments
 
     try:
         own = March(case, trial.plan, make_segments(case, trial.plan), trial.profile)

@@ -25,9 +25,8 @@ from frbcli.runs.drive import drive_units
 from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.changes import loss_times, step_times
-from frbcli.scene.machine.elements import element_parts
-from frbcli.scene.machine.segments import Segment
-from frbcli.scene.machine.system import System
+from frbcli.scene.machine.rotor import element_parts
+from frbcli.scene.machine.system import Segment, System
 from frbcli.solve.ring_spin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")

@@ -1,7 +1,7 @@
 """The contract of a form of films: what gate, plans, costs, errors and static results ask of it. A form is one file:
 what it is, what it costs, and in `rules` what it is not made for, with the reason.
 
-Times are CPU seconds of the reference machine of scene/costs/cost.py, measured on the shipped cases.
+Times are CPU seconds of the reference machine of scene/cost.py, measured on the shipped cases.
 """
 
 from __future__ import annotations
@@ -18,8 +18,8 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.grid import Mesh
+from frbcli.scene.films import is_published
 from frbcli.scene.gate.rule import Rule
-from frbcli.scene.section import is_published
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -197,3 +197,13 @@ def cells_B(cells: tuple[int, int], films: int) -> float:
 def mean_us(forms: tuple[tuple[FilmForm, Mesh], ...], own: FilmForm, by_mesh: float) -> float:
     """Mean time of a solve of films of several forms; by_mesh: of the form `own`, per element around."""
     return float(np.mean([by_mesh * mesh.circumferential if form == own else form.us for form, mesh in forms]))
+
+
+@dataclass(frozen=True)
+class NoForm(FilmForm):
+    """No film: nothing is tabulated, and nothing has an error."""
+
+    solved: ClassVar[bool] = False
+
+
+NO_FILM: FilmForm = NoForm("no film", SolveCounts(1.0, 1.0, 1.0, (1.0, 1.0)), 0.35)

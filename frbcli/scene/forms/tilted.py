@@ -1,4 +1,7 @@
-"""Films whose gap follows the tilt of their journals, on cells over the whole width."""
+"""Films whose gap follows the tilt of their journals, on cells over the whole width.
+
+Films in shells that are not in line, around journals that keep their direction: the tilt of the gap is given.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar
 
+from frbcli.case.bearing import FloatingRingBearing
 from frbcli.case.schema import Case
 from frbcli.elements.supports import DamperElement
 from frbcli.errors import Fault
@@ -25,6 +29,7 @@ from frbcli.scene.gate.rule import (
     LADDER,
     RANGE,
     RUN,
+    SHEETS,
     SPEED_CYCLES,
     STABILITY,
     WHIRLS,
@@ -34,7 +39,7 @@ from frbcli.scene.gate.rule import (
 from frbcli.scene.keys import bearing_key, cavitation_keys, film_keys
 from frbcli.scene.planning.cell_choice import ALONG_TILTED, FAST_TILTED, cells_time
 from frbcli.scene.shafts.table import shaft_of
-from frbcli.scene.tilt import as_text
+from frbcli.scene.tilt import as_text, misaligned
 
 if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
@@ -166,3 +171,43 @@ class TiltedForm(CellForm):
 
 
 TILTED = TiltedForm("cells that follow the tilt", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 20.0)
+
+
+AT_REST = (FILMS, HEAT, STABILITY, RANGE, *SHEETS, SPEED_CYCLES, WHIRLS)
+ALIGNED = "Leave bearing.misalignment out."
+
+
+def _shaft_faults(case: Case) -> Iterator[Fault]:
+    """Rotors whose journals tilt as well."""
+    if case.given_rotor is not None and shaft_of(case).tilts:
+        for key, value in misaligned(case):
+            problem = "tilts the shell, and the journal of this rotor tilts as well."
+            remedy = f'Write film.tilt = "follows". {ALIGNED}'
+            yield Fault(key, value, None, problem, remedy)
+
+
+def _ring_faults(case: Case) -> Iterator[Fault]:
+    """Shells around rings, which would tilt, too."""
+    for index, bearing in enumerate(case.bearings):
+        if isinstance(bearing, FloatingRingBearing) and bearing.misalignment is not None:
+            problem = "tilts the shell around a ring, whose own tilt is modelled in films that follow it alone."
+            key = f"{bearing_key(case, index)}.misalignment"
+            yield Fault(key, as_text(bearing.misalignment), None, problem, ALIGNED)
+
+
+@dataclass(frozen=True)
+class InclinedForm(TiltedForm):
+    """The cells of films that follow a tilt, with one that is given."""
+
+    rules: ClassVar[tuple[Rule, ...]] = (
+        Rule(_shaft_faults, (*AT_REST, *RUNS)),
+        Rule(_ring_faults, (*AT_REST, *RUNS)),
+        Rule(lambda case: film_faults(case, ALIGNED), (*AT_REST, *RUNS)),
+        Rule(lambda case: heat_faults(case, ALIGNED), MOVED, moving=True),
+        Rule(lambda case: law_faults(case, ALIGNED), AT_REST),
+        Rule(lambda case: run_faults(case, ALIGNED), LOOPS),
+        Rule(misalignment_faults, (*AT_REST, *RUNS)),
+    )
+
+
+INCLINED = InclinedForm("cells with the tilt of their shells", SolveCounts(1.2, 1.5, 2.3, (2.0, 1.0)), 30.0)

@@ -17,7 +17,7 @@ from frbcli.scene.films import (
     turns_with_oil,
 )
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.machine.elements import harmonics_of, speed_dependent
+from frbcli.scene.machine.rotor import harmonics_of, speed_dependent
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil

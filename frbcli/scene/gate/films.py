@@ -15,14 +15,12 @@ from frbcli.film.gap import NO_BATH, ends_at_ambient
 from frbcli.film.section_faults import runs_dry, section_faults
 from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.films import HOUSING, FilmPlace, film_places
+from frbcli.scene.films import HOUSING, FilmPlace, film_places, film_section, is_published
 from frbcli.scene.forms.cells import CELLS
-from frbcli.scene.forms.inclined import INCLINED
 from frbcli.scene.forms.tables import CLIPPED
-from frbcli.scene.forms.tilted import TILTED
+from frbcli.scene.forms.tilted import INCLINED, TILTED
 from frbcli.scene.keys import film_keys
 from frbcli.scene.planning.film_choice import film_form, form_of
-from frbcli.scene.section import film_section, is_published
 from frbcli.scene.tilt import misaligned, tilt_key, tilts
 from frbcli.units import display
 

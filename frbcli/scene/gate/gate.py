@@ -14,9 +14,9 @@ from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.channels import channel_faults
 from frbcli.scene.coupling import coupling_of
-from frbcli.scene.forms.inclined import AT_REST
-from frbcli.scene.forms.tilted import RUNS
-from frbcli.scene.gate import cycles, dampers, films, kinematic, pulls, runs, static
+from frbcli.scene.forms.tilted import AT_REST, RUNS
+from frbcli.scene.gate import cycles, elements, films, kinematic, runs, static
+from frbcli.scene.gate.kinematic import choice_faults, key_in, tested_case
 from frbcli.scene.gate.rule import (
     ALL,
     BEARING,
@@ -39,8 +39,7 @@ from frbcli.scene.gate.rule import (
     Faults,
     Rule,
 )
-from frbcli.scene.gate.tested import choice_faults, key_in, tested_case
-from frbcli.scene.machine.elements import (
+from frbcli.scene.machine.rotor import (
     element_faults,
     speed_dependent,
     stray_load_faults,
@@ -63,7 +62,7 @@ def _without_film(what: str) -> Callable[[Case], Faults]:
 RULES = (
     Rule(element_faults, ALL),
     Rule(channel_faults, ALL),
-    Rule(pulls.pull_faults, ALL),
+    Rule(elements.pull_faults, ALL),
     Rule(films.supply_faults, ALL),
     Rule(films.limited_supply_faults, ALL),
     Rule(films.bath_faults, ALL),
@@ -99,8 +98,8 @@ RULES = (
     Rule(_of_films(runs.form_faults), (RUN,)),
     Rule(_of_films(runs.changing_supply_faults), (RUN,)),
     Rule(static.sheet_faults, SHEETS),
-    Rule(dampers.sheet_faults, SHEETS),
-    Rule(dampers.loaded_faults, (LOADED,)),
+    Rule(elements.sheet_faults, SHEETS),
+    Rule(elements.loaded_faults, (LOADED,)),
     Rule(static.loaded_heat_faults, (LOADED,)),
     Rule(static.chart_heat_faults, (CHART,)),
     Rule(static.missing_heat_faults, (HEAT,)),
@@ -110,8 +109,8 @@ RULES = (
     Rule(static.pin_cycle_faults, EVERY_CYCLE),
     Rule(static.port_cycle_faults, EVERY_CYCLE),
     Rule(static.port_coupling_faults, (RUN,)),
-    Rule(dampers.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
-    Rule(dampers.linear_faults, (STABILITY, *EVERY_CYCLE)),
+    Rule(elements.rest_faults, (BEARING, STABILITY, *EVERY_CYCLE)),
+    Rule(elements.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
     Rule(cycles.coefficient_faults, (SPEED_CYCLES, WHIRLS)),

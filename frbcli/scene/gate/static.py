@@ -15,7 +15,7 @@ from frbcli.scene.channels import coupling_faults
 from frbcli.scene.coupling import coupling_of
 from frbcli.scene.films import HOUSING, film_places, is_plain
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.machine.elements import port_faults
+from frbcli.scene.machine.rotor import port_faults
 from frbcli.scene.speeds import default_speeds, keeps_oil
 from frbcli.scene.tilt import as_text
 

@@ -13,9 +13,8 @@ from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.cells.mesh.grid import least_around
 from frbcli.film.section_faults import no_inflow
-from frbcli.scene.films import FilmPlace, film_places, is_plain
+from frbcli.scene.films import FilmPlace, film_places, film_section, is_plain
 from frbcli.scene.planning.eccentricity import CLOSEST
-from frbcli.scene.section import film_section
 
 USUAL = (48, 6)  # cells around and along for which the errors are tabulated
 FEWEST = (12, 3)

@@ -25,8 +25,8 @@ from frbcli.case.surroundings.over_time import OverTime
 from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.table import law_named
 from frbcli.rotor.loads import SpeedProfile, speed_profile
-from frbcli.scene.inputs import input_faults, input_times
-from frbcli.scene.machine.elements import element_parts, table_faults, table_times
+from frbcli.scene.changes import input_faults, input_times
+from frbcli.scene.machine.rotor import element_parts, table_faults, table_times
 from frbcli.scene.shafts.table import shaft_of
 
 # The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.

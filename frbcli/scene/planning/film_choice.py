@@ -14,12 +14,10 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.grid import Mesh
 from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS, CellForm
-from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.inclined import INCLINED
-from frbcli.scene.forms.none import NO_FILM
+from frbcli.scene.forms.form import NO_FILM, FilmForm
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
-from frbcli.scene.forms.tilted import TILTED
+from frbcli.scene.forms.tilted import INCLINED, TILTED
 from frbcli.scene.planning.cell_choice import WorstFilm, fewest_cells, given_cells, worst_film
 from frbcli.scene.planning.eccentricity import expected_eccentricity, short_error, slenderness_of
 from frbcli.scene.tilt import misaligned

@@ -1,38 +1,60 @@
 """The plan of a case: what has to be modelled for it, what is left out, and why.
 
 All choices that the program makes for a run are made here, with their reasons; settings of the case take precedence.
+
+Its expected error comes with it; a run states its own. Cases of thrust bearings alone have a plan of their own.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from frbcli.case.bearing import CartridgeBearing, FloatingRingBearing
 from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.scene.changes import clearance_decisions, loss_decisions
+from frbcli.film.pads.geometry import COARSE, MESH
+from frbcli.scene.changes import clearance_decisions, drive_decisions, input_decisions, loss_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
-from frbcli.scene.costs.cost import clock
-from frbcli.scene.costs.resolution import reference_length, resolution_decisions
+from frbcli.scene.cost import clock
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
+from frbcli.scene.course import reference_length, resolution_decisions
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
-from frbcli.scene.inputs import drive_decisions, input_decisions
-from frbcli.scene.machine.elements import element_decisions
+from frbcli.scene.machine.rotor import element_decisions
 from frbcli.scene.planning.cell_choice import KNEE
-from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.eccentricity import heavily_loaded, run_up_profile
-from frbcli.scene.planning.expected_error import expected_error
+from frbcli.scene.planning.error_runs import cost_of_run
 from frbcli.scene.planning.film_choice import FINE_TARGET, LOOSE_TARGET, FilmChoice, choose_films, form_of
 from frbcli.scene.planning.planned import Decision, Plan
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.supply import unfed_films
 from frbcli.units import display
+
+SUMMED = 10.0  # number of local errors that add up: 1 to 13 as measured (docs/accuracy.md)
+REACH = 0.5  # usual eccentricity of a static equilibrium, the factor of an error of the force; cells have their own
+
+
+@dataclass(frozen=True)
+class ExpectedError:
+    """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known: for a
+    bearing model, without films, and for cells, whose eccentricities have the known error."""
+
+    eccentricity: float
+    film_force: float | None
+
+
+def expected_error(plan: Plan) -> ExpectedError:
+    """From the tolerance of a step and the known error of the films of a plan."""
+    form = plan.form
+    reach = 1.0 if form.by_cells else REACH
+    force = None if form.error_by_eccentricity or not form.solved else plan.film_error
+    return ExpectedError(SUMMED * plan.tolerance + reach * plan.film_error, force)
+
 
 THEORIES = ("short", "finite")
 # Least steps per revolution of finite-volume films, and of films that are solved at every film call. More steps would
@@ -327,3 +349,26 @@ def _gap(film: FilmGeometry) -> tuple[str, str]:
     if film.shell is not None:
         return "developed gap", f"with {film.shell.words}, supply {supply.kind}"
     return supply.gap
+
+
+def thrust_plan(case: Case) -> tuple[Decision, ...]:
+    """What `frb thrust` models of a case, and why."""
+    radial, angular = MESH
+    choices = []
+    for bearing in case.thrust_bearings:
+        land = "no land" if bearing.taper_angle >= bearing.pad_angle else "a land behind it"
+        depth = f"{bearing.profile} of {display(bearing.taper, 'm')}, {land}; grooves at ambient pressure"
+        choices.append(Decision("thrust bearing", f"{bearing.name} {bearing.pads} pads, {bearing.side}".strip(), depth))
+    return (
+        *choices,
+        Decision("cavitation", case.film.cavitation, "only where the pressure falls below the cavitation pressure"),
+        _viscosity(case),
+        Decision("mesh", f"{radial} x {angular}", "quadratic elements of a pad, radius by angle"),
+        Decision("error", f"from {COARSE[0]} x {COARSE[1]}", "stated with each state by `frb thrust`"),
+    )
+
+
+def _viscosity(case: Case) -> Decision:
+    if case.heat is not None:
+        return Decision("heat", "lumped", "each side has the viscosity of the temperature at which its heat balances")
+    return Decision("viscosity", f"{1e3 * case.oil_viscosity:.4g} mPa*s", "of [oil], in the whole film")

@@ -29,7 +29,7 @@ class Plan:
     film_error: expected relative error of the forces; method: name of a time integration method; tolerance: local error
     of a displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step:
     longest one in s of a co-simulation, else None; length: m, instead of the clearance for machines without films, see
-    reference_length.py; eccentricity: that the cells are chosen for, see FilmChoice; edged: whether finite-volume films
+    reference_length; eccentricity: that the cells are chosen for, see FilmChoice; edged: whether finite-volume films
     have the edge of their cavity within cells, see VolumeFilm: at rest alone."""
 
     theory: str

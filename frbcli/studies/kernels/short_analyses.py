@@ -15,7 +15,7 @@ from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import BEARING, KINEMATIC, ROTATION, RUN, STABILITY
-from frbcli.scene.machine.elements import element_parts
+from frbcli.scene.machine.rotor import element_parts
 from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan

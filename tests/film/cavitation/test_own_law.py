@@ -23,8 +23,7 @@ from frbcli.film.cavitation.compiled import compiled_cells, compiled_law
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.table import SHIPPED, law_named
-from frbcli.scene.films import film_places, make_law
-from frbcli.scene.section import film_section
+from frbcli.scene.films import film_places, film_section, make_law
 
 SCALES = Scales(reference=900.0, cavitation=-60.0, ambient=500.0)
 W = np.concatenate([np.linspace(-1.4, 0.6, 801), [-1e-9, 0.0, 1e-9]])

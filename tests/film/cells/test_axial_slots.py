@@ -18,9 +18,8 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.section_faults import section_faults
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.runs.run import runup
-from frbcli.scene.films import film_places, volume_film
+from frbcli.scene.films import film_places, film_section, volume_film
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.section import film_section
 
 CELLS, FINE = (48, 6), (192, 24)
 

@@ -33,10 +33,9 @@ from frbcli.film.penalty_table.table import (
 )
 from frbcli.film.rectangles.film import evaluate
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.scene.films import film_places
-from frbcli.scene.machine.machine_films import source_film
+from frbcli.scene.films import film_places, film_section
+from frbcli.scene.machine.system import source_film
 from frbcli.scene.planning.plan import make_plan
-from frbcli.scene.section import film_section
 
 READINGS = ("absolute", "dimensionless")
 MESH = Mesh(axial=6, circumferential=48)

@@ -32,8 +32,7 @@ from frbcli.film.cells.steady_force import oil_slopes, steady_force
 from frbcli.film.gap import Diffusion, Hole, Section, gap_height
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.untabulated import direct_force
-from frbcli.scene.films import run_grid
-from frbcli.scene.section import ELEMENT
+from frbcli.scene.films import ELEMENT, run_grid
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6
 CASE = """

@@ -10,8 +10,7 @@ from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError
 from frbcli.scene.changes import step_times
-from frbcli.scene.costs.cost import DAY_s, ExpectedCost, clock
-from frbcli.scene.costs.preparation import before_s, rotor_size
+from frbcli.scene.cost import DAY_s, ExpectedCost, before_s, clock, rotor_size
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 
