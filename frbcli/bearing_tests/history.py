@@ -26,7 +26,7 @@ from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure, 
 from frbcli.film.cells.loads import FilmLoads, estimate, loads
 from frbcli.film.cells.motion import Motion, Path, gap_on, path_seen_from, turned
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.tilted.lands import land_paths, lands, summed
+from frbcli.film.cells.tilted.steady_force import land_paths, lands, summed
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 from frbcli.scene.tilt import slope_of, tilt_of

@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
-from frbcli.film.cells.balance.feed import ALL, RESPONSE, supply_line
+from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import Carried, KeptGas
 from frbcli.film.cells.motion import Motion, Path

@@ -19,11 +19,10 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import settled_force
 from frbcli.film.cells.tilted.balances import tilted_outflow
-from frbcli.film.cells.tilted.lands import Land, lands, summed
+from frbcli.film.cells.tilted.steady_force import Land, lands, summed
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
+from frbcli.film.rectangles.film import FilmForce, direct_force, largest_pressure
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, law_at
 from frbcli.scene.tilt import gaps_at_ends
 

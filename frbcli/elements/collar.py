@@ -31,8 +31,8 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime, largest
 from frbcli.case.thermal import Thermal, WallNode
 from frbcli.errors import Fault, NotConverged
-from frbcli.film.pads.geometry import Pad
-from frbcli.film.pads.table import GapTable, ScaledPads, gap_table
+from frbcli.film.pad_geometry import Pad
+from frbcli.film.pads import GapTable, ScaledPads, gap_table
 from frbcli.rotor.loads import LinearPart
 from frbcli.thermal.model import FROM_SUPPLY, OIL_AT, FilmHeat, HeatModel, steady_heat
 from frbcli.units import display

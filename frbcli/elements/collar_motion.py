@@ -19,9 +19,8 @@ from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
 from frbcli.elements.collar import BOTH, LEFT, Collar, collar_of, pad_of, rests_over_speed
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.film.pads.film import PadOil, RunnerMotion, pad_film
-from frbcli.film.pads.geometry import COARSE, SOMMERFELD
-from frbcli.film.pads.mesh import pad_mesh
+from frbcli.film.pad_geometry import COARSE, SOMMERFELD
+from frbcli.film.pads import PadOil, RunnerMotion, pad_film, pad_mesh
 from frbcli.rotor.loads import SpeedProfile
 
 TO_RIGHT, TO_LEFT = -1.0, 1.0  # change of the gap by a displacement, of pads on that side

@@ -2,7 +2,7 @@
 oil.
 
 The eigenvalues s of M s^2 + (D + Omega G) s + K + sum of L Z(s) P follow by nonlinear inverse iteration from the
-eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
+eigenvalues of a machine on films with a few states each (projections, see film/cells/linearised.py). P maps the
 motion of the machine onto the motion of the journals, and of the angles of rings onto the angle by which journal and
 shell turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the
 drag.
@@ -23,14 +23,14 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.equilibrium.ring_speed import memoryless
-from frbcli.film.cells.dynamic_stiffness import (
+from frbcli.film.cells.linearised import (
     DynamicStiffness,
+    LinearFilm,
     dynamic_stiffness,
     stiffness_at,
     weighted,
     without_memory,
 )
-from frbcli.film.cells.linearised import LinearFilm
 from frbcli.film.kinds.contract import LinearOf
 from frbcli.film.rectangles.film import FilmForce
 

@@ -30,7 +30,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.contact_gap import ELASTIC_LIMIT
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.elastic_shell import ElasticShell
+from frbcli.film.roughness.contact import ElasticShell
 from frbcli.rotor.assembly import HeldRotor, LinearRotor, held_rotor, whole_rotor
 from frbcli.rotor.port import pushed, settled
 from frbcli.scene.machine.system import System

@@ -19,7 +19,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_angle
 from frbcli.film.rectangles.film import FilmForce, none_of
-from frbcli.film.roughness.rubbing import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, VALUE
+from frbcli.film.roughness.contact import BY_SLIP, BY_V_X, BY_X, F_X, F_Y, ON_JOURNAL, VALUE
 from frbcli.rotor.assembly import HeldRotor
 from frbcli.scene.films import turning_rings
 from frbcli.scene.machine.system import System, film_drag

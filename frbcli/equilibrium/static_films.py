@@ -17,7 +17,7 @@ from frbcli.errors import Fault, InputError
 from frbcli.film.cavitation.law import FRONTS
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.grid import Mesh
-from frbcli.film.kinds.fields import EvenFilm, FieldFilm
+from frbcli.film.kinds.contract import EvenFilm, FieldFilm
 from frbcli.rotor.assembly import LinearRotor, Link, assembled
 from frbcli.rotor.body import point_mass
 from frbcli.scene.films import film_places, volume_film

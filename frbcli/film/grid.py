@@ -109,3 +109,7 @@ def axial_modes(vertices: Array, seals: tuple[float, float] = NO_SEALS) -> Axial
     loads = shapes @ m_z.sum(axis=1)
     excited = np.abs(loads) > 1e-6 * np.abs(loads).max()
     return AxialModes(eigenvalues[excited], loads[excited], shapes[excited], nodes, m_z, seals)
+
+
+FINER = 2  # times the elements or cells each way
+SAMPLES = 48  # states of a run

@@ -18,7 +18,7 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import CavitationFactor, loads
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import gap_height
-from frbcli.film.kinds.fields import FieldFilm
+from frbcli.film.kinds.contract import FieldFilm
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import rub

@@ -17,7 +17,7 @@ from frbcli.equilibrium.linearised import eigenpairs, rotor_at_rest
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.equilibrium.warm_machine import WarmMachine
 from frbcli.errors import NotConverged
-from frbcli.film.cells.dynamic_stiffness import DynamicStiffness
+from frbcli.film.cells.linearised import DynamicStiffness
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import fastest_first, ranks
 

@@ -9,8 +9,8 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.tri import Triangulation
 
 from frbcli.elements.collar import pad_of
-from frbcli.film.pads.geometry import MESH
-from frbcli.film.pads.mesh import pad_mesh
+from frbcli.film.pad_geometry import MESH
+from frbcli.film.pads import pad_mesh
 from frbcli.linear.thrust.sheet import ThrustSheet
 from frbcli.linear.thrust.state import ThrustState
 from frbcli.plot.style import COLOURS, LEVEL_MAP, legend_below, new_figure, plain_numbers, styled

@@ -12,7 +12,7 @@ from frbcli.arrays import Array
 from frbcli.case.course.time_tables import inputs_of
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.over_time import OverTime
-from frbcli.film.cells.balance.feed import opening_pressures
+from frbcli.film.cells.balance.boundaries import opening_pressures
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import heat_of
 from frbcli.scene.machine.system import System

@@ -13,14 +13,14 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING
 from frbcli.film.cells.balance.side_flow import side_flow
-from frbcli.film.state import PASSED
+from frbcli.film.cells.data import PASSED
 from frbcli.solve.films.forces import drag_integral
 from frbcli.solve.films.kinds import by_kind
 from frbcli.solve.state import OUTPUTS, RUNNING, TIME, Control, LoopOutput, RotorData, State
 from frbcli.solve.tableau import Tableau
 from frbcli.solve.time_loop import Space, _advance, make_space
 
-# Rows that are noted of each film: drag_integral, the oil that leaves it, and the filling of its openings, see feed.py.
+# Noted of each film: drag_integral, the oil that leaves it, the filling of its openings (boundaries.py).
 DRAG, LEAVES, FILLED, NOTES = range(4)
 
 

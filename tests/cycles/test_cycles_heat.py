@@ -23,7 +23,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.mean_fields.outflow import mean_end_flows
+from frbcli.film.mean_outflow import mean_end_flows
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -25,7 +25,7 @@ from frbcli.equilibrium.linearised import first_order, linearised, rotor_at_rest
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
 from frbcli.film.rectangles.film import FilmForce
-from frbcli.film.roughness.elastic_shell import ElasticShell
+from frbcli.film.roughness.contact import ElasticShell
 from frbcli.plot.machine.bearing import bearing_figure
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.gate.gate import faults

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from frbcli.equilibrium.dynamic_films import SPREAD, DynamicFilm, Oscillator, modes, place_errors
-from frbcli.film.cells.dynamic_stiffness import weighted, without_memory
+from frbcli.film.cells.linearised import weighted, without_memory
 
 MASS, STIFFNESS, JUMP, OMEGA = 2.0, 2e6, 2e3, 1000.0
 PLACES, OFFSETS = 8, 50

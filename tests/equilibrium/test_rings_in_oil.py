@@ -20,7 +20,7 @@ from frbcli.equilibrium.dynamic_films import DynamicFilm, Oscillator
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.ring_speed import across, drags, ring_torques
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
-from frbcli.film.cells.dynamic_stiffness import DynamicStiffness, without_memory
+from frbcli.film.cells.linearised import DynamicStiffness, without_memory
 from frbcli.linear.response import forced_motion
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import eigenvalues, machine_rotor, point_at_rest

@@ -18,7 +18,7 @@ from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
 from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.film.roughness.asperities import make_asperities, rub
-from frbcli.film.roughness.rubbing import BY_V_X, BY_X, COLUMNS, VALUE, Rubbing
+from frbcli.film.roughness.contact import BY_V_X, BY_X, COLUMNS, VALUE, Rubbing
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.system import System, make_system

@@ -10,10 +10,8 @@ import pytest
 from volume_films import ROTATION, polar_motion, section_of
 
 from frbcli.bearing_tests.march import march
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cells.film import VolumeFilm, supplied, supply_share
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid

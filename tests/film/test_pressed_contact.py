@@ -13,16 +13,14 @@ from marches import rigid
 
 from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod
 from frbcli.film.cavitation.law import Law, Scales
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells.balance.states import FRACTION
-from frbcli.film.cells.data import COS, GAP, SIN, VolumeFilms
+from frbcli.film.cells.data import COS, GAP, SIN, WET, VolumeFilms
 from frbcli.film.contact_gap import KEPT, closes_freely_until, contact_gap
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.rectangles.film_force import film_force
-from frbcli.film.state import WET
 from frbcli.runs.march import March
 from frbcli.scene.machine.system import Segment, System, make_system
 from frbcli.scene.planning.eccentricity import run_up_profile

@@ -22,8 +22,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
-from frbcli.film.rectangles.film import evaluate, make_film
-from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.film.rectangles.film import direct_force, evaluate, make_film
 from frbcli.scene.films import make_law
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN

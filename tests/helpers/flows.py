@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from frbcli.film.cells.balance.balances import CHANNELS_NET, ENDS_NET, SUPPLY_NET
-from frbcli.film.state import PASSED
+from frbcli.film.cells.data import PASSED
 from frbcli.solve.state import State
 
 

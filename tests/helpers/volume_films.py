@@ -8,13 +8,10 @@ import math
 import numpy as np
 from paths import DATA
 
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells.motion import Motion
 from frbcli.film.gap import AxialGroove, Section
 

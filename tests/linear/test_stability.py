@@ -18,8 +18,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.static_machine import MachineAtRest
 from frbcli.errors import InputError, NotConverged
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.film import evaluate, make_film
-from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.film.rectangles.film import direct_force, evaluate, make_film
 from frbcli.linear import stability as stability_room
 from frbcli.linear.stability import Stability, stability
 from frbcli.linear.stability_point import StabilityPoint, eigenvalues

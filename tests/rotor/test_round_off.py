@@ -9,7 +9,7 @@ import scipy.sparse.linalg
 from round_off import SIZE, round_off
 
 from frbcli.cycles.method import continuation
-from frbcli.film.pads import film
+from frbcli.film import pads
 
 SYMMETRIC = np.array([[4.0, 1.0, 0.0], [1.0, 3.0, 0.1], [0.0, 0.1, 7.0]])
 
@@ -34,7 +34,7 @@ def test_it_is_on_in_this_folder_and_reaches_names_that_modules_keep(request: py
     before = round_off.count
     np.linalg.eigvals(SYMMETRIC)
     continuation.lu_factor(SYMMETRIC)
-    film.splu(scipy.sparse.csc_matrix(SYMMETRIC))
+    pads.splu(scipy.sparse.csc_matrix(SYMMETRIC))
     scipy.linalg.eigh(SYMMETRIC, np.diag([1.0, 2.0, 3.0]))
     assert round_off.count == before + 5
 

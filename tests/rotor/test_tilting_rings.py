@@ -20,7 +20,7 @@ from frbcli.equilibrium.ring_speed import ring_torques
 from frbcli.equilibrium.static_films import static_films
 from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.errors import InputError
-from frbcli.film.cells.tilted.force import tilted_force
+from frbcli.film.cells.tilted.steady_force import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.assembly import Link, assembled, without_spins

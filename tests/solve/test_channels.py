@@ -21,11 +21,10 @@ from frbcli.film.cells.balance.balances import CHANNELS_NET
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.channels.channel import Channel, channel_resistance
 from frbcli.film.cells.channels.data import with_channels
-from frbcli.film.cells.data import UNKNOWN, volume_films
+from frbcli.film.cells.data import OIL, PASSED, UNKNOWN, W, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.state import OIL, PASSED, W
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect

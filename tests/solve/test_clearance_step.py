@@ -15,7 +15,7 @@ from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.case.schema import Case
 from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import InputError
-from frbcli.film.state import OIL
+from frbcli.film.cells.data import OIL
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.march import March
 from frbcli.scene.changes import case_at

@@ -9,10 +9,9 @@ from test_cells_run import Array, case_of, planned, run
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.balances import GAS_IN, GAS_OUT, GAS_RELEASED
-from frbcli.film.cells.dynamic_stiffness import stiffness_at
-from frbcli.film.cells.linearised import linear_film
+from frbcli.film.cells.data import GAS, OIL, PASSED
+from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.kinds.tilted import TiltedFilms
-from frbcli.film.state import GAS, OIL, PASSED
 from frbcli.runs.march import control_of
 from frbcli.runs.oil import oil_defect
 from frbcli.runs.start import first_state, rotor_data

@@ -15,9 +15,8 @@ from scipy.linalg import eigh, null_space
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.film.gap import whole_width
-from frbcli.film.rectangles.film import evaluate, make_film
+from frbcli.film.rectangles.film import evaluate, largest_pressure, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.linear.stability import Stability, stability
 from frbcli.results.store import Run
 from frbcli.runs.run import runup

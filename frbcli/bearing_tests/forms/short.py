@@ -23,7 +23,7 @@ from frbcli.film.grid import Mesh
 from frbcli.film.rectangles.end_flow import end_flow, make_end_flow
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, sealed_shape
-from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.film.roughness.contact import Rubbing
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
 UNKNOWN = math.nan

@@ -23,9 +23,8 @@ from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
-from frbcli.film.cells.balance.feed import ALL
-from frbcli.film.cells.data import UNKNOWN
-from frbcli.film.state import GAS, GAS_RATE, OIL, PASSED, RATE, W_BEFORE, WET, WET_WITH_GAS, W
+from frbcli.film.cells.balance.boundaries import ALL
+from frbcli.film.cells.data import GAS, GAS_RATE, OIL, PASSED, RATE, UNKNOWN, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data, state_at
@@ -61,7 +60,7 @@ class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
     angle 0; content: (n, m, k) oil fractions of the fields of cells, and behind them, where oil carries gas, their free
     gas over the oil; rate: of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
-    openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried along as its
+    openings, see boundaries.py. a, rate and w follow from the rest within the first step, and are carried along as its
     guess."""
 
     q: Array

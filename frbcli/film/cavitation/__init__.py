@@ -1,4 +1,4 @@
-"""Cavitation models, one per file: how pressure, oil fraction and oil from nowhere hang together in a cell.
+"""Cavitation models, a class each: how pressure, oil fraction and oil from nowhere hang together in a cell.
 
 Every law is written in one unknown w per cell, in which it is neither steep nor flat anywhere:
 

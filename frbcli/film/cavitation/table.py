@@ -7,13 +7,10 @@ from dataclasses import fields, is_dataclass
 
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.bubbly import Bubbly
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 
 SHIPPED: tuple[type[Law], ...] = (
     Sommerfeld,

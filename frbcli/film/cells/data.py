@@ -12,10 +12,9 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.film.cavitation.compiled import addresses, given_parameters
 from frbcli.film.cavitation.table import LARGEST_PARAMETERS
-from frbcli.film.cells.balance.ends import end_slopes
-from frbcli.film.cells.balance.feed import supply_line, supply_pressure
-from frbcli.film.cells.diffusion.plain import NO_DISTANCE, diffusing, end_reaches
-from frbcli.film.cells.elimination.block_cyclic import ring_solver
+from frbcli.film.cells.balance.boundaries import end_slopes, supply_line, supply_pressure
+from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, diffusing, end_reaches
+from frbcli.film.cells.block_cyclic import ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import VolumeGrid, force_weights
 from frbcli.film.cells.mesh.openings import bathed
@@ -47,7 +46,7 @@ END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"),
 # supplied_gas, gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any;
 # settled: share of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces
 # that it flows between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its
-# L, and by how much more it acts along than around, see diffusion/spread.py; parameters: of its law, of a centred
+# L, and by how much more it acts along than around, see balance/diffusion.py; parameters: of its law, of a centred
 # journal at 1 rad/s. Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply`
 # is the largest; of a flow-limited supply: given, line and lowest of supply_line.
 FILM = record(
@@ -211,3 +210,10 @@ def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
     cells[ALONG, :, :-1] = section.aspect * open_along
     cells[GIVEN_PRESSURE], cells[UNKNOWN] = grid.fixed_pressure, np.where(grid.fixed, 0.0, 1.0)
     return ring, width, cells
+
+
+# Layers of the films' state: unknown w now and at the start of the step before, oil H theta, its rate; where the oil of
+# any film carries free gas, also that, H theta c, and its rate.
+W, W_BEFORE, OIL, RATE, WET = range(5)
+GAS, GAS_RATE, WET_WITH_GAS = range(WET, WET + 3)
+PASSED, NOW = range(2)  # layers of their oil: what has passed so far, and passes now

@@ -59,7 +59,7 @@ class Flows:
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
     before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
-    oil carries any; filling: of openings with a flow-limited supply, see feed.py; stages: (n, 3, m, k) w, c_in and r of
+    oil carries any; filling: of openings with limited flow, see boundaries.py; stages: (n, 3, m, k) w, c_in and r of
     a steady film with gas, first solved upwind, then each time with second order."""
 
     w: Array

@@ -5,26 +5,37 @@ With the changes w of the cells' unknowns, d of the journal's place and d' of it
     storage w' + flow w + by_place d + by_rate d' = 0,        F = push w,
 
 in the frame at rest, where the settled film does not change. Of a journal that tilts, d holds its tilts, too
-(tilted/linear.py). Journal and shell may also turn faster: the angle by which they turn together is then the last one
-of d, of whose rate alone the film knows. Oil is carried upwind, whose derivatives are exact on neighbouring cells, and
-laws with kinks count with the derivative on the side on which each cell is. Free gas that the oil carries is one more
-state per cell, see gas/linear.py. Openings that take all that their supply gives are one more state of the film: the
-filling of their line, see feed.py.
+(tilted/steady_force.py). Journal and shell may also turn faster: the angle by which they turn together is then the last
+one of d, of whose rate alone the film knows. Oil is carried upwind, whose derivatives are exact on neighbouring cells,
+and laws with kinks count with the derivative on the side on which each cell is. Free gas that the oil carries is one
+more state per cell, see gas/linear.py. Openings that take all that their supply gives are one more state of the film:
+the filling of their line, see boundaries.py.
+
+The dynamic stiffness Z(s) of mass-conserving films: -F = Z(s) d for a motion d exp(s t) of the journal.
+
+F has c components, two forces and of a film that tilts two moments, d as many coordinates or one more, see LinearFilm.
+
+    Z(s) = push (storage s + flow)^-1 (by_place + s by_rate)
+
+of the linearised film. It is needed at many s, and smooth: a film is projected onto the changes of its oil at a few
+frequencies, from the right and from the left, so that Z and its derivative are exact there (two-sided rational Krylov
+projection: A. C. Antoulas, Approximation of Large-Scale Dynamical Systems, SIAM 2005, section 11.3).
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from frbcli.arrays import Array
+from frbcli.arrays import Array, Complex
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import FLOWS, SUPPLY_NET, GridMotion, balances, without_ends
-from frbcli.film.cells.balance.feed import ALL
+from frbcli.film.cells.balance.boundaries import ALL
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION_SLOPE,
@@ -33,8 +44,8 @@ from frbcli.film.cells.balance.states import (
     STATES,
     cell_states,
 )
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.data import AREA, BY_ITSELF, COS, GAP, LOAD, PUSH_X, PUSH_Y, SIDES, SIN, UNKNOWN
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.loads import CavitationFactor, shear_weights
@@ -219,3 +230,110 @@ class _SettledCells:
         own, ring, _, cells = self._parts
         weight = own.force_scale * cells[LOAD] * pressure
         return np.stack([ring[row][:, None] * weight for row in (PUSH_X, PUSH_Y)])
+
+
+ROUND_OFF = 1e-11  # of the largest: of directions in which vectors do not reach
+
+
+@dataclass(frozen=True)
+class DynamicStiffness:
+    """Z(s) = place + s rate + sum of left_j (right_place_j + s right_rate_j) / (1 + s delay_j), in SI units.
+
+    place, rate: (c, d) of what does not depend on the oil's memory; left: (c, r), right_place, right_rate: (r, d);
+    delays: (r,) s of the oil."""
+
+    place: Array
+    rate: Array
+    left: Complex
+    right_place: Complex
+    right_rate: Complex
+    delays: Complex
+
+    def at(self, s: complex) -> tuple[Complex, Complex]:
+        """Z (c, d) at s in 1/s and its derivative by s."""
+        share = 1.0 / (1.0 + s * self.delays)
+        moved = self.right_place + s * self.right_rate
+        slope = self.right_rate - (share * self.delays)[:, None] * moved
+        z = self.place + s * self.rate + (self.left * share) @ moved
+        return z, self.rate + (self.left * share) @ slope
+
+
+def without_memory(stiffness: Array, damping: Array) -> DynamicStiffness:
+    """The dynamic stiffness of a film of stiffness and damping (c, d)."""
+    forces, coordinates = stiffness.shape
+    left, right = np.zeros((forces, 0), dtype=complex), np.zeros((0, coordinates), dtype=complex)
+    return DynamicStiffness(stiffness, damping, left, right, right, np.zeros(0, dtype=complex))
+
+
+def weighted(parts: Sequence[tuple[DynamicStiffness, float]]) -> DynamicStiffness:
+    """The sum of dynamic stiffnesses, each times its weight."""
+    nothing = np.zeros_like(parts[0][0].place)
+    return DynamicStiffness(
+        sum((weight * part.place for part, weight in parts), nothing),
+        sum((weight * part.rate for part, weight in parts), nothing),
+        np.concatenate([weight * part.left for part, weight in parts], axis=1),
+        np.concatenate([part.right_place for part, _ in parts]),
+        np.concatenate([part.right_rate for part, _ in parts]),
+        np.concatenate([part.delays for part, _ in parts]),
+    )
+
+
+def stiffness_at(film: LinearFilm, s: complex) -> Complex:
+    """Z (c, d) at one s in 1/s, without a projection."""
+    right, _ = _changes(film, s)
+    return np.asarray(film.push @ right)
+
+
+def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> DynamicStiffness:
+    """Z of a film, exact at rest and at the frequencies in rad/s, above 0."""
+    rights: list[Array] = []
+    lefts: list[Array] = []
+    for s in (0.0j, *(1j * frequency for frequency in frequencies)):
+        for change, kept in zip(_changes(film, s), (rights, lefts), strict=True):
+            kept += [change.real] if s == 0.0 else [change.real, change.imag]
+    right, left = (_span(np.concatenate(kept, axis=1)) for kept in (rights, lefts))
+    right, left = _filled(right, left), _filled(left, right)
+    flow = left.T @ (film.flow @ right)
+    storage = left.T @ (film.storage @ right)
+    delays, shapes = np.linalg.eig(np.linalg.solve(flow, storage))
+    moved = np.linalg.solve(flow, left.T @ np.concatenate([film.by_place, film.by_rate], axis=1))
+    by_place, by_rate = np.split(np.linalg.solve(shapes, moved.astype(complex)), 2, axis=1)
+    nothing = np.zeros((len(film.push), film.by_place.shape[1]))
+    return DynamicStiffness(nothing, nothing, film.push @ right @ shapes, by_place, by_rate, delays.astype(complex))
+
+
+def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
+    """(n, d) changes of the cells for unit motions of the journal, and (n, c) what the force takes of their
+    balances."""
+    from scipy.sparse.linalg import splu  # takes long to load
+
+    # Oil that leaves one cell enters others: the diagonal serves as pivot, as in block_cyclic.py, and the
+    # order is the one for a symmetric matrix.
+    matrix, at = film.at(s), s if s.imag else s.real
+    solver = splu(
+        matrix,
+        permc_spec="NATURAL" if film.ordered else "MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
+    )
+    right = solver.solve((film.by_place + at * film.by_rate).astype(matrix.dtype))
+    return right, solver.solve(film.push.T.astype(matrix.dtype), "T")
+
+
+def _span(vectors: Array) -> Array:
+    """(n, r) orthonormal basis of vectors (n, m). A film with few cells that are part-filled has few motions of its
+    own, and vectors that are sums of others but for round-off lead nowhere."""
+    size = np.linalg.norm(vectors, axis=0)
+    basis, small = np.linalg.qr(vectors / np.where(size > 0.0, size, 1.0))
+    turned, values, _ = np.linalg.svd(small)
+    return np.asarray(basis @ turned[:, values > ROUND_OFF * values[0]])
+
+
+def _filled(basis: Array, other: Array) -> Array:
+    """The basis with as many vectors as the other one, the missing ones out of that."""
+    missing = other.shape[1] - basis.shape[1]
+    if missing <= 0:
+        return basis
+    rest, small = np.linalg.qr(other - basis @ (basis.T @ other))
+    turned, _, _ = np.linalg.svd(small)
+    return np.hstack([basis, rest @ turned[:, :missing]])

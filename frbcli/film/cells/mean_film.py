@@ -1,4 +1,4 @@
-"""The table of film/mean_fields from solutions on cells."""
+"""The table of film/mean_fields.py from solutions on cells."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import force_weights
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.mean_fields.table import FIELDS, MeanFilm
+from frbcli.film.mean_fields import FIELDS, MeanFilm
 from frbcli.film.rectangles.table import DEPTH_STEP, eccentricity_axis
 
 ANGLES = 4  # of the openings to the line of centres, over the angle after which they look the same

@@ -28,7 +28,7 @@ from frbcli.film.cells.balance.balances import (
     GridMotion,
     balances,
 )
-from frbcli.film.cells.balance.feed import feed_at, is_limited, limited
+from frbcli.film.cells.balance.boundaries import feed_at, is_limited, limited
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -44,9 +44,9 @@ from frbcli.film.cells.balance.states import (
     before_upstream,
     cell_states,
 )
+from frbcli.film.cells.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import GapRise, full_cells, gap_rise, set_edges
 from frbcli.film.cells.data import SIDES, VolumeFilms, volume_films
-from frbcli.film.cells.elimination.block_cyclic import CENTRE, ENTRIES, solve_blocks
 from frbcli.film.cells.film import Flows, VolumeFilm, VolumeSolution
 from frbcli.film.cells.gas.balance import FreeGas, GasMixing, KeptGas, free_gas, oil_paths, path_layers
 from frbcli.film.cells.gas.carry import FACTOR, GAS_PAST, HEIGHT, PATHS, carry_gas, follow_oil, replace_oil
@@ -137,12 +137,12 @@ class FilmSolver:
         return limited(self.film, solve)
 
     def filled(self, filling: float, motion: Motion, start: Array | None, upwind: bool = False) -> VolumeSolution:
-        """The steady film with its openings at a filling, see feed.py. Raises FilmUnsolved."""
+        """The steady film with its openings at a filling, see boundaries.py. Raises FilmUnsolved."""
         self.fill(filling)
         return replace(self._steady(motion, start, upwind), filling=filling)
 
     def fill(self, filling: float) -> None:
-        """Fill the openings for what is solved from here on, see feed.py."""
+        """Fill the openings for what is solved from here on, see boundaries.py."""
         own, _, _, _ = self._parts
         own.share, own.fraction = feed_at(self.film, filling)
 

@@ -11,7 +11,7 @@ from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
-from frbcli.film.cells.balance.feed import ALL
+from frbcli.film.cells.balance.boundaries import ALL
 from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -21,9 +21,9 @@ from frbcli.film.cells.balance.states import (
     TURNOVER,
     cell_states,
 )
+from frbcli.film.cells.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.cavity_edge import edge_slopes, gap_rise, set_edges
 from frbcli.film.cells.data import AREA, BY_ITSELF, BY_X, BY_Y, SIDES
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES, solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion

@@ -13,10 +13,25 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import CREATED, ENDS_NET, FILLING, FLOWS, INFLOW, OUTFLOW
-from frbcli.film.cells.balance.feed import ALL, supply_line
+from frbcli.film.cells.balance.boundaries import ALL, supply_line
 from frbcli.film.cells.balance.side_flow import opens_far, outflow
 from frbcli.film.cells.cavity_edge import CellEnds
-from frbcli.film.cells.data import COS, GAP, GIVEN_PRESSURE, SHEARED, SIN, VolumeFilms
+from frbcli.film.cells.data import (
+    COS,
+    GAP,
+    GAS,
+    GIVEN_PRESSURE,
+    NOW,
+    OIL,
+    PASSED,
+    SHEARED,
+    SIN,
+    W_BEFORE,
+    WET,
+    WET_WITH_GAS,
+    VolumeFilms,
+    W,
+)
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, refilled, supplied, unknown_with_fraction
 from frbcli.film.cells.gas.balance import Carried, with_own_gas
 from frbcli.film.cells.linearised import linear_film, lying
@@ -24,17 +39,16 @@ from frbcli.film.cells.loads import CavitationFactor, force, loads, shear_weight
 from frbcli.film.cells.mesh.grid import run_grid
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.steady_force import film_at, steady_force, steady_solution
-from frbcli.film.compared import FINER
 from frbcli.film.gap import Section, gap_height
+from frbcli.film.grid import FINER
 from frbcli.film.kinds.contract import Compared, Films, LinearOf
-from frbcli.film.mean_fields.outflow import MeanEndFlow, mean_end_flow
-from frbcli.film.mean_fields.table import MeanFilm
+from frbcli.film.mean_fields import MeanFilm
+from frbcli.film.mean_outflow import MeanEndFlow, mean_end_flow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
 from frbcli.film.roughness.rough_gap import stress_factor
 from frbcli.film.section_faults import is_unfed
-from frbcli.film.state import GAS, NOW, OIL, PASSED, W_BEFORE, WET, WET_WITH_GAS, W
 
 SAME, HALVES = 1e-9, 40  # oil fractions that differ by less; by so many halves of an interval unknowns are found
 NARROWEST = 1e-3  # over the clearance: of the gap in which oil is sheared

@@ -3,6 +3,9 @@
 Film i has a journal whose displacement `place` (2,) in m and velocity `rate` (2,) in m/s are relative to its shell;
 `total` is omega_J + omega_S, `slip` omega_J - omega_S, in rad/s. Forces act on the journal, by a whole bearing. Films
 that see four coordinates have the tilts about x and y behind the displacement, and moments in N m behind the force.
+
+Steady finite-volume films have pressure and flow as bearing sheets ask for them, whether or not their gaps are even
+along the axis.
 """
 
 from __future__ import annotations
@@ -11,22 +14,72 @@ import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.film import VolumeFilm
+from frbcli.film.cells.balance.side_flow import outflow
+from frbcli.film.cells.data import WET
+from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.linearised import LinearFilm
-from frbcli.film.compared import SAMPLES
-from frbcli.film.kinds.fields import FieldFilm
-from frbcli.film.mean_fields.outflow import MeanEndFlow
+from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.solver import FilmSolver
+from frbcli.film.cells.steady_force import film_at
+from frbcli.film.gap import Section
+from frbcli.film.grid import SAMPLES
+from frbcli.film.mean_outflow import MeanEndFlow
 from frbcli.film.rectangles.end_flow import EndFlow
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.state import WET
+
+Part = tuple[VolumeFilm, Motion]
+
+
+class FieldFilm(Protocol):
+    """A whole bearing as the parts that are solved for it. d: (2,) displacement of the journal over the clearance, with
+    its tilts in rad behind it, (4,), of a film that sees them; total: omega_J + omega_S in rad/s."""
+
+    @property
+    def section(self) -> Section:
+        """Its section, over the whole width or one of two equal ones."""
+        ...
+
+    def ends(self, d: Array) -> Array:
+        """(k, 2) displacements over the clearance where the gap may be the smallest along the axis."""
+        ...
+
+    def parts(self, d: Array, total: float) -> tuple[Part, ...]:
+        """The films with the motions that they see, whose forces, torques and flows add up."""
+        ...
+
+    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
+        """What leaves a part, which the solver has solved, through its open ends, m^3/s."""
+        ...
+
+
+@dataclass(frozen=True)
+class EvenFilm(FieldFilm):
+    """A film whose gap is the same along the axis. See FieldFilm."""
+
+    film: VolumeFilm
+
+    @property
+    def section(self) -> Section:
+        return self.film.section
+
+    def ends(self, d: Array) -> Array:
+        return np.asarray(d)[None]
+
+    def parts(self, d: Array, total: float) -> tuple[Part, ...]:
+        motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
+        return ((film_at(self.film, math.hypot(*motion.d), total), motion),)
+
+    def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
+        return outflow(solver.film, motion.d, solver.film.pressure(solution.state), solver.data)
+
 
 # (i, place, rate, total) -> force of a better film, and of the film, (2,) N each. Raises NotConverged.
 Compared = Callable[[int, Array, Array, float], tuple[Array, Array]]
@@ -246,3 +299,25 @@ def couette_power(place: Array, clearance: float, force: Array, total: float, sl
     d = place / clearance
     resistance = drag * 2.0 * math.pi / math.sqrt(1.0 - float(d @ d))
     return resistance * slip**2 + 0.5 * float(place[0] * force[1] - place[1] * force[0]) * total
+
+
+@dataclass(frozen=True)
+class NoFilms(Films):
+    """No film at all."""
+
+    clearances: tuple[float, ...] = ()
+
+    @property
+    def loop(self) -> Any:
+        """No films for the time loop."""
+        return ()
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        """Raises IndexError: there is no film."""
+        raise IndexError(i)
+
+    def heat_ends(self) -> Any:
+        return ()
+
+    def smooth(self, ring_shares: Sequence[float]) -> tuple[FilmData, ...]:
+        return ()

@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.mean_fields.table import MeanFilm
+from frbcli.film.mean_fields import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm
 from frbcli.film.rectangles.film_force import FilmData, film_force
 from frbcli.film.rectangles.short import ShortFilm

@@ -11,16 +11,14 @@ from typing import Any, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
-from frbcli.film.grid import Mesh
+from frbcli.film.grid import FINER, Mesh
 from frbcli.film.kinds.contract import Compared, Films, couette_power
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm, with_half_the_nodes
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow, make_end_flow
-from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
+from frbcli.film.rectangles.film import FilmForce, direct_force, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.film.rectangles.untabulated import direct_force
 
 
 @dataclass(frozen=True)

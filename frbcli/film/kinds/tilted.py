@@ -1,4 +1,7 @@
-"""Films whose journals tilt in their shells."""
+"""Films whose journals tilt in their shells.
+
+Films in shells that are not in line, around journals that keep their direction, for machines at rest.
+"""
 
 from __future__ import annotations
 
@@ -16,7 +19,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FLOWS
-from frbcli.film.cells.data import COS, GAP, SHEARED, SIN
+from frbcli.film.cells.data import COS, GAP, OIL, PASSED, SHEARED, SIN, W
 from frbcli.film.cells.film import VolumeSolution
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
@@ -24,18 +27,18 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
 from frbcli.film.cells.tilted.balances import tilted_outflow
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.force import (
+from frbcli.film.cells.tilted.steady_force import (
     COORDINATES,
     TiltedFilm,
     TiltedLand,
     land_solution,
+    linear_tilted,
     settled_force,
     tilted_force,
     unit_loads,
 )
-from frbcli.film.cells.tilted.linear import linear_tilted
-from frbcli.film.compared import FINER
 from frbcli.film.gap import Section
+from frbcli.film.grid import FINER
 from frbcli.film.kinds.cells import (
     begin_wet,
     contents_of,
@@ -46,11 +49,9 @@ from frbcli.film.kinds.cells import (
     passed_oil,
     unknowns_of,
 )
-from frbcli.film.kinds.contract import Compared, Films, LinearOf
-from frbcli.film.kinds.fields import FieldFilm, Part
+from frbcli.film.kinds.contract import Compared, FieldFilm, Films, LinearOf, Part
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.section_faults import is_unfed
-from frbcli.film.state import OIL, PASSED, W
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
 ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a film, and their shares of it
@@ -234,3 +235,58 @@ class TiltedField(FieldFilm):
 
     def outflow(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> float:
         return tilted_outflow(solver.film, motion, solution)
+
+
+PLANE = slice(0, 2)  # of the four coordinates of a journal that tilts: its displacement
+
+
+@dataclass(frozen=True)
+class InclinedFilms(Films):
+    """tilted: the same films around journals that may tilt; here journals stay parallel to the z-axis."""
+
+    tilted: TiltedFilms
+
+    @property
+    def loop(self) -> Any:
+        """The time loop has no such films."""
+        raise NotImplementedError
+
+    def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
+        whole = np.concatenate([place, self.tilted.standing[i, 2:]])
+        force = self.tilted.force(i, whole, np.concatenate([rate, np.zeros(2)]), total, near)
+        by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (force.by_displacement, force.by_velocity))
+        return FilmForce(force.force[PLANE], by_place, by_rate, force.field)
+
+    def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
+        whole = np.concatenate([place, self.tilted.standing[i, 2:]])
+        return self.tilted.power_and_flow(i, whole, total, slip, drag)
+
+    def ends(self, places: Array) -> Array:
+        return self.tilted.ends(np.hstack([places, self.tilted.standing[:, 2:]]))
+
+    @property
+    def remembering(self) -> tuple[bool, ...]:
+        return self.tilted.remembering
+
+    @property
+    def starving(self) -> bool:
+        return self.tilted.starving
+
+    def linear(self, i: int, cells: tuple[int, int]) -> LinearOf:
+        whole, tilt = self.tilted.linear(i, cells), self.tilted.standing[i, 2:]
+        return lambda share, place, *more: whole(share, np.concatenate([place, tilt]), *more).in_plane()
+
+    @property
+    def fields(self) -> tuple[InclinedFilm, ...]:
+        tilts = self.tilted.standing[:, 2:]
+        return tuple(InclinedFilm(film, tilt) for film, tilt in zip(self.tilted.own, tilts, strict=True))
+
+
+@dataclass(frozen=True)
+class InclinedFilm(TiltedField):
+    """The fields of a film with a given tilt (2,) of the journal against the shell in rad. See FieldFilm."""
+
+    tilt: Array
+
+    def coordinates(self, d: Array) -> Array:
+        return np.concatenate([self.section.clearance * d, self.tilt])

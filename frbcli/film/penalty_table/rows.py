@@ -16,7 +16,7 @@ from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import compiled_cell
 from frbcli.film.cavitation.law import Scales
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, solve_blocks
 
 SETTLED = 2e-4  # of the largest pressure: a correction after which what is left is its square
 PLAIN, DAMPING, LIMIT = 8, 0.5, 60  # iterations without damping; how it goes on from one to the next; all

@@ -13,7 +13,7 @@ from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.mean_fields.table import MeanFilm, mean_force
+from frbcli.film.mean_fields import MeanFilm, mean_force
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
 from frbcli.film.rectangles.chain import ChainFilm, chain_force
 from frbcli.film.rectangles.fields import FieldsFilm, fields_force

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from frbcli.case.schema import Case
 from frbcli.errors import Fault, InputError, input_error
-from frbcli.film.pads.geometry import LAWS
+from frbcli.film.pad_geometry import LAWS
 from frbcli.units import display
 
 

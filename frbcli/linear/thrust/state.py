@@ -14,9 +14,8 @@ from frbcli.case.oil import Oil
 from frbcli.case.schema import Case
 from frbcli.case.thermal import Thermal
 from frbcli.elements.collar import BOTH, pad_of
-from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import COARSE, MESH, Pad
-from frbcli.film.pads.mesh import PadMesh, pad_mesh
+from frbcli.film.pad_geometry import COARSE, MESH, Pad
+from frbcli.film.pads import PadFilm, PadMesh, PadOil, pad_film, pad_mesh, ring_of_pads
 
 if TYPE_CHECKING:
     from frbcli.elements.collar import PadHeat

@@ -210,7 +210,7 @@ def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:
 
 
 def fillings(system: System, samples: Samples) -> Array:
-    """(k, films) fillings of the openings as they are noted, see feed.py."""
+    """(k, films) fillings of the openings as they are noted, see boundaries.py."""
     n, count = system.rotor.size, len(system.names)
     return samples.noted[:, n + FILLED * count : n + (FILLED + 1) * count]
 

@@ -8,8 +8,8 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.course.run import FilmFrames
+from frbcli.film.cells.data import GAS, OIL
 from frbcli.film.cells.motion import Motion, turned
-from frbcli.film.state import GAS, OIL
 from frbcli.results import kept_films
 from frbcli.runs.oil import displacement, grid_angle
 from frbcli.runs.record.restored import array

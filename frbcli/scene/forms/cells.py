@@ -10,7 +10,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.compared import FINER
+from frbcli.film.grid import FINER
 from frbcli.scene.films import is_published
 from frbcli.scene.forms.form import PUBLISHED, FilmForm, SolveCounts, cells_B
 from frbcli.scene.planning.cell_choice import ALONG, USUAL, cells_time, coarser_cells, compared_states, worst_film

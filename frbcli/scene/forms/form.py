@@ -15,9 +15,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.compared import FINER
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.grid import Mesh
+from frbcli.film.grid import FINER, Mesh
 from frbcli.scene.films import is_published
 from frbcli.scene.gate.rule import Rule
 

@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.compared import SAMPLES
-from frbcli.film.grid import Mesh
+from frbcli.film.grid import SAMPLES, Mesh
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.forms.form import BLOCKS, FilmForm, SolveCounts
 from frbcli.scene.gate.rule import RUN, Rule, oil_flow_signal, refusal

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, ClassVar
 
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.compared import FINER, SAMPLES
-from frbcli.film.grid import CHAIN_MODES
+from frbcli.film.grid import CHAIN_MODES, FINER, SAMPLES
 from frbcli.scene.forms.form import FilmForm, SolveCounts, mean_us
 
 if TYPE_CHECKING:

@@ -131,7 +131,7 @@ class TiltedForm(CellForm):
     """Finite volumes over the whole width, finer at the ends.
 
     For these ten cells of the whole width are about as exact as six of each half of a film without tilt, eight as five
-    and sixteen as ten (film/cells/mesh/tilted.py).
+    and sixteen as ten (film/cells/mesh/grid.py).
     """
 
     inclines: ClassVar[bool] = True

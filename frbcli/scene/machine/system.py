@@ -21,20 +21,17 @@ from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.channels.data import with_channels
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.tilted.force import tilted_film
+from frbcli.film.cells.tilted.steady_force import tilted_film
 from frbcli.film.gap import Section, whole_width
 from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
-from frbcli.film.kinds.contract import Films
-from frbcli.film.kinds.inclined import InclinedFilms
-from frbcli.film.kinds.none import NoFilms
+from frbcli.film.kinds.contract import Films, NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
-from frbcli.film.kinds.tilted import TiltedFilms
+from frbcli.film.kinds.tilted import InclinedFilms, TiltedFilms
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.rectangles.film import FilmForce, make_film
 from frbcli.film.roughness.asperities import Asperities, make_asperities
-from frbcli.film.roughness.elastic_shell import ElasticShell
-from frbcli.film.roughness.rubbing import Rubbing
+from frbcli.film.roughness.contact import ElasticShell, Rubbing
 from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.scene.changes import case_at, change_times, step_times

@@ -19,7 +19,7 @@ from frbcli.scene.planning.eccentricity import CLOSEST
 USUAL = (48, 6)  # cells around and along for which the errors are tabulated
 FEWEST = (12, 3)
 AROUND = (32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 144, 160, 192)
-# Lengths of columns that have a fast elimination (film/cells/elimination/ring_solver.py), except too few cells.
+# Lengths of columns that have a fast elimination (film/cells/block_cyclic.py), except too few cells.
 ALONG = (4, 5, 6, 8, 10)
 FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
 COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction

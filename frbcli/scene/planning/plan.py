@@ -16,7 +16,7 @@ from frbcli.case.film import FilmGeometry
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.film.cavitation.table import law_named
-from frbcli.film.pads.geometry import COARSE, MESH
+from frbcli.film.pad_geometry import COARSE, MESH
 from frbcli.scene.changes import clearance_decisions, drive_decisions, input_decisions, loss_decisions
 from frbcli.scene.channels import coupled, opens_to_groove, resistance
 from frbcli.scene.cost import clock

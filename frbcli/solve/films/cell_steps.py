@@ -14,10 +14,23 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.states import CARRIED_GAS, FRACTION, STATES, TURNOVER
-from frbcli.film.cells.data import SHEARED, SIDES, Records, VolumeFilms
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES
+from frbcli.film.cells.block_cyclic import ENTRIES
+from frbcli.film.cells.data import (
+    GAS,
+    GAS_RATE,
+    NOW,
+    OIL,
+    PASSED,
+    RATE,
+    SHEARED,
+    SIDES,
+    W_BEFORE,
+    WET,
+    Records,
+    VolumeFilms,
+    W,
+)
 from frbcli.film.cells.gas.carry import NONE, PATHS
-from frbcli.film.state import GAS, GAS_RATE, NOW, OIL, PASSED, RATE, W_BEFORE, WET, W
 from frbcli.solve.films.fillings import GRID, begin_filling, within
 from frbcli.solve.stage.equations import lagrange
 

@@ -18,6 +18,7 @@ from frbcli.film.cells.balance.balances import CHANNELS_NET, CREATED, ENDS_NET, 
 from frbcli.film.cells.balance.newton_step import damp, film_loads, imbalance, store_rates
 from frbcli.film.cells.balance.resting import find_resting, rests
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE_SLOPE, cell_states, follow_law, hold
+from frbcli.film.cells.block_cyclic import solve_ring_at
 from frbcli.film.cells.channels.flow import ask_of_channels, exchange
 from frbcli.film.cells.data import (
     AREA,
@@ -33,7 +34,6 @@ from frbcli.film.cells.data import (
     Records,
     VolumeFilms,
 )
-from frbcli.film.cells.elimination.block_cyclic import solve_ring_at
 from frbcli.film.cells.film import ABOVE_KINK
 from frbcli.film.cells.gas.carry import store_gas_rates, take_gas_along
 from frbcli.film.roughness.rough_gap import stress_factor

@@ -1,6 +1,6 @@
 """Fillings of openings, and the grid of films in the loop.
 
-The filling of openings with a flow-limited supply, see feed.py, in one stage of the time loop. Compiled.
+The filling of openings with a flow-limited supply, see boundaries.py, in one stage of the time loop. Compiled.
 
 It is a state as the oil of the cells is: filling' = (given - taken) / line, so that a stage asks for filling = past +
 g filling'. What a film takes is known once its cells balance. A step changes the filling far less than the line could
@@ -17,10 +17,9 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cells.balance.balances import FILLING
-from frbcli.film.cells.balance.feed import RESPONSE
+from frbcli.film.cells.balance.boundaries import RESPONSE
 from frbcli.film.cells.balance.states import fill_openings
-from frbcli.film.cells.data import record
-from frbcli.film.state import PASSED
+from frbcli.film.cells.data import PASSED, record
 from frbcli.solve.stage.equations import lagrange
 
 PLAIN = 1.0  # by how much less a filling is off after it has risen by 1, at the least: the film takes the more

@@ -24,8 +24,8 @@ from frbcli.film.cells.balance.states import (
     follow_law,
     hold,
 )
+from frbcli.film.cells.block_cyclic import solve_ring_at
 from frbcli.film.cells.data import AREA, COS, GAP, SHEARED, SIN, UNKNOWN, Records
-from frbcli.film.cells.elimination.block_cyclic import solve_ring_at
 from frbcli.film.cells.gas.carry import store_gas_rates
 from frbcli.film.cells.tilted.data import MIDDLES, TiltedVolumes
 from frbcli.film.cells.tilted.gas import take_land_gas_along

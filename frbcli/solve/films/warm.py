@@ -13,9 +13,8 @@ from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.cavity_edge import CellEnds
-from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
+from frbcli.film.cells.data import GIVEN_PRESSURE, OIL, VolumeFilms
 from frbcli.film.rectangles.end_flow import end_flow
-from frbcli.film.state import OIL
 from frbcli.solve.films.cell_steps import oil_fraction
 from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
 from frbcli.thermal.exchange import CLEARANCE, ETA, SCALE

@@ -5,13 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law, Scales
-from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import SPREAD, Penalty, steepness_exponent
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cavitation.two_phase import PUBLISHED_SLOPE, TwoPhase
+from frbcli.film.cavitation.two_phase import PUBLISHED_SLOPE, Peeken, TwoPhase
 
 SCALES = Scales(reference=40.0, cavitation=-2.0, ambient=10.0)  # p_cav = 8 absolute
 CAVITY = SCALES.cavitation + SCALES.ambient

@@ -12,10 +12,9 @@ from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run
 from frbcli.errors import InputError
 from frbcli.film.cavitation.barotropic import vapour_fraction
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod
 from frbcli.film.cavitation.law import Law, Scales
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.plot.machine.law import law_figure
 
 CAVITY = 5.0  # 1/s, absolute

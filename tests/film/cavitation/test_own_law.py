@@ -20,8 +20,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.compiled import compiled_cells, compiled_law
+from frbcli.film.cavitation.conditions import HalfSommerfeld
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.table import SHIPPED, law_named
 from frbcli.scene.films import film_places, film_section, make_law
 

@@ -14,14 +14,11 @@ from scipy.special import wrightomega
 from frbcli.film.cavitation.barotropic import Barotropic
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import LAW_NUMBERS, compiled_cells, wright_omega
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
-from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.table import SHIPPED
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.newton_step import film_newton
 from frbcli.film.cells.balance.plain import CellBalances
@@ -36,8 +33,7 @@ from frbcli.film.cells.balance.states import (
     limited,
     limited_at,
 )
-from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.elimination.block_cyclic import (
+from frbcli.film.cells.block_cyclic import (
     ABOVE,
     BEFORE,
     BEHIND,
@@ -47,6 +43,7 @@ from frbcli.film.cells.elimination.block_cyclic import (
     ring_solver,
     solve_ring_at,
 )
+from frbcli.film.cells.data import SIDES, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.grid import volume_grid
 from frbcli.film.cells.motion import Motion, Storage

@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
+from frbcli.film.cavitation.conditions import HalfSommerfeld
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES

@@ -9,15 +9,13 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.states import UPWIND
-from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at, weighted, without_memory
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linearised import linear_film, lying
+from frbcli.film.cells.linearised import dynamic_stiffness, linear_film, lying, stiffness_at, weighted, without_memory
 from frbcli.film.cells.loads import force, shear_weights
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
-from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film, tilted_force, unit_loads
-from frbcli.film.cells.tilted.linear import linear_tilted
+from frbcli.film.cells.tilted.steady_force import TiltedFilm, linear_tilted, tilted_film, tilted_force, unit_loads
 from frbcli.film.gap import whole_width
 from frbcli.scene.films import film_places, volume_film
 

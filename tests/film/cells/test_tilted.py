@@ -9,16 +9,14 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.penalty import Penalty
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GridMotion, balances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, STATES, cell_states, follow_law
+from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.mesh.grid import volume_grid
@@ -26,7 +24,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.tilted.balances import tilted_balances
 from frbcli.film.cells.tilted.data import land_places
-from frbcli.film.cells.tilted.lands import lands, summed
+from frbcli.film.cells.tilted.steady_force import lands, summed
 from frbcli.film.gap import Hole, Section
 
 LAWS: dict[str, Law] = {

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 
 from frbcli.errors import NotConverged
+from frbcli.film.cavitation.conditions import HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.steady_force import steady_force
-from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film, tilted_force
+from frbcli.film.cells.tilted.steady_force import TiltedFilm, tilted_film, tilted_force
 from frbcli.film.gap import Section
 
 R, B, C, ETA, TOTAL = 0.01, 0.012, 40e-6, 0.01, 900.0

@@ -12,13 +12,10 @@ from volume_films import CLEARANCE, RADIUS, ROTATION, Row, law_of, motion_of, po
 
 from frbcli.bearing_tests.steady_film import FilmMoment, steady_film
 from frbcli.errors import NotConverged
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import PREFACTOR, Penalty, steepness_exponent
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cavitation.two_phase import TwoPhase
+from frbcli.film.cavitation.two_phase import Peeken, TwoPhase
 from frbcli.film.cells import solver
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure

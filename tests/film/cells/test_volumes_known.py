@@ -12,10 +12,8 @@ from scipy.optimize import brentq
 from volume_films import AMBIENT, ROTATION, polar_motion, section_of
 
 from frbcli.bearing_tests.march import march
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import VolumeFilm, reference_pressure
 from frbcli.film.cells.loads import loads

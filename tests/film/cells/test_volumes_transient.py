@@ -13,10 +13,8 @@ from volume_films import AMBIENT, CLEARANCE, RADIUS, VISCOSITY, WIDTH, section_o
 from frbcli.bearing_tests import march as marching
 from frbcli.bearing_tests.march import Moment, march
 from frbcli.errors import NotConverged
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, reference_pressure
 from frbcli.film.cells.loads import force, loads

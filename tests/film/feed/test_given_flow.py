@@ -10,7 +10,7 @@ import pytest
 from frbcli import bearing_sheet, load_case
 from frbcli.case.schema import Case
 from frbcli.errors import FilmUnsolved, InputError
-from frbcli.film.cells.balance.feed import ALL, feed_at, limited, supply_pressure
+from frbcli.film.cells.balance.boundaries import ALL, feed_at, limited, supply_pressure
 from frbcli.film.cells.balance.side_flow import outflow
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 from frbcli.film.cells.loads import FilmLoads, loads

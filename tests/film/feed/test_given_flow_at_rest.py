@@ -8,11 +8,10 @@ import pytest
 
 from frbcli import load_case
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.feed import ALL, feed_at, supply_line
+from frbcli.film.cells.balance.boundaries import ALL, feed_at, supply_line
 from frbcli.film.cells.balance.states import UPWIND
-from frbcli.film.cells.dynamic_stiffness import stiffness_at
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linearised import linear_film
+from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver

@@ -8,7 +8,7 @@ import pytest
 from frbcli import load_case, squeeze
 from frbcli.bearing_tests.march import march, whirl_path
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.feed import ALL, RESPONSE, supply_line
+from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver

@@ -13,9 +13,9 @@ import frbcli
 from frbcli.bearing_tests.march import Moment, march, squeeze_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import CARRIED_GAS, LAW_NUMBERS, TURNOVER
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod
 from frbcli.film.cavitation.law import Law, Scales
-from frbcli.film.cavitation.peeken import Peeken
+from frbcli.film.cavitation.two_phase import Peeken
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES, cell_states, follow_law
 from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution, fitted_grid, reference_pressure

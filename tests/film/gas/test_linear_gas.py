@@ -14,11 +14,10 @@ from volume_films import section_of
 from frbcli.bearing_tests.march import march
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at
+from frbcli.film.cavitation.two_phase import Peeken
 from frbcli.film.cells.film import VolumeFilm, fitted_grid
 from frbcli.film.cells.gas.linear import linear_states
-from frbcli.film.cells.linearised import LinearFilm, linear_film
+from frbcli.film.cells.linearised import LinearFilm, dynamic_stiffness, linear_film, stiffness_at
 from frbcli.film.cells.loads import force, pushed
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver

@@ -7,10 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.pads.film import PadOil, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import MESH, Pad, Profile
-from frbcli.film.pads.mesh import pad_mesh
-from frbcli.film.pads.table import gap_table
+from frbcli.film.pad_geometry import MESH, Pad, Profile
+from frbcli.film.pads import PadOil, gap_table, pad_film, pad_mesh, ring_of_pads
 
 # Of a step a hundred times as deep as the thinnest gap, round-off is 1.5e-8 of the stiffness across a tilt there, by
 # mobilities in the ratio of 1e6; polynomials spread it over all gaps. At 1e-7 m it would be 3e-7.

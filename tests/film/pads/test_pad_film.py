@@ -9,9 +9,8 @@ import numpy as np
 import pytest
 from scipy.sparse import csr_matrix
 
-from frbcli.film.pads.film import AT_REST, PadFilm, PadOil, RunnerMotion, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import Pad, Profile
-from frbcli.film.pads.mesh import PadMesh, pad_mesh
+from frbcli.film.pad_geometry import Pad, Profile
+from frbcli.film.pads import AT_REST, PadFilm, PadMesh, PadOil, RunnerMotion, pad_film, pad_mesh, ring_of_pads
 
 PAD = Pad(5e-3, 11e-3, math.radians(75.0), math.radians(50.0), 20e-6)
 VISCOSITY, OMEGA, LAND = 8e-3, 2.0 * math.pi * 2000.0, 15e-6

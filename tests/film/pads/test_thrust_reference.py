@@ -12,9 +12,8 @@ from paths import DATA
 
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.schema import Case
-from frbcli.film.pads.film import PadOil, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import Pad
-from frbcli.film.pads.mesh import pad_mesh
+from frbcli.film.pad_geometry import Pad
+from frbcli.film.pads import PadOil, pad_film, pad_mesh, ring_of_pads
 from frbcli.linear.thrust.sheet import thrust_sheet
 
 REFERENCE_ERROR = 3e-4

@@ -14,7 +14,7 @@ from frbcli.arrays import Array
 from frbcli.case.reading.load import load_case
 from frbcli.cycles.method.mesh_error import other_films
 from frbcli.errors import InputError
-from frbcli.film.cavitation.reynolds import Reynolds
+from frbcli.film.cavitation.conditions import Reynolds
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import fitted_grid

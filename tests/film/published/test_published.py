@@ -20,10 +20,10 @@ from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import CREATED, FLOWS, INFLOW, OUTFLOW, GridMotion, balances
 from frbcli.film.cells.balance.plain import CellBalances
+from frbcli.film.cells.balance.plain_diffusion import spreads
 from frbcli.film.cells.balance.states import STATES, cell_states, follow_law
+from frbcli.film.cells.block_cyclic import ENTRIES
 from frbcli.film.cells.data import SIDES, volume_films
-from frbcli.film.cells.diffusion.plain import spreads
-from frbcli.film.cells.elimination.block_cyclic import ENTRIES
 from frbcli.film.cells.film import VolumeFilm, reference_pressure, volume_grid
 from frbcli.film.cells.loads import force, loads
 from frbcli.film.cells.motion import Motion, Storage
@@ -31,7 +31,7 @@ from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import oil_slopes, steady_force
 from frbcli.film.gap import Diffusion, Hole, Section, gap_height
 from frbcli.film.grid import Mesh
-from frbcli.film.rectangles.untabulated import direct_force
+from frbcli.film.rectangles.film import direct_force
 from frbcli.scene.films import ELEMENT, run_grid
 
 OMEGA = 2.0 * math.pi * 120.0  # at 4 s of the run-up of chapter 6

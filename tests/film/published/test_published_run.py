@@ -16,10 +16,10 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.balances import CREATED
+from frbcli.film.cells.data import NOW, OIL, PASSED
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.state import NOW, OIL, PASSED
 from frbcli.runs.march import control_of
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System, make_system

@@ -12,12 +12,11 @@ from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
 from frbcli.film.rectangles import modal, short
-from frbcli.film.rectangles.film import evaluate, make_film
+from frbcli.film.rectangles.film import direct_force, evaluate, make_film, section_pressure
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.plain import solve_plain
 from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
 from frbcli.film.rectangles.table import ring_contraction
-from frbcli.film.rectangles.untabulated import direct_force, section_pressure
 
 OMEGA = 300.0
 REST = np.zeros(2)

@@ -12,8 +12,7 @@ from films import GROOVED, PLAIN, film_of, polar
 from paths import DATA
 
 from frbcli.film.gap import Section
-from frbcli.film.rectangles.film import evaluate
-from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
+from frbcli.film.rectangles.film import direct_force, evaluate, largest_pressure
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 FORCES = DATA / "film-forces.csv"

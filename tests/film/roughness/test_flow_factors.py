@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cells.film import VolumeFilm, fitted_grid
 from frbcli.film.cells.loads import FilmLoads, loads
 from frbcli.film.cells.motion import Motion

@@ -18,8 +18,8 @@ from frbcli.film.roughness.asperities import (
     touch,
     touching_summits,
 )
+from frbcli.film.roughness.contact import Rubbing
 from frbcli.film.roughness.plain import plain_pressure, plain_touch
-from frbcli.film.roughness.rubbing import Rubbing
 
 # Greenwood, Tripp 1970: F_5/2 to the digits in print
 PRINTED = {0.0: 0.6166, 1.0: 0.0806, 2.0: 0.0054}

@@ -7,9 +7,9 @@ import math
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cells.mesh.tilted import tilted_cells, tilted_weights
-from frbcli.film.cells.tilted.force import settled_force, tilted_film, tilted_force
+from frbcli.film.cavitation.conditions import HalfSommerfeld, Sommerfeld
+from frbcli.film.cells.mesh.grid import tilted_cells, tilted_weights
+from frbcli.film.cells.tilted.steady_force import settled_force, tilted_film, tilted_force
 from frbcli.film.gap import Section
 
 R, C, ETA, TOTAL = 0.01, 40e-6, 0.01, 900.0

@@ -7,26 +7,24 @@ from dataclasses import astuple, replace
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.elrod import Elrod
+from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import CellState, Law
-from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
 from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.data import volume_films
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, gap_height
 from frbcli.film.cells.gas.balance import oil_paths, path_layers
 from frbcli.film.cells.gas.carry import BACKWARD, DOWNWARD, GIVEN, KEPT, ONWARD, OUT, PATHS, UPWARD
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.tilted.data import TiltedVolumes, tilted_volumes
-from frbcli.film.cells.tilted.force import TiltedLand, _loads, tilted_film
 from frbcli.film.cells.tilted.gas import follow_land_oil
 from frbcli.film.cells.tilted.kernel import ALL_SIDES, BY_ENDS, COLUMNS, EndsMotion, land_balances
 from frbcli.film.cells.tilted.loads import land_loads
+from frbcli.film.cells.tilted.steady_force import TiltedLand, _loads, tilted_film
 from frbcli.film.gap import AxialGroove, Hole, Section, gap_rate
 
 R, B, C, ETA, TOTAL = 0.01, 0.012, 40e-6, 0.01, 900.0

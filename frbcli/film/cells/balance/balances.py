@@ -13,7 +13,8 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cavitation.compiled import wright_omega
-from frbcli.film.cells.balance.ends import BEND, PREFACTOR, STEEPNESS
+from frbcli.film.cells.balance.boundaries import BEND, PREFACTOR, STEEPNESS
+from frbcli.film.cells.balance.diffusion import spread_oil
 from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
@@ -25,6 +26,7 @@ from frbcli.film.cells.balance.states import (
     SOURCE_SLOPE,
     carried_at,
 )
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.cells.data import (
     ALONG,
     AREA,
@@ -52,14 +54,12 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
-from frbcli.film.cells.diffusion.spread import spread_oil
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES, UNASKED
 from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_gap
 
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
-# and what leaves the solution net, see gas/carry.py; oil that artificial diffusion creates, see spread.py; and the rate
-# of the filling of openings with a flow-limited supply, see feed.py.
+# and what leaves the solution net, see gas/carry.py; oil created by artificial diffusion, see diffusion.py; and the
+# rate of the filling of openings with a flow-limited supply, see boundaries.py.
 INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 
@@ -116,7 +116,7 @@ def falls_to_air(
     film: np.record, ring: Array, pressures: Array, d_x: float, d_y: float, far: bool, falls: Array
 ) -> None:  # fmt: skip
     """falls (m,) <- of the pressure from the last cells to a free end, times the steepness b of (4.37): Wright's omega
-    function, see ends.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
+    function, see boundaries.py. pressures: (m, k) of the cells; d: of the journal over the clearance."""
     m, k = pressures.shape
     steepness = STEEPNESS / film.scales.ambient
     _, j, b, rise, bend = section_end(film, k, far)

@@ -11,6 +11,7 @@ from frbcli.film.cells.balance.balances import GridMotion, balances
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.resting import rests
 from frbcli.film.cells.balance.states import FRACTION, PRESSURE, PRESSURE_SLOPE, cell_states, follow_law
+from frbcli.film.cells.block_cyclic import CENTRE, solve_ring_at
 from frbcli.film.cells.data import (
     AREA,
     BETWEEN_MIDDLES,
@@ -27,7 +28,6 @@ from frbcli.film.cells.data import (
     UNKNOWN,
     VolumeFilms,
 )
-from frbcli.film.cells.elimination.block_cyclic import CENTRE, solve_ring_at
 
 
 @compiled()

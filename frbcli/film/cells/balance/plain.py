@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.film.cavitation.law import CellState
-from frbcli.film.cells.balance.ends import BEND, EndSlope, end_outflow, end_slopes
+from frbcli.film.cells.balance.boundaries import BEND, EndSlope, end_outflow, end_slopes
+from frbcli.film.cells.balance.plain_diffusion import NO_DISTANCE, Spreads, spreads
 from frbcli.film.cells.balance.states import UPWIND, limited
-from frbcli.film.cells.diffusion.plain import NO_DISTANCE, Spreads, spreads
 from frbcli.film.cells.mesh.grid import VolumeGrid
 from frbcli.film.cells.mesh.openings import bathed
 from frbcli.film.cells.motion import Motion, Storage, gap_on

@@ -7,7 +7,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.film.cells.balance.balances import end_flow, falls_to_air, section_end
-from frbcli.film.cells.balance.ends import STEEPNESS
+from frbcli.film.cells.balance.boundaries import STEEPNESS
 from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import (
     BATHED,

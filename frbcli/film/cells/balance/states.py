@@ -90,7 +90,7 @@ def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array
 
 @compiled(makes_arrays=True)
 def fill_openings(film: np.record, filling: float) -> None:
-    """film <- the share of the given pressures and the oil fraction of its openings at a filling: feed_at of feed.py,
+    """film <- the share of the given pressures and the oil fraction of its openings: feed_at of boundaries.py,
     which is kept within its bounds."""
     held, film.share, film.fraction = min(max(filling, film.lowest), 1.0), 1.0, 1.0
     if held > 0.0:

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
+from frbcli.film.cells.block_cyclic import UNKNOWN_SIDES, ring_solver
 from frbcli.film.cells.channels.channel import Channel, FeedHole
 from frbcli.film.cells.data import CHANNEL, EXCHANGE, FEED_HOLE, FEED_HOLES, UNKNOWN, Records, VolumeFilms
-from frbcli.film.cells.elimination.block_cyclic import UNKNOWN_SIDES, ring_solver
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
 

@@ -17,6 +17,7 @@ from frbcli.compiled import Indices, compiled
 from frbcli.film.cells.balance.balances import CHANNELS_NET
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, pressure_of
+from frbcli.film.cells.block_cyclic import CENTRE
 from frbcli.film.cells.data import (
     BETWEEN_MIDDLES,
     EXCHANGE,
@@ -28,7 +29,6 @@ from frbcli.film.cells.data import (
     SIDES,
     Records,
 )
-from frbcli.film.cells.elimination.block_cyclic import CENTRE
 
 
 @compiled()

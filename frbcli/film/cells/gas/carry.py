@@ -22,7 +22,7 @@ from frbcli.film.cells.balance.balances import (
     falls_to_air,
     section_end,
 )
-from frbcli.film.cells.balance.ends import STEEPNESS
+from frbcli.film.cells.balance.boundaries import STEEPNESS
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     CARRIED_GAS,

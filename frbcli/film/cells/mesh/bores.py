@@ -19,7 +19,7 @@ of each two solutions P and Q,
 The total flow for a given pressure in the distance is then correct for the bore, wherever it lies among the cells, as
 with Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are
 chosen so that the solution with a source balances. With the areas of the force the integrals of the solutions over the
-film are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there. That count
+film are exact, less what parabolas over the width (boundaries.py) count at the ends for the oil that leaves. That count
 is right for oil that comes out of the whole width; oil of a bore comes out where the solutions are exact.
 
 Which cells lie around the bores of a section, and what the local solutions (bores.py) make of them.

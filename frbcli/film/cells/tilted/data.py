@@ -13,12 +13,12 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import Indices
+from frbcli.film.cells.block_cyclic import TILTED, ring_solver
 from frbcli.film.cells.data import TIGHTLY, Records, volume_films
-from frbcli.film.cells.elimination.block_cyclic import TILTED, ring_solver
 from frbcli.film.cells.mesh.grid import VolumeGrid
 
 if TYPE_CHECKING:  # its solver is made of what stands here
-    from frbcli.film.cells.tilted.force import TiltedFilm
+    from frbcli.film.cells.tilted.steady_force import TiltedFilm
 
 MIDDLES, EDGES, WIDTHS, PLACES = range(4)
 

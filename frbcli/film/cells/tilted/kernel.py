@@ -20,7 +20,7 @@ from frbcli.film.cells.balance.balances import (
     section_end,
     take,
 )
-from frbcli.film.cells.balance.ends import STEEPNESS
+from frbcli.film.cells.balance.boundaries import STEEPNESS
 from frbcli.film.cells.balance.states import (
     BEFORE_UPSTREAM,
     FRACTION,
@@ -30,6 +30,7 @@ from frbcli.film.cells.balance.states import (
     SOURCE,
     SOURCE_SLOPE,
 )
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.data import (
     ALONG,
     AREA,
@@ -52,7 +53,6 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.tilted.data import EDGES, MIDDLES, WIDTHS
 from frbcli.film.cells.tilted.faces import (
     FaceFlows,

@@ -1,5 +1,6 @@
 """A pad of a thrust bearing: a sector of a ring whose gap narrows from its leading edge to a land; and what plans say
-of its film."""
+of its film.
+"""
 
 from __future__ import annotations
 

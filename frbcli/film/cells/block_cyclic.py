@@ -28,7 +28,7 @@ from numba.np.numpy_support import carray
 
 from frbcli.arrays import Array
 from frbcli.compiled import address_of, c_function, call_of, compiled
-from frbcli.film.cells.elimination.vectors import (
+from frbcli.film.cells.vectors import (
     eliminate_column,
     next_column,
     row_length,

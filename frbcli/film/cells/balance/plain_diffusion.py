@@ -1,4 +1,4 @@
-"""The artificial diffusion of the published form in array notation: what spread.py must equal; see there."""
+"""The artificial diffusion of the published form in array notation: what diffusion.py must equal; see there."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
 """The artificial diffusion (4.42), (4.43) of the published two-phase form on finite volumes, compiled; in array
-notation: plain.py.
+notation: plain_diffusion.py.
 
 Equation (4.31) lets the pressure drive the flow (H^3 + c) grad p with c = gamma L beta f, beta = omega/2 H dtheta/dp,
 
@@ -23,7 +23,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
+from frbcli.film.cells.balance.plain_diffusion import GAMMA, PECLET
 from frbcli.film.cells.balance.states import FRACTION, FRACTION_SLOPE, PRESSURE, PRESSURE_SLOPE
+from frbcli.film.cells.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 from frbcli.film.cells.data import (
     ALONG,
     AROUND,
@@ -44,8 +46,6 @@ from frbcli.film.cells.data import (
     SIN,
     UNKNOWN,
 )
-from frbcli.film.cells.diffusion.plain import GAMMA, PECLET
-from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE
 
 
 class Face(NamedTuple):

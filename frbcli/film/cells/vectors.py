@@ -3,7 +3,8 @@
 The compiler makes vectors of long loops by itself, but none of short ones. So what a column of a few cells needs is
 written out here, number by number and in registers. A column of k cells has k rows of its own equations, or what has
 become of them, followed by k + r more columns: what it takes from the border, and r right-hand sides. Rows are filled
-up with zeros to a multiple of four. k and r are passed as tuples of that length. """
+up with zeros to a multiple of four. k and r are passed as tuples of that length.
+"""
 
 from __future__ import annotations
 

@@ -3,11 +3,15 @@
 The coordinates q = (x, y, tilt_x, tilt_y) of the journal in the middle of the bearing move the journal over a land by
 u = P q / C, its displacement in the middle of the land and the growth of this over the width, over the clearance. The
 loads of the land that belong to u do the same virtual work as force and moments: these are P^T of them.
+
+The bearing is made of the lands that are solved for it, whose loads are summed. It is also linearised about its settled
+state, with the oil of its cells as states.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass, replace
 from typing import NamedTuple
 
@@ -15,20 +19,147 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.errors import FilmUnsolved
-from frbcli.film.cavitation.law import Law
+from frbcli.film.cavitation.law import CellState, Law
+from frbcli.film.cells.balance.plain_clipped import CURVED
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES
-from frbcli.film.cells.elimination.block_cyclic import solve_blocks
+from frbcli.film.cells.block_cyclic import solve_blocks
 from frbcli.film.cells.film import VolumeFilm, VolumeSolution
-from frbcli.film.cells.loads import pushed, pushing
-from frbcli.film.cells.mesh.grid import volume_grid
-from frbcli.film.cells.mesh.tilted import tilted_cells
-from frbcli.film.cells.motion import Motion
+from frbcli.film.cells.gas.linear import linear_states
+from frbcli.film.cells.linearised import LinearFilm, by_neighbours, lying
+from frbcli.film.cells.loads import FilmLoads, GasBalance, OilBalance, Torque, pushed, pushing
+from frbcli.film.cells.mesh.grid import tilted_cells, volume_grid
+from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import film_at
-from frbcli.film.cells.tilted.clipped import mean_change
-from frbcli.film.cells.tilted.lands import parts
 from frbcli.film.gap import Section, graded_ring
 from frbcli.film.rectangles.film import FieldSlopes, FilmForce
+
+
+@dataclass(frozen=True)
+class Land:
+    """A section of a bearing with the motion that it sees.
+
+    side: 1, or -1 where z of the section runs against z of the bearing; centre: of the middle of the section, in m from
+    the bearing's. """
+
+    section: Section
+    motion: Motion
+    side: float
+    centre: float
+
+    def moment(self, loads: FilmLoads) -> tuple[float, float]:
+        """Moments in N m about the middle of the bearing, from those about the middle of the section."""
+        x, y = loads.force
+        return self.side * loads.moment[0] - self.centre * y, self.side * loads.moment[1] + self.centre * x
+
+
+def lands(section: Section, motion: Motion, mirrored: bool) -> tuple[Land, ...]:
+    """The lands of a bearing: its section, or the two next to a groove in the middle where they differ.
+
+    motion: of the bearing, its slopes over the whole width; mirrored: whether z of a single section runs against z of
+    the bearing. """
+    if not motion.tilts:
+        return (Land(section, motion, -1.0 if mirrored else 1.0, 0.0),)
+    return tuple(_land(one, motion, side, centre) for one, side, centre in parts(section, mirrored))
+
+
+def parts(section: Section, mirrored: bool) -> tuple[tuple[Section, float, float], ...]:
+    """The sections that a bearing whose journal tilts is solved on, with side and centre of each, see Land."""
+    if section.copies == 1:
+        return ((section, -1.0 if mirrored else 1.0, 0.0),)
+    one = replace(section, copies=1)
+    return tuple((one, side, -side * 0.5 * section.width) for side in (1.0, -1.0))
+
+
+def land_paths(section: Section, path: Path, mirrored: bool) -> tuple[tuple[Section, Path], ...]:
+    """The section of each of the lands, and the motion that it sees over time while the bearing sees `path`."""
+
+    def path_of(number: int) -> Path:
+        return lambda time: lands(section, path(time), mirrored)[number].motion
+
+    return tuple((land.section, path_of(number)) for number, land in enumerate(lands(section, path(0.0), mirrored)))
+
+
+def _land(section: Section, motion: Motion, side: float, centre: float) -> Land:
+    place, share = centre / section.bearing_width, side * section.width / section.bearing_width
+    moved = [
+        ((middle[0] + place * growth[0], middle[1] + place * growth[1]), (share * growth[0], share * growth[1]))
+        for middle, growth in ((motion.d, motion.slope), (motion.v, motion.slope_rate))
+    ]
+    (d, slope), (v, slope_rate) = moved
+    return Land(section, Motion(d, v, motion.omega, slope, slope_rate), side, centre)
+
+
+def summed(films: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
+    """The loads of a bearing, summed over its lands."""
+    loads = [each for _, each in films]
+    moments = [land.moment(each) for land, each in films]
+    if len(loads) == 1:
+        return replace(loads[0], moment=moments[0])
+    oil = [each.oil for each in loads]
+    passed = [max(each.in_m3_s, each.out_m3_s) for each in oil]
+    lost = sum(each.defect_relative * size for each, size in zip(oil, passed, strict=True))
+    return FilmLoads(
+        force=_sum([each.force for each in loads]),
+        torque=Torque(sum(each.torque.couette for each in loads), sum(each.torque.poiseuille for each in loads)),
+        p_max=max(each.p_max for each in loads),
+        p_min=min(each.p_min for each in loads),
+        oil_fraction=sum(each.oil_fraction for each in loads) / len(loads),
+        oil=OilBalance(
+            sum(each.in_m3_s for each in oil),
+            sum(each.out_m3_s for each in oil),
+            sum(each.supply_m3_s for each in oil),
+            sum(each.ends_m3_s for each in oil),
+            lost / sum(passed) if sum(passed) > 0.0 else 0.0,
+        ),
+        moment=_sum(moments),
+        gas=_gas([each.gas for each in loads if each.gas is not None]),
+    )
+
+
+def _gas(parts: Sequence[GasBalance]) -> GasBalance | None:
+    """The gas of a bearing, summed over its lands, which hold about as much oil."""
+    if not parts:
+        return None
+    return GasBalance(
+        sum(each.share for each in parts) / len(parts),
+        sum(each.in_m3_s for each in parts),
+        sum(each.out_m3_s for each in parts),
+        sum(each.released_m3_s for each in parts),
+        max(each.defect_relative for each in parts),
+    )
+
+
+def _sum(vectors: Sequence[tuple[float, float]]) -> tuple[float, float]:
+    return sum(x for x, _ in vectors), sum(y for _, y in vectors)
+
+
+def mean_change(film: VolumeFilm, state: CellState, change: Array) -> Array:
+    """(m, k) by how much the mean pressures of a film change with a small change (m, k) of its unknown."""
+    pressure = state.pressure_slope * change
+    if film.clips_between:
+        return clipped_changes(state.pressure - film.scales.cavitation, pressure)
+    return np.where(state.pressure > film.scales.cavitation, pressure, 0.0) if film.law.clips else pressure
+
+
+def clipped_changes(above: Array, change: Array) -> Array:
+    """(m, k) by how much clipped_means changes with a small change (m, k) of the pressures."""
+    before, after, beyond = (np.roll(above, by, axis=0) for by in (1, -1, -2))
+    d_before, d_after, d_beyond = (np.roll(change, by, axis=0) for by in (1, -1, -2))
+    here_full, after_full = above > 0.0, after > 0.0
+    edge = here_full ^ after_full
+    size = np.where(edge, np.abs(above) + np.abs(after), 1.0)
+    x = np.where(here_full & after_full, 1.0, np.where(edge, np.where(here_full, above, after) / size, 0.0))
+    falls = np.where(here_full, (1.0 - x) * change + x * d_after, (1.0 - x) * d_after + x * change)
+    dx = np.where(edge, falls / size, 0.0)
+    y, dy = x**2 * (3.0 - 2.0 * x), 6.0 * x * (1.0 - x) * dx
+    s, ds = before - above - after + beyond, d_before - change - d_after + d_beyond
+    share, by_share = np.where(here_full, 1.0 - 0.5 * y, 0.5 * y), np.where(here_full, -0.5 * dy, 0.5 * dy)
+    curved, by_curved = CURVED * y * s, CURVED * (dy * s + y * ds)
+    to_here = 0.5 * np.where(here_full, dx * above + x * change, 0.0) - by_curved * share - curved * by_share
+    to_after = 0.5 * np.where(after_full, dx * after + x * d_after, 0.0) - by_curved * (1.0 - share) + curved * by_share
+    return np.asarray(to_here + np.roll(to_after, 1, axis=0))
+
 
 COORDINATES = 4  # of the journal: its displacement along x and y, and its tilts about them
 BY_TOTAL = [COORDINATES, 2 * COORDINATES]  # where changes with u end, and with its rate
@@ -206,3 +337,53 @@ def unit_loads(film: VolumeFilm) -> Array:
 def _loads(film: VolumeFilm, pressure: Array) -> Array:
     """(4,) loads that belong to u in N, of scaled gauge pressures (m, k)."""
     return np.array([*pushed(film, pressure), *pushed(film, (film.grid.height - 0.5) * pressure)])
+
+
+def linear_tilted(
+    film: TiltedFilm, share: float, place: Array, total: float, start: Array | None = None
+) -> LinearFilm:
+    """The film, on cells that lie by a share of one further around, with its journal at rest at `place` (4,) in m and
+    rad. film: of a law whose forces are the pressures of its cells; total: omega_J + omega_S in rad/s; start: (lands,
+    m, k) field to begin from. Raises NotConverged."""
+    from scipy.sparse import block_diag  # takes long to load
+
+    lands = [
+        _linear_land(TiltedLand(lying(land.film, share), land.map), place, total, None if start is None else field)
+        for land, field in zip(film.lands, film.lands if start is None else start, strict=True)
+    ]
+    return LinearFilm(
+        flow=block_diag([land.flow for land in lands], "csc"),
+        storage=block_diag([land.storage for land in lands], "csc"),
+        by_place=np.vstack([land.by_place for land in lands]),
+        by_rate=np.vstack([land.by_rate for land in lands]),
+        by_total=np.concatenate([land.by_total for land in lands]),
+        push=np.hstack([land.push for land in lands]),
+        sheared=np.concatenate([land.sheared for land in lands]),
+        field=np.array([land.field for land in lands]),
+        ordered=all(land.ordered for land in lands),
+    )
+
+
+def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | None) -> LinearFilm:
+    from scipy.sparse import diags
+
+    film, motion = land.film, land.motion(place, np.zeros(COORDINATES), total)
+    solver, to_u = FilmSolver(film), land.map / film.section.clearance
+    solution = solver.steady(motion, start, upwind=True)
+    if film.law.carries_gas:
+        slopes = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
+        moved = slopes.by_place @ to_u, slopes.by_rate @ to_u, slopes.by_total
+        push = land.map.T @ slopes.push
+        return LinearFilm(slopes.flow, slopes.storage, *moved, push, slopes.sheared, solution.field, ordered=True)
+    stencil, by_u, by_v, by_total = land_slopes(solver, motion, solution)
+    stored = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * solution.state.fraction_slope)
+    return LinearFilm(
+        flow=by_neighbours(stencil),
+        storage=diags(stored.ravel(), format="csc"),
+        by_place=by_u.reshape(-1, COORDINATES) @ to_u,
+        by_rate=by_v.reshape(-1, COORDINATES) @ to_u,
+        by_total=by_total.ravel(),
+        push=land.map.T @ (unit_loads(film) * solution.state.pressure_slope.ravel()),
+        sheared=np.zeros(stored.size),  # films that follow a tilt have the torque of a full one
+        field=solution.field,
+    )

@@ -1,5 +1,6 @@
 """Outflow of a film with turning openings through its ends, as the mean over their angle: from the fields of
-film/mean_fields, by the same flows as of a finite-volume film. Compiled."""
+film/mean_fields.py, by the same flows as of a finite-volume film. Compiled.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ from frbcli.film.cells.balance.states import PRESSURE, STATES
 from frbcli.film.cells.data import Records, VolumeFilms
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.gap import LARGEST_ECCENTRICITY
-from frbcli.film.mean_fields.table import MeanFilm, fields_at
+from frbcli.film.mean_fields import MeanFilm, fields_at
 from frbcli.film.parabola import hermite
 from frbcli.film.rectangles.film_force import NEAR_CENTRE
 from frbcli.film.rectangles.table import DEPTH_STEP

@@ -1,1 +1,0 @@
-"""Linear equations of cells around a ring, compiled."""

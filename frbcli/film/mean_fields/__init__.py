@@ -1,1 +1,0 @@
-"""Films whose openings turn, as the mean over their angle: the same from all sides, so that they can be tabulated."""

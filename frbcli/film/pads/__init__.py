@@ -1,1 +1,0 @@
-"""Films between a flat runner and the pads of a thrust bearing."""
