@@ -1,4 +1,4 @@
-"""A cavitation law: one class in one file, which declares and computes everything that is particular to it."""
+"""A cavitation law: one class, which declares and computes everything that is particular to it."""
 
 from __future__ import annotations
 

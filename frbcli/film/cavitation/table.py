@@ -1,4 +1,4 @@
-"""The table of the cavitation laws: one row each. All else about a law is in its own file."""
+"""The table of the cavitation laws: one row each. All else about a law is in its own class."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The contract of a form of films: what gate, plans, costs, errors and static results ask of it. A form is one file:
+"""The contract of a form of films: what gate, plans, costs, errors and static results ask of it. A form is one class:
 what it is, what it costs, and in `rules` what it is not made for, with the reason.
 
 Times are CPU seconds of the reference machine of scene/cost.py, measured on the shipped cases.
