@@ -45,7 +45,7 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]
     for of in _with_keys():
-        told = None if isinstance(of, BearingModel) else f"keys of the model {of.label}"
+        told = None if isinstance(of, BearingModel) else "keys of this model"
         alias = None if attribute(of) == of.name else of.name
         made = Field(default=_table(of)(), alias=alias, description=told)
         fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
