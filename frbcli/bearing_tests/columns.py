@@ -60,7 +60,7 @@ def _angle(result: Any) -> float:
 
 
 HEAD = (
-    Column("cavitation", "", "cavitation model, none of a bearing model", lambda result: result.cavitation or None),
+    Column("cavitation", "", "cavitation model", lambda result: result.cavitation or None),
     Column("theory", "", "`finite`, or the bearing model"),
     Column("status", "", "`ok` or `not-converged`"),
 )
@@ -92,21 +92,21 @@ RESULT = (
     Column("oil_defect_relative", "", "oil that is lost, or created (negative), over the flow",
            _loads("oil.defect_relative"), shown=(Shown("balance", ".0e", table=OIL),),
            key="oil_balance.defect_relative"),
-    Column("force_error_relative", "", "error of the force over its size: from half the cells, of a short bearing from "
-           "the finite one", attrgetter("force_error"), key="error.force_relative"),
-    Column("temperature", "K", "temperature of the film, with heat", lambda result: math.nan if result.heat is None
+    Column("force_error_relative", "", "relative error: from half the cells, or of a short bearing "
+                                       "from the finite one", attrgetter("force_error"), key="error.force_relative"),
+    Column("temperature", "K", "temperature of the film", lambda result: math.nan if result.heat is None
            else float(result.heat.temperatures[0]), key=""),
     Column("viscosity", "Pa s", "viscosity of its oil", attrgetter("plan.section.viscosity"), key=""),
     Column("cpu", "s", "CPU time", attrgetter("cpu_s"), shown=(Shown("CPU", ".1f", table=OIL),), key="cost.cpu_s"),
     Column("unknowns", "", "number of unknowns", key="cost.unknowns"),
-    Column("newton_iterations", "", "number of Newton's steps", key="cost.newton_iterations"),
+    Column("newton_iterations", "", "Newton steps", key="cost.newton_iterations"),
 )  # fmt: skip
 
 # Of a KinematicResult whose journal tilts, or of a rotation whose velocity is given
 MOMENT = (
     Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
            shape=(2,), shown=(Shown(("Mx", "My"), lambda moment: _fixed(moment, 4)[:2], table=FORCES),)),
-    Column("moment_error_relative", "", "error of the moment, from half the cells, over its size",
+    Column("moment_error_relative", "", "relative error, from half the cells",
            attrgetter("moment_error"), key="error.moment_relative"),
 )  # fmt: skip
 
@@ -136,7 +136,7 @@ HISTORY = (
     Column("time", "s", "time", attrgetter("time_s"), key="t_s"),
     Column("displacement", "", "displacement of the journal over the clearance", shape=(2,), key=""),
     Column("force", "N", "force on the journal", shape=(2,), key="force_history_N"),
-    Column("probe_pressure", "Pa", "absolute pressure at the bottom, a quarter of the width from the end"),
+    Column("probe_pressure", "Pa", "absolute, at the bottom, a quarter of the width from the end"),
     Column("gap_ratio", "", "gap there over the clearance"),
 )
 
@@ -167,7 +167,7 @@ STRIBECK = tuple(
     replace(column, key=f"stribeck.{column.quantity}" + ("_Hz" if column.unit else ""), flat=False)
     for column in (
         Column("speed", "Hz", "speed of the journal"),
-        Column("friction_coefficient", "", "coefficient of friction of film and asperities, `mu = |T| / (R F)`"),
+        Column("friction_coefficient", "", "`mu = |T| / (R F)`"),
         Column("asperity_share", "", "share of the load that asperities carry"),
     )
 )

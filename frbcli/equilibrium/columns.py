@@ -28,5 +28,5 @@ WARM_RINGS = (
 HEAT_BALANCE = (
     Column("carried_by_oil", "W", "heat that leaves with the oil", attrgetter("carried")),
     Column("into_walls", "W", "heat into shaft and housing", attrgetter("given")),
-    Column("balance_relative", "", "power that is unaccounted for, over the power", attrgetter("balance")),
+    Column("balance_relative", "", "unaccounted power over the power", attrgetter("balance")),
 )
