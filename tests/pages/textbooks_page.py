@@ -14,19 +14,18 @@ from pages.textbook_rotors import ROTORS
 from pages.textbook_rows import Bench, Row
 
 PAGE = DOCS / "textbooks.md"
-HEAD = "| machine | quantity | source's figure | frb | deviation | stated error | why |\n" + "|---" * 7
+HEAD = "| machine: source | quantity | source | frb | deviation, stated error, % |\n" + "|---" * 5
 INTRODUCTION = """\
 # Textbooks
 
 Rotors, bearings and dampers of textbooks, standards and other programs. `cd tests && python -m pages.textbooks_page`
-computes all rows and writes this page; `tests/docs/test_textbooks.py` checks them.
+writes this page; `tests/docs/test_textbooks.py` checks it. Figures of the dissertation are in
+[validation](validation.md).
 
-- **machine**: with its source; an empty cell repeats the one above. *Printed* figures were read in the source or in the
-  repository that is named, a *closed form* is evaluated from the equation of the source.
-- **stated error**: relative error that frb states, by the modes that a shaft keeps and by the mesh of a film.
-- **why**: number of the reason below, for deviations beyond the printed digits and the stated error.
-
-Figures of the dissertation are in [validation](validation.md).
+- **machine**: an empty cell repeats the one above; (c): closed form, (p): other program, else printed. Friswell's
+  examples and Lund and Thomsen's tables are as in ROSS' tests, Butenschoen and Sander as in mboct-mbdyn-pkg.
+- **stated error**: by the modes of a shaft and the mesh of a film.
+- A number in brackets is the [reason](#why-figures-differ) of a deviation beyond printed digits and stated error.
 """
 OPEN = """\
 ## What has no row
@@ -45,8 +44,8 @@ def tables(parts: list[tuple[str, list[Row]]]) -> str:
         lines, machine = [], ""
         for row in rows:
             first, *others = row.cells()
-            number = f"{reasons.index(row.reason) + 1}" if row.reason else ""
-            lines.append(" | ".join(["" if first == machine else first, *others, number]))
+            number = f" ({reasons.index(row.reason) + 1})" if row.reason else ""
+            lines.append(" | ".join(["" if first == machine else first, *others]) + number)
             machine = first
         texts.append(f"## {title}\n\n{HEAD}|\n" + "".join(f"| {line} |\n" for line in lines))
     numbered = [
@@ -61,7 +60,7 @@ def written(text: str) -> list[tuple[str, ...]]:
     rows: list[tuple[str, ...]] = []
     for line in text.splitlines():
         cells = [cell.strip() for cell in line.strip("|").split(" | ")]
-        if line.startswith("| ") and cells[0] != "machine":
+        if line.startswith("| ") and not cells[0].startswith("machine"):
             rows.append((cells[0] or rows[-1][0], *cells[1:]))
     return rows
 
