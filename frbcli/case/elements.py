@@ -62,7 +62,7 @@ MassMatrix = Annotated[tuple[tuple[MassEntry, MassEntry], tuple[MassEntry, MassE
 
 
 class CoefficientsOverSpeed(Model):
-    """Coefficients over speed: linear in between, constant beyond."""
+    """Values over speed: linear in between, constant beyond."""
 
     source: Label = Field(default="", description="file they were read from")
     speed: tuple[SignedSpeed, ...] = Field(description="ascending")

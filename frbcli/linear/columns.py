@@ -143,7 +143,8 @@ GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above
 
 # Of a StabilityPoint; of several films each has its columns, with its name at their end
 POINT = (SPEED, STATUS, GROWTH,
-         Column("frequency", "Hz", "frequency of the least damped whirl", lambda point: point.critical.imag / (2 * math.pi)),
+         Column("frequency", "Hz", "frequency of the least damped whirl",
+                lambda point: point.critical.imag / (2 * math.pi)),
          Column("growing_modes", "", "growing modes", lambda point: len(point.growing)),
          Column("growth_error", "1/s", "expected error", lambda point: point.critical_error, key="error.growth_1_s"),
          Column("frequency_error", "Hz", "expected error",

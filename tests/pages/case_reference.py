@@ -30,9 +30,9 @@ check my.toml` lists its faults with remedies, and `frb schema > case.schema.jso
 From Python, `frbcli.case_from_dict` takes the same tables as nested dicts, and `case.source_text` is the TOML text. A
 case is frozen: `case.with_settings("oil.viscosity = 50 mPa*s", ...)`, or with a dict, gives a changed and checked copy.
 
-Each line has a key (*: required), its unit or values, the default in `code`, and its meaning. The first of several
-values is the default, unless the meaning names another. "[x, y]": a value for each direction; one value holds for both.
-`cd tests && python -m pages.case_reference` writes this page.
+Each line has a key (*: required), its unit or values (none: a number or a table), the default in `code`, and its
+meaning. The first of several values is the default, unless the meaning names another. "[x, y]": a value for each
+direction; one value holds for both. `cd tests && python -m pages.case_reference` writes this page.
 """
 
 # table of the file: name of its model in the schema
@@ -106,6 +106,7 @@ SHARED = (
     ("Ring keys", "CartridgeBearing", "centrifugal_pressure channels pin"),
     ("Supply keys", "Pocket", "pressure ramp flow"),
 )
+PLAIN = ("number", "table", "tables")  # values that the meaning or the title of a section shows
 LONG = 4  # values of a key that are named at their first place only
 
 Rows = dict[str, tuple[str, str]]
@@ -130,7 +131,8 @@ def _section(title: str, model: dict[str, Any], shared: dict[str, Rows]) -> str:
         if all(rows.get(key) == row for key, row in common.items()):
             rows = {key: row for key, row in rows.items() if key not in common}
             links.append(f"[{name.lower()}](#{name.lower().replace(' ', '-')})")
-    words = [" ".join(model["description"].split("\n\n")[0].split())]
+    inline = "{" in title and not model["description"].startswith("Values")
+    words = [] if inline else [" ".join(model["description"].split("\n\n")[0].split())]
     return _text(title, " ".join([*words, *([f"Also: {', '.join(links)}."] if links else [])]), rows)
 
 
@@ -142,7 +144,7 @@ def _text(title: str, words: str, rows: Rows) -> str:
             lines[-1][0].append(key)
         else:
             lines.append(([key], row))
-    items = "\n".join(f"- {', '.join(keys)} ({value}): {meaning}" for keys, (value, meaning) in lines)
+    items = "\n".join(f"- {', '.join(keys)}{value and f' ({value})'}: {meaning}" for keys, (value, meaning) in lines)
     return "\n\n".join(filter(None, (f"## {title}", words, items))) + "\n"
 
 
@@ -180,10 +182,10 @@ def _row(entry: dict[str, Any], required: bool) -> tuple[str, str]:
     if meaning.startswith(("a quantity in", "a plain number")):
         meaning = ""
     default = "" if required else _default(entry)
-    value = _value(entry)
+    value = " or ".join(form for form in _value(entry).split(" or ") if form not in PLAIN)
     if default and default in value.split(", "):  # the first of the values
         return ", ".join([default, *(each for each in value.split(", ") if each != default)]), meaning
-    return f"{value}, {default}" if default else value, meaning
+    return ", ".join(filter(None, (value, "" if default == value.split(" or ")[0] else default))), meaning
 
 
 def _value(entry: dict[str, Any]) -> str:
