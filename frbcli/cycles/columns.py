@@ -18,8 +18,8 @@ SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
 FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
 STABLE = Column("stable", "", "all disturbances decay")
 VALUE = Column("value", "", "value of the varied key", flat=False)
-TEMPERATURE = "temperature of a film, with heat"
-END_MEANING = "larger eccentricity of both ends, of films whose journals tilt"
+TEMPERATURE = "of a film, with heat"
+END_MEANING = "larger one of both ends of tilting films"
 RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
@@ -243,7 +243,7 @@ def diagram_columns(
                    lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
     per_film = [
         ("eccentricity_max", "", "largest eccentricity", "eccentricity"),
-        ("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed", ""),
+        ("eccentricity_max_uncertainty", "", "uncertainty of a cycle", ""),
         *([("end_eccentricity_max", "", END_MEANING, "end_eccentricity")] if tilts else []),
         *([("temperatures_K", "K", TEMPERATURE, "")] if heat else []),
     ]
@@ -269,7 +269,7 @@ def diagram_columns(
             Column("torque", "N m", "mean torque of a cycle against its films",
                    _number("torque_N_m")),
             Column(*(("speed_uncertainty", "Hz") if over == SPEED else ("value_uncertainty", "")),
-                   "uncertainty of the number that is varied, of a fold", _number("value_uncertainty")),
+                   "uncertainty of a fold", _number("value_uncertainty")),
             Column("frequency_uncertainty", "Hz", "uncertainty of a cycle",
                    _number("frequency_uncertainty_Hz")),
             *([whirl] if unbalance else []),

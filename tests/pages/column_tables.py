@@ -135,17 +135,18 @@ TABLES: dict[str, Columns] = {
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:- .*\n)*)")
 COMMON = re.compile(r"(<!-- common columns -->\n)((?:- .*\n)*)")
+SMALL = {"a", "at", "in", "its", "number", "of", "on", "the"}  # words that say little
 Row = tuple[str, str, str]  # names, what the terminal shows, and meaning
 
 
 def page_list(columns: Columns, common: Mapping[str, str] = MappingProxyType({})) -> str:
     """The list of columns in Markdown, without what only begins a row of the terminal; neighbours of one meaning share
-    a line, and those of `common`, meanings by names, have one line without meanings."""
+    a line. Those of `common`, meanings by names, and then obvious ones have one line without meanings."""
     lines: list[tuple[list[str], str]] = []
     known: list[str] = []
     for names, shown, meaning in _rows(columns):
         entry = names or f"terminal {shown}"
-        if common.get(names) == meaning:
+        if common and (common.get(names) == meaning or (names not in common and _obvious(names, meaning))):
             known.append(entry)
         elif lines and lines[-1][1] == meaning:
             lines[-1][0].extend([entry] * bool(names))
@@ -153,6 +154,12 @@ def page_list(columns: Columns, common: Mapping[str, str] = MappingProxyType({})
             lines.append(([entry], meaning))
     first = f"- {', '.join(known)}\n" if known else ""
     return first + "".join(f"- {_joined(names)}: {meaning}\n" for names, meaning in lines)
+
+
+def _obvious(names: str, meaning: str) -> bool:
+    """Whether the names have all words of the meaning."""
+    words = set(re.findall(r"[a-z0-9.]+", meaning.lower())) - SMALL
+    return bool(names) and all(word[:5] in names.lower() for word in words)
 
 
 def common_rows(page: Path) -> dict[str, str]:
