@@ -87,29 +87,29 @@ class Ring(Model):
     given_mass: RingMass | None = Field(
         default=None,
         alias="mass",
-        description="of one ring; by default from material, width and diameters",
+        description="of one ring; default: from material, width and diameters",
     )
     given_inertia: RingInertia | None = Field(
         default=None,
         alias="inertia",
-        description="about the axis; by default m (D_i^2 + D_o^2) / 8",
+        description="about the axis; default: m (D_i^2 + D_o^2) / 8",
     )
     tilt_inertia: RingInertia | None = Field(
         default=None,
-        description="about a diameter, for film.tilt = follows; by default half of inertia and m B^2/12; required "
+        description="about a diameter, for film.tilt = follows; default: half of inertia and m B^2/12; required "
         "for a cartridge",
     )
     width: Length | None = Field(
-        default=None, description="for the default mass; by default of the wider film"
+        default=None, description="for the default mass; default: of the wider film"
     )
     spin: Literal["free", "blocked"] = Field(
         default="free", description="turned by the films, or not turning"
     )
     material: Material = Field(default="brass", description="for conduction, heat and growth")
-    conductivity: ThermalConductivity | None = Field(default=None, description="by default of the material")
-    heat_capacity: SpecificHeat | None = Field(default=None, description="by default of the material")
+    conductivity: ThermalConductivity | None = Field(default=None, description="default: of the material")
+    heat_capacity: SpecificHeat | None = Field(default=None, description="default: of the material")
     expansion: Expansion | None = Field(
-        default=None, description="linear thermal, by default of the material"
+        default=None, description="linear thermal, default: of the material"
     )
 
     @property

@@ -121,17 +121,17 @@ class FilmGeometry(Model):
         description="no oil enters (4.36), or ends in oil; or `{sealed}` or `{bath_level}`",
     )
     supply: Supply = Field(default=NoSupply(), description="see below")
-    lobes: Lobes | None = Field(default=None, description="by default a plain cylinder")
+    lobes: Lobes | None = Field(default=None, description="default: a plain cylinder")
     profile: Profile | None = Field(
         default=None,
         description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal over one turn, linear in between; no "
         "gap below the clearance",
     )
-    viscosity: Viscosity | None = Field(default=None, description="by default oil.viscosity")
+    viscosity: Viscosity | None = Field(default=None, description="default: oil.viscosity")
     temperature: Temperature | None = Field(default=None, description="for the viscosity by Vogel's law")
     side_flow_factor: Ratio | None = Field(
         default=None,
-        description="beta of thermal.side_flow = concentric; by default 1 with a groove around, else 0.6",
+        description="beta of thermal.side_flow = concentric; default: 1 with a groove around, else 0.6",
     )
 
     @property
@@ -180,4 +180,4 @@ class FilmGeometry(Model):
 class RingFilm(FilmGeometry):
     """A film inside or outside of a floating ring."""
 
-    cavitation: Cavitation | None = Field(default=None, description="by default film.cavitation")
+    cavitation: Cavitation | None = Field(default=None, description="default: film.cavitation")

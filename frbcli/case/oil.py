@@ -115,16 +115,16 @@ class Oil(Model):
     )
     density: OilDensity = Field(
         default=USUAL_DENSITY,
-        description="by default of the grade at `temperature`, or at 80 degC",
+        description="default: of the grade at `temperature`, or at 80 degC",
     )
     heat_capacity: SpecificHeat | None = Field(
-        default=None, description="specific; by default of petroleum oil of this density"
+        default=None, description="specific; default: of petroleum oil of this density"
     )
     conductivity: ThermalConductivity | None = Field(
-        default=None, description="thermal; by default of petroleum oil of this density"
+        default=None, description="thermal; default: of petroleum oil of this density"
     )
     ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
-    cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="by default the ambient pressure")
+    cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="default: the ambient pressure")
 
     @model_validator(mode="before")
     @classmethod

@@ -117,7 +117,7 @@ class TurbochargerRotor(Model):
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
     modes: Annotated[int, Count(2, 200, 6)] | None = Field(
         default=None,
-        description="modes of the free rotor in each plane; by default by `accuracy.target`",
+        description="modes of the free rotor in each plane; default: by `accuracy.target`",
     )
     cutoff: Speed | None = Field(default=None, description="replaces `modes`: highest modal frequency")
     modal_damping: Fraction = Field(default=0.0, description="ratio of every elastic mode; does not turn")

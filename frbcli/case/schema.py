@@ -49,7 +49,7 @@ _UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
 class Case(Model):
     """One machine and one run."""
 
-    name: Label = Field(default="", description="for results; by default the file's name")
+    name: Label = Field(default="", description="for results; default: the file's name")
     title: Label = Field(default="", description="of tables and pictures")
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
@@ -82,7 +82,7 @@ class Case(Model):
         default=None, description="axial load; without it thrust bearings do not act on the motion"
     )
     housing: Housing | None = Field(
-        default=None, description="carries all bearings; by default fixed to ground"
+        default=None, description="carries all bearings; default: fixed to ground"
     )
     given_oil: Oil | None = Field(
         default=None, alias="oil", description="required for films"

@@ -52,7 +52,7 @@ class Thermal(Model):
     supply_temperature: InputTemperature = Field(description="of the supplied oil")
     start_temperature: Temperature | None = Field(
         default=None,
-        description="of films, rings and walls in a run; by default of the supply",
+        description="of films, rings and walls in a run; default: of the supply",
     )
     shaft: AnyWall = Field(
         default="adiabatic",

@@ -283,9 +283,18 @@ def _table(
     everywhere = without.pop("", [])
     rows = [f"| {'; '.join(features)} | {analyses} |" for analyses, features in without.items()]
     return [
-        f"Supported by {', '.join(names)}:", "", f"{'; '.join(everywhere)}.", "",
+        f"Supported by {', '.join(names)}:", "", f"{_grouped(everywhere)}.", "",
         "| feature | not supported by |", "|---|---|", *rows,
     ]  # fmt: skip
+
+
+def _grouped(names: Sequence[str]) -> str:
+    """Names, of pairs the first part once."""
+    parts: dict[str, list[str]] = {}
+    for name in names:
+        first, both, second = name.partition(" and ")
+        parts.setdefault(first if both else name, []).extend([second] * bool(both))
+    return "; ".join(f"{first} and {', '.join(others)}" if others else first for first, others in parts.items())
 
 
 def _numbers(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:

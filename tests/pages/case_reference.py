@@ -30,9 +30,9 @@ check my.toml` lists its faults with remedies, and `frb schema > case.schema.jso
 From Python, `frbcli.case_from_dict` takes the same tables as nested dicts, and `case.source_text` is the TOML text. A
 case is frozen: `case.with_settings("oil.viscosity = 50 mPa*s", ...)`, or with a dict, gives a changed and checked copy.
 
-Each line has a key (*: required), its unit or values (none: a number or a table), the default in `code`, and its
+A line has a key (*: required), its unit or values (none: a number, text or table), the default in `code`, and its
 meaning. The first of several values is the default, unless the meaning names another. "[x, y]": a value for each
-direction; one value holds for both. `cd tests && python -m pages.case_reference` writes this page.
+direction, or one for both. `cd tests && python -m pages.case_reference` writes this page.
 """
 
 # table of the file: name of its model in the schema
@@ -106,7 +106,7 @@ SHARED = (
     ("Ring keys", "CartridgeBearing", "centrifugal_pressure channels pin"),
     ("Supply keys", "Pocket", "pressure ramp flow"),
 )
-PLAIN = ("number", "table", "tables")  # values that the meaning or the title of a section shows
+PLAIN = ("number", "text", "table", "tables")  # values that the meaning or the title of a section shows
 LONG = 4  # values of a key that are named at their first place only
 
 Rows = dict[str, tuple[str, str]]

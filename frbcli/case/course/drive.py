@@ -162,11 +162,11 @@ class Drive(MachineTable):
     end: TopSpeed | None = Field(
         default=None,
         alias="to",
-        description="highest speed, by a governor; by default torque equals load without film friction",
+        description="highest speed, by a governor; default: torque equals load without film friction",
     )
     duration: Duration = Field(description="of the torque, and of a run-up")
     down_duration: Duration = Field(
-        default=math.nan, description="of a run-down without torque; by default the duration"
+        default=math.nan, description="of a run-down without torque; default: the duration"
     )
     reaction: bool = Field(default=False, description="unbalance whirl acts on the rotation")
 

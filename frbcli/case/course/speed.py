@@ -25,7 +25,7 @@ class SpeedRamp(Model):
     end: Speed = Field(alias="to", description="at the end of the run-up")
     duration: Duration = Field(description="of the run-up")
     hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
-    down_duration: Duration = Field(default=math.nan, description="of a run-down; by default the duration")
+    down_duration: Duration = Field(default=math.nan, description="of a run-down; default: the duration")
     points: tuple[tuple[PointTime, Speed], ...] = Field(
         default=(), description="replaces from, to and duration: times from 0 on with speeds"
     )

@@ -61,7 +61,7 @@ class Contact(Model):
         default=False, description="of asperities: finite-volume films with flow between rough surfaces"
     )
     journal_roughness: Roughness | None = Field(
-        default=None, description="for flow factors; by default both surfaces are equal"
+        default=None, description="for flow factors; default: both surfaces are equal"
     )
     friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient of asperities")
 

@@ -27,10 +27,10 @@ class Base(MachineTable):
 
     acceleration: tuple[AccelerationEntry, AccelerationEntry] | None = Field(
         default=None,
-        description="[x, y] amplitude; factor of the columns of `file`, by default 1 m/s^2",
+        description="[x, y] amplitude; factor of the columns of `file`, default: 1 m/s^2",
     )
-    order: Order | None = Field(default=None, description="times the angle of the source; by default 1")
-    speed: Speed | None = Field(default=None, description="of the source, such as an engine; by default of the rotor")
+    order: Order | None = Field(default=None, description="times the angle of the source; default: 1")
+    speed: Speed | None = Field(default=None, description="of the source, such as an engine; default: of the rotor")
     phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
         default="",

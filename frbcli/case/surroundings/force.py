@@ -30,7 +30,7 @@ class AppliedForce(MachineTable):
     )
     force: tuple[ForceEntry, ForceEntry] | None = Field(
         default=None,
-        description="[x, y] or amplitude; factor of the columns of `file`, by default 1 N",
+        description="[x, y] or amplitude; factor of the columns of `file`, default: 1 N",
     )
     order: Order | None = Field(
         default=None, description="times the rotor angle; below 0 clockwise"
@@ -38,7 +38,7 @@ class AppliedForce(MachineTable):
     frequency: SignedSpeed | None = Field(default=None, description="fixed; replaces `order`")
     rotating: bool = Field(
         default=False,
-        description="turns counter-clockwise, by default with the rotor",
+        description="turns counter-clockwise, default: with the rotor",
     )
     phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(

@@ -25,7 +25,7 @@ class MagneticPull(MachineTable):
     at: Identifier = Field(description="place of the rotor, as of a [[force]]")
     pull: Pull = Field(description="force over displacement; of a symmetric rotor at each journal")
     stator: Identifier = Field(
-        default="", description="place of the stator, such as `housing`; by default the ground"
+        default="", description="place of the stator, such as `housing`; default: the ground"
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:

@@ -24,7 +24,7 @@ class OverTime(Model):
     source: Label = Field(default="", description="file they were read from")
     time: tuple[Entry, ...] = Field(description="in s, ascending")
     x: tuple[Entry, ...] = Field(description="in x, or of the one quantity")
-    y: tuple[Entry, ...] = Field(default=(), description="in y; by default as x")
+    y: tuple[Entry, ...] = Field(default=(), description="in y; default: as x")
 
     @property
     def both(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
