@@ -26,13 +26,13 @@ NAMES = ("xx", "xy", "yx", "yy")
 KYX = "K_yx C/W"
 SOMEYA = "Someya 1989, p. {}"
 BOOK = (
-    "The stiffness of the book differs the more the smaller the eccentricity, while S, attitude and damping agree to "
-    "1 % at L/D 0.5 and eccentricity 0.2. An independent finite-difference solution has frb's value, and Lund and "
-    "Thomsen's table with grooves of 20 deg agrees with frb to 1.6 %. What the book does differently is not known."
+    "The stiffness of the book differs more at small eccentricities; S, attitude and damping agree to 1 % at L/D 0.5 and "
+    "eccentricity 0.2. An independent finite-difference solution agrees with frb, and Lund and Thomsen's table with "
+    "grooves of 20 deg to 1.6 %. The cause is not known."
 )
 RIGID = (
-    "The shells of the source are elastic, those of frb rigid: at 10 MPa and 150 rpm its least film is 0.7 um thick, "
-    "frb's 0.5 um. Without the mean height of the summits, 0.6 um, frb has 0.46 N m there."
+    "The shells of the source are elastic, in frb rigid: at 10 MPa and 150 rpm its thinnest film has 0.7 um, in frb "
+    "0.5 um. Without the mean height of the summits, 0.6 um, frb has 0.46 N m there."
 )
 SHORT = (
     "The closed form is met to round-off. The stated error is the difference between short theory and finite length."
