@@ -145,11 +145,11 @@ def page_list(columns: Columns, common: Mapping[str, str] = MappingProxyType({})
     lines: list[tuple[list[str], str]] = []
     known: list[str] = []
     for names, shown, meaning in _rows(columns):
-        entry = names or f"terminal {shown}"
+        entry = f"{names} ({shown})" if names and shown else names or f"({shown})"
         if common and (common.get(names) == meaning or (names not in common and _obvious(names, meaning))):
             known.append(entry)
         elif lines and lines[-1][1] == meaning:
-            lines[-1][0].extend([entry] * bool(names))
+            lines[-1][0].append(entry)
         else:
             lines.append(([entry], meaning))
     first = f"- {', '.join(known)}\n" if known else ""
@@ -191,11 +191,11 @@ def _joined(names: list[str]) -> str:
 
 def _names(column: Column, mixed: bool) -> tuple[str, str]:
     """Names in pandas and in JSON, which are marked where they differ, the list has both and no dot shows it, and heads
-    of the terminal, for columns without a name. The name of a vector or matrix in JSON is its name without axes, and is
-    left out."""
+    of the terminal. The name of a vector or matrix in JSON is its name without axes, and is left out."""
     flat, path, head = _flat(column), f"`{column.path}`" if column.path else "", _head(column)
     if flat and column.path == re.sub("_xx?(?=_|$)", "", column.names[0], count=1):
         path = flat
+    head = "" if head in ("``", flat, path) else head
     if mixed and flat != path:
         flat = f"CSV {flat}" if flat and not path else flat
         path = f"JSON {path}" if path and "." not in path else path

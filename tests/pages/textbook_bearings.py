@@ -26,9 +26,9 @@ NAMES = ("xx", "xy", "yx", "yy")
 KYX = "K_yx C/W"
 SOMEYA = "Someya 1989, p. {}"
 BOOK = (
-    "The stiffness of the book differs more at small eccentricities; S, attitude and damping agree to 1 % at L/D 0.5 and "
-    "eccentricity 0.2. An independent finite-difference solution agrees with frb, and Lund and Thomsen's table with "
-    "grooves of 20 deg to 1.6 %. The cause is not known."
+    "The stiffness of the book differs more at small eccentricities; S, attitude and damping agree to 1 % at L/D 0.5 "
+    "and eccentricity 0.2. An independent finite-difference solution agrees with frb, and Lund and Thomsen's table "
+    "with grooves of 20 deg to 1.6 %. The cause is not known."
 )
 RIGID = (
     "The shells of the source are elastic, in frb rigid: at 10 MPa and 150 rpm its thinnest film has 0.7 um, in frb "

@@ -45,7 +45,7 @@ class Row:
     def cells(self) -> tuple[str, ...]:
         """Texts of a row of the page, but for the number of its reason."""
         error = "" if math.isnan(self.error) else f", {float(f'{100.0 * self.error:.1g}'):g}"
-        return *self.given, _percent(self.deviation) + error
+        return *self.given[:2], f"{self.given[2]}, {self.found:.6g}", _percent(self.deviation) + error
 
 
 def _percent(share: float) -> str:

@@ -14,7 +14,7 @@ from pages.textbook_rotors import ROTORS
 from pages.textbook_rows import Bench, Row
 
 PAGE = DOCS / "textbooks.md"
-HEAD = "| machine: source | quantity | figure | deviation of frb, stated error, % |\n" + "|---" * 4
+HEAD = "| machine: source | quantity | source, frb | deviation, stated error, % |\n" + "|---" * 4
 INTRODUCTION = """\
 # Textbooks
 
