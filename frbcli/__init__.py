@@ -16,9 +16,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.spectra.spectrum import waterfall as waterfall
     from frbcli.balancing.balance import TrialRun as TrialRun
     from frbcli.balancing.balance import balance as balance
-    from frbcli.case.films.additions import add_bearing as add_bearing
     from frbcli.case.films.additions import add_law as add_law
-    from frbcli.case.films.additions import remove_bearing as remove_bearing
     from frbcli.case.films.additions import remove_law as remove_law
     from frbcli.case.reading.load import case_from_dict as case_from_dict
     from frbcli.case.reading.load import load_case as load_case
@@ -57,6 +55,9 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.plot.picture import picture as picture
     from frbcli.report.page import write_report as write_report
     from frbcli.results.store import read_run as read_run
+    from frbcli.rotor.own_laws import add_force_law as add_force_law
+    from frbcli.rotor.own_laws import remove_force_law as remove_force_law
+    from frbcli.rotor.port import ForceLaw as ForceLaw
     from frbcli.runs.run import rundown as rundown
     from frbcli.runs.run import runup as runup
     from frbcli.scene.planning.plan import make_plan as make_plan
@@ -75,18 +76,17 @@ guard_numba()
 _PUBLIC = {  # module, or module:attribute of another name
     "Case": "frbcli.case.schema",
     "Fault": "frbcli.errors",
+    "ForceLaw": "frbcli.rotor.port",
     "FrbError": "frbcli.errors",
     "InputError": "frbcli.errors",
     "NotConverged": "frbcli.errors",
     "RunFileError": "frbcli.errors",
-    "BearingKey": "frbcli.film.cavitation.law:Key",
-    "BearingModel": "frbcli.film.bearing_model.model",
     "CavitationLaw": "frbcli.film.cavitation.law:Law",
     "CavitationKey": "frbcli.film.cavitation.law:Key",
     "Measurement": "frbcli.analysis.measured",
     "TrialRun": "frbcli.balancing.balance",
     "accuracy": "frbcli.studies.accuracy",
-    "add_bearing": "frbcli.case.films.additions",
+    "add_force_law": "frbcli.rotor.own_laws",
     "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
@@ -118,7 +118,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "order_track": "frbcli.analysis.orders.order_tracking",
     "picture": "frbcli.plot.picture",
     "read_run": "frbcli.results.store",
-    "remove_bearing": "frbcli.case.films.additions",
+    "remove_force_law": "frbcli.rotor.own_laws",
     "remove_law": "frbcli.case.films.additions",
     "response": "frbcli.linear.response",
     "rotation": "frbcli.bearing_tests.kinematic",

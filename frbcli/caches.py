@@ -34,11 +34,11 @@ def stored(path: Path, made_for: str = "") -> bytes | None:
     Only plain files are opened: a FIFO would be waited for.
     """
     try:
-        found = path.read_bytes() if path.is_file() else b""
+        written = path.read_bytes() if path.is_file() else b""
     except OSError:
         return None
-    content = found[CHECKSUM:]
-    return content if found[:CHECKSUM] == _checksum(content, made_for) else None
+    content = written[CHECKSUM:]
+    return content if written[:CHECKSUM] == _checksum(content, made_for) else None
 
 
 def store(path: Path, content: bytes, made_for: str = "") -> None:
@@ -118,7 +118,7 @@ def take_shipped_kernels(package: Path) -> None:
     fits = [target for target in targets if all(has.get(feature) for feature in NEEDED[target])]
     if fits:
         os.environ["NUMBA_CPU_NAME"], os.environ["NUMBA_CPU_FEATURES"] = fits[0], FEATURES[fits[0]]
-        settings: Any = config  # numba tells no types of it
+        settings: Any = config  # numba gives no types of it
         settings.reload_config()
 
 

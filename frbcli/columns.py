@@ -37,7 +37,7 @@ class Shown:
 
     head: its head, or as many as it has cells there
     form: the format of a number, or a function from the value to the cell, or to all cells of several heads
-    unit: the unit in which it is shown, by default that of the column
+    unit: the unit in which it is shown, by default the column's
     table: the name of the table
     per_minute: the same for people who read rotor speeds in rpm
     """
@@ -55,8 +55,8 @@ class Shown:
 
     def unit_beside(self, unit: str = "") -> tuple[str, ...]:
         """The shown unit, or this one without it; empty where there is none or the head names it."""
-        told = self.unit or unit
-        return (told,) if told and not self.heads[0].endswith(told) else ()
+        own = self.unit or unit
+        return (own,) if own and not self.heads[0].endswith(own) else ()
 
     def cells(self, value: Any) -> tuple[str, ...]:
         """The cells of a value; "-" for a number that is not known."""
@@ -84,7 +84,7 @@ class Shown:
 
 
 def _without_round_off(value: Any) -> list[float]:
-    """The entries of an array, 0 those that are nothing beside the largest."""
+    """The entries of an array, 0 where they are round-off of the largest."""
     entries = np.ravel(value).astype(float)
     least = NOTHING * float(np.abs(entries).max(initial=0.0))
     return [0.0 if abs(entry) < least else float(entry) for entry in entries]
@@ -161,7 +161,7 @@ class Column:
         return getattr(item, self.quantity if hasattr(item, self.quantity) else self.name)
 
     def entries(self, value: Any) -> list[Any]:
-        """The values of the names; NaN for those of an array that is None."""
+        """The values of the names; NaN for each name of an array that is None."""
         if not self.shape:
             return [value]
         return np.ravel(np.full(self.shape, math.nan) if value is None else value).tolist()
@@ -192,7 +192,7 @@ class Table:
 
     def documents(self) -> list[dict[str, Any]]:
         """An object of JSON per row."""
-        found: list[dict[str, Any]] = []
+        rows: list[dict[str, Any]] = []
         for row in self.rows:
             document: dict[str, Any] = {}
             for column, value in zip(self.columns, row, strict=True):
@@ -202,15 +202,16 @@ class Table:
                     place = place.setdefault(key, {})
                 if last:
                     place[last] = value
-            found.append(document)
-        return found
+            rows.append(document)
+        return rows
 
     def heads(self, table: str = "") -> tuple[str, ...]:
         """The heads of a table of the terminal."""
         return heads(self.columns, table)
 
     def spans(self, table: str = "") -> tuple[int, ...]:
-        """Numbers of columns of a table of the terminal that belong together as those of a vector, in their order."""
+        """Numbers of columns of a table of the terminal that belong together, such as the columns of a vector, in
+        order."""
         return tuple(len(shown.heads) for column in self.columns for shown in _in(column, table))
 
     def legend(self, table: str = "") -> str:
@@ -275,10 +276,10 @@ def heads(columns: Columns, table: str = "") -> tuple[str, ...]:
 
 def legend(columns: Columns, table: str = "") -> str:
     """The heads of a table of the terminal with meaning and unit."""
-    told = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
+    listed = ((column, shown) for column in columns if column.meaning for shown in _in(column, table))
     return "; ".join(
         ", ".join((*shown.heads[:-1], f"{shown.heads[-1]}: {column.meaning}", *shown.unit_beside(column.unit)))
-        for column, shown in told
+        for column, shown in listed
     )
 
 

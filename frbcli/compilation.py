@@ -1,4 +1,4 @@
-"""What the compiler of the kernels does while other code runs: counted, and told apart from what that code takes."""
+"""What the compiler of the kernels does while other code runs: counted, with its CPU time apart from that code's."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Compilations(Listener):
         if not self._depth:
             self._began = time.process_time(), time.perf_counter()
         self._depth += 1
-        self._tell()
+        self._notify()
 
     def on_end(self, _event: Any) -> None:
         """A function is compiled."""
@@ -40,9 +40,9 @@ class Compilations(Listener):
         if not self._depth:
             self.cpu_s += time.process_time() - self._began[0]
             self.wall_s += time.perf_counter() - self._began[1]
-        self._tell()
+        self._notify()
 
-    def _tell(self) -> None:
+    def _notify(self) -> None:
         if self._observe is not None:
             self._observe()
 
@@ -86,7 +86,7 @@ class Clock(NamedTuple):
 
 
 _SO_FAR = Compilations()  # of this process
-_register: Any = register  # numba tells no types of it
+_register: Any = register  # numba gives no types of it
 _register(COMPILE, _SO_FAR)
 
 

@@ -61,7 +61,7 @@ class _Part(_LIBRARY):  # type: ignore[misc]
 
     @property
     def codegen(self) -> Any:
-        """What numba asks to set the environment of a function that Python calls."""
+        """The library for `set_env`, which numba calls for a function that Python calls."""
         return self
 
     def set_env(self, name: str, environment: Any) -> None:
@@ -78,8 +78,8 @@ class _PartCompiler(Compiler):
     """numba's compiler for a _Part."""
 
     def compile_extra(self, func: Any) -> Any:
-        """See numba's."""
-        part, compile_extra = cast("Any", _Part), cast("Any", super()).compile_extra  # numba tells no types of them
+        """As numba's, with the code of a _Part."""
+        part, compile_extra = cast("Any", _Part), cast("Any", super()).compile_extra  # numba gives no types of them
         if _PARTS:
             self.state.library = part(self.state.targetctx.codegen(), func.__qualname__)
         return compile_extra(func)
@@ -114,7 +114,7 @@ def compiled(
     """
 
     def decorated(function: Kernel) -> Kernel:
-        options: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": makes_arrays}  # numba tells no types
+        options: Any = {"error_model": "numpy", "no_cfunc_wrapper": True, "_nrt": makes_arrays}  # numba gives no types
         options |= {"forceinline": inline, "fastmath": set(fastmath) or False}
         if internal:
             return cast("Kernel", _part(function, options))
@@ -137,7 +137,7 @@ def compiled_for(kind: type, otherwise: object = None) -> Callable[[Kernel], Ker
 
     def decorated(function: Kernel) -> Kernel:
         kernel = compiled()(function)
-        has, has_not = _call_of_part(function, kernel), _told(function, "part", otherwise)
+        has, has_not = _call_of_part(function, kernel), _composed(function, "part", otherwise)
 
         def asked(*given: Any) -> Any:
             return kernel(*given) if isinstance(given[0], kind) else otherwise
@@ -160,13 +160,14 @@ def _part(function: Callable[..., Any], options: dict[str, Any]) -> Any:
 
 def _call_of_part(function: Callable[..., Any], part: Any) -> Callable[..., Any]:
     """A function that calls the part of a kernel: what Python calls."""
-    return _told(function, "part({names})", part)
+    return _composed(function, "part({names})", part)
 
 
-def _told(function: Callable[..., Any], told: str, part: Any) -> Callable[..., Any]:
-    """A function of the arguments of another one, {names}, that does what is told of them and of `part`."""
+def _composed(function: Callable[..., Any], body: str, part: Any) -> Callable[..., Any]:
+    """A function with the parameters of another one, {names}, that evaluates the expression `body` of them and
+    `part`."""
     names = ", ".join(signature(function).parameters)
-    call: Callable[..., Any] = eval(f"lambda {names}: {told.format(names=names)}", {"part": part})
+    call: Callable[..., Any] = eval(f"lambda {names}: {body.format(names=names)}", {"part": part})
     return update_wrapper(call, function)
 
 
@@ -245,30 +246,30 @@ def _is_plain(value: Any) -> bool:
 
 def folder_of(kernel: Callable[..., object]) -> Path | None:
     """The folder in which a kernel is kept, None if it is not."""
-    found: Any = kernel
-    return None if found._cache.cache_path is None else Path(found._cache.cache_path)
+    cached: Any = kernel
+    return None if cached._cache.cache_path is None else Path(cached._cache.cache_path)
 
 
 def _keep(made: Any, *sources: Path) -> None:
     """Have a kernel kept on disk, in files that follow its sources: where numba puts it if nobody else can write there,
     else in a temporary directory; without any place, or with a numba that has other files, in memory.
 
-    Beside its sources it is trusted as they are: Python runs what it finds there, too.
+    Next to its sources it is trusted as they are: Python runs what it finds there, too.
     """
-    beside = sources[0].parent / "__pycache__"
+    own_folder = sources[0].parent / "__pycache__"
     for use_another_place in (_use_temporary_cache, _say_that_nothing_is_kept):
         with suppress(RuntimeError, OSError):  # numba has no place for it
             made.enable_caching()
             index = _index_of(made._cache)
-            if index is not None and (index.parent == beside or _is_own_place(index)):
+            if index is not None and (index.parent == own_folder or _is_own_place(index)):
                 break
         use_another_place()
     else:
         made._cache = NullCache()
         return
     kept, places = made._cache, [index]
-    if _BRINGS_KERNELS and index.parent != beside:
-        places.append(beside / index.name)
+    if _BRINGS_KERNELS and index.parent != own_folder:
+        places.append(own_folder / index.name)
     kept._cache_file = _Files(places, f"{__version__} {sources_digest(*sources)}")
     quick = hasattr(kept, READ) and _MEMORY is not None  # else numba prepares itself first
     kept.load_overload = partial(_read, getattr(kept, READ) if quick else kept.load_overload)
@@ -277,14 +278,14 @@ def _keep(made: Any, *sources: Path) -> None:
 
 def _index_of(cache: Any) -> Path | None:
     """Where numba has the index of a kernel, to which it has no public way; None if it is elsewhere."""
-    found = getattr(getattr(cache, "_cache_file", None), "_index_path", None)
-    return None if found is None else Path(found)
+    path = getattr(getattr(cache, "_cache_file", None), "_index_path", None)
+    return None if path is None else Path(path)
 
 
 def _is_own_place(index: Path) -> bool:
     """Whether an index lies where only this user can write. Without a name for its cache, numba takes the current
     folder, which may have come from somewhere else."""
-    settings: Any = config  # numba tells no types of it
+    settings: Any = config  # numba gives no types of it
     return bool(index.is_absolute() or settings.CACHE_DIR) and is_trusted(index.parent)
 
 
@@ -293,7 +294,7 @@ def _use_temporary_cache() -> None:
     with suppress(OSError):
         place = str(temporary_cache())
         os.environ["NUMBA_CACHE_DIR"] = place  # also of the processes of a sweep
-        settings: Any = config  # numba tells no types of it
+        settings: Any = config  # numba gives no types of it
         settings.CACHE_DIR = place
         logging.getLogger("frbcli").warning(
             "Compiled kernels are kept in %s, for neither the installation nor NUMBA_CACHE_DIR or the home directory "
@@ -304,12 +305,12 @@ def _use_temporary_cache() -> None:
 
 @cache
 def _say_that_nothing_is_kept(cause: str = "there is no place for them") -> None:
-    told = "Compiled kernels are not kept on disk: %s. The next start compiles them again."
-    logging.getLogger("frbcli").warning(told, cause)
+    message = "Compiled kernels are not kept on disk: %s. The next start compiles them again."
+    logging.getLogger("frbcli").warning(message, cause)
 
 
 class _Files:
-    """The files of a kernel, in place of numba's: an index, and a file for each set of types, all with checksums.
+    """The files of a kernel, instead of numba's: an index, and a file for each set of types, all with checksums.
 
     Neither is read where the sources were others: an older index may name types that are no longer there.
     """
@@ -329,7 +330,7 @@ class _Files:
     def save(self, key: object, parts: object) -> None:
         """Keep a compiled kernel in the first place. Its file is named by what it holds, so that two processes never
         take it for another one. Raises OSError."""
-        index, write = self._indexes[0], cast("Any", dumps)  # numba tells no types of it
+        index, write = self._indexes[0], cast("Any", dumps)  # numba gives no types of it
         content = write(parts)
         name = f"{index.stem}.{hashlib.sha256(content).hexdigest()[:16]}.nbc"
         store(index.with_name(name), content, self._made_for)
@@ -374,12 +375,12 @@ def _name_memory() -> None:
 
 @cache
 def sources_digest(*files: Path) -> str:
-    """Of the contents of files of this package and of all that they import from it, directly or not."""
-    found, waiting = set[Path](), list(files)
+    """Digest of source files of this package and of all that they import from it, directly or not."""
+    sources, waiting = set[Path](), list(files)
     while waiting:
-        found.add(one := waiting.pop())
-        waiting += [other for other in _source(one)[1] if other not in found]
-    return hashlib.sha256("".join(_source(one)[0] for one in sorted(found)).encode()).hexdigest()
+        sources.add(one := waiting.pop())
+        waiting += [other for other in _source(one)[1] if other not in sources]
+    return hashlib.sha256("".join(_source(one)[0] for one in sorted(sources)).encode()).hexdigest()
 
 
 @cache

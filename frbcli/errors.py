@@ -38,19 +38,19 @@ class Fault:
         return f"{self.key}{value}{where}: {self.problem} {self.remedy}".rstrip()
 
 
-MOST_TOLD = 100  # faults in the text of an error
+MOST_LISTED = 100  # faults in the text of an error
 
 
 class InputError(FrbError):
-    """The input is wrong. Carries every fault found, and tells the first of them; nothing was run."""
+    """The input is wrong. Carries every fault found, and names the first of them; nothing was run."""
 
     exit_code = 2
 
     def __init__(self, source: str, faults: tuple[Fault, ...]) -> None:
         self.source = source
         self.faults = faults
-        more = f"\n  and {len(faults) - MOST_TOLD} more" if len(faults) > MOST_TOLD else ""
-        super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_TOLD]) + more)
+        more = f"\n  and {len(faults) - MOST_LISTED} more" if len(faults) > MOST_LISTED else ""
+        super().__init__(source + "".join(f"\n  {fault}" for fault in faults[:MOST_LISTED]) + more)
 
 
 def input_error(source: str, key: str, value: str, problem: str, remedy: str, line: int | None = None) -> InputError:

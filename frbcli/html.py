@@ -44,12 +44,12 @@ class Tabular:
 
 
 def html_table(title: str, columns: Sequence[str], rows: Iterable[Iterable[object]], count: int | None = None) -> str:
-    """A table under its title, with at most MOST_ROWS rows; count: how many there are, where rows are not told at
-    once."""
-    told = [[_cell(cell) for cell in row] for _, row in zip(range(MOST_ROWS), rows, strict=False)]
+    """A table under its title, with at most MOST_ROWS rows; count: how many there are, where `rows` is not a sequence
+    of known length."""
+    shown = [[_cell(cell) for cell in row] for _, row in zip(range(MOST_ROWS), rows, strict=False)]
     head = "".join(f"<th style='text-align:left'>{escape(printable(str(name)))}</th>" for name in columns)
-    body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in told)
-    left = 0 if count is None else count - len(told)
+    body = "".join(f"<tr>{''.join(cells)}</tr>" for cells in shown)
+    left = 0 if count is None else count - len(shown)
     more = f"<p>and {left} more rows</p>" if left > 0 else ""
     caption = f"<p><b>{escape(printable(title))}</b></p>" if title else ""
     return f"{caption}<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>{more}"

@@ -40,7 +40,7 @@ SHOWN: dict[str, tuple[list[str], str]] = {
     "whirl": (["whirl", "whirl", "--cavitation", "half-sommerfeld", "--set", "motion.periods=1"], "whirl-whirl.png"),
     "runup": (RUN, "run-summary.png"),
     "rundown": (["rundown", "jeffcott", *SHORT, "-o", "down.h5"], "down-summary.png"),
-    "waterfall": (["waterfall", "run.h5", "--over", "speed", "--rpm"], "run-waterfall.png"),
+    "waterfall": (["waterfall", "run.h5", "--rpm"], "run-waterfall.png"),
     "plot": (["plot", "run.h5", "--what", "orbit"], "run-orbit.png"),
     "compare": (["compare", "jeffcott", "--cavitation", "half-sommerfeld,sommerfeld", *SHORT], "jeffcott-compare.png"),
     "bearing": (["bearing", "jeffcott"], "jeffcott-bearing.png"),

@@ -21,13 +21,13 @@ from frbcli.analysis.orders.forced import without_forced
 from frbcli.analysis.orders.resonance import (
     FLOOR,
     LATE,
-    beside,
     critical_steps,
+    distinct_modes,
     near,
+    near_synchronous,
     passes,
     resonant,
     synchronous_amplitude,
-    told_apart,
     vibrations_beside,
 )
 from frbcli.analysis.orders.revolutions import STEPS, Revolutions, START_s, Tracked, track
@@ -47,7 +47,7 @@ WHIRL_REVOLUTIONS = 4  # the shortest window that is blind to the orders 0 and 1
 WHIRL_BAND = (0.2, 0.8)  # orders in which the dominating frequency is sought
 FREQUENCY_REVOLUTIONS = 16  # window for that frequency: lines 1/16 apart, and short against a ramp of some 10 s
 FREQUENCY_PADDING = 16  # interpolation between these lines
-SHARE_OF_LINE = 0.01  # how fine a parabola finds a peak of a spectrum beside weaker ones
+SHARE_OF_LINE = 0.01  # how fine a parabola finds a peak of a spectrum next to weaker ones
 FREQUENCY_SAMPLES = 32  # per revolution, there
 WHIRL_BEGINS = 0.05  # amplitude relative to the clearance; unbalance and noise of a quiet run stay below in that order
 WHIRL_ENDS = 0.025  # half of it: motion that hovers about the threshold is one whirl
@@ -71,8 +71,8 @@ class Event:
     frequency_Hz, frequency_ratio (to the rotor speed): of the motion, where it has one. point: whose motion it was
     found in, "disk" or "journal", "disk_NAME" or "journal_NAME" where there are several; None where no motion shows it.
     amplitude: over the clearance (C_i + C_o of a floating ring, the length of a machine without films): of an onset and
-    a self-excited vibration the largest one that the motion reaches until it ends, of a critical speed that of the
-    synchronous motion there; None of others.
+    a self-excited vibration the largest one until it ends, of a critical speed the amplitude of the synchronous motion
+    there; None of others.
 
     speed_uncertainty_Hz, frequency_uncertainty_Hz, amplitude_uncertainty, certain, reason: see uncertainty.py; None
     where no second run was made.
@@ -121,12 +121,12 @@ def find_events(run: RunLike) -> tuple[Event, ...]:
         return ()
     run = without_forced(run)
     bearings, rings = list(points(run.signals, "journal")), set(points(run.signals, "ring"))
-    if any(True for _ in signals.films(run.signals)):  # beside those in films there may be journals in none
+    if any(True for _ in signals.films(run.signals)):  # some journals may have no film
         bearings = [name for name in bearings if signals.in_film(run, name)]
     nodes = [("disk", name) for name in points(run.signals, "disk")] or [("journal", name) for name in bearings]
     plain = [name for name in bearings if name not in rings and signals.bearing_clearance(run, name) is not None]
     halves = [(Tracked("journal", name, SUBSYNCHRONOUS, WHIRL_REVOLUTIONS),) for name in plain]
-    wanted = halves, [resonant(*node) for node in nodes], [] if rings else [beside(*node) for node in nodes]
+    wanted = halves, [resonant(*node) for node in nodes], [] if rings else [near_synchronous(*node) for node in nodes]
     turns, motions = track(run, [one for groups in wanted for group in groups for one in group])
     following = iter(motions)
     whirls, resonances, besides = ([[next(following) for _ in group] for group in groups] for groups in wanted)
@@ -205,13 +205,13 @@ def _near_the_speed(
     clearances = (length for name, length in run.references.items() if name.startswith("clearance_m"))
     room = min(clearances, default=without_films)
     modes = signals.critical_speeds(run)
-    found = [
+    vibrations_of = [
         (vibration, name)
         for name, motions in zip(resonances, besides, strict=False)
         if room > 0.0
         for vibration in vibrations_beside(motions, turns, room, before_s, modes)
     ]
-    vibrations = sorted(found, key=lambda each: each[0].time_s)
+    vibrations = sorted(vibrations_of, key=lambda each: each[0].time_s)
     own_frequencies = [vibration for vibration, _ in vibrations]
     motions = list(resonances.values())
     for number, step in critical_steps(motions, turns, FLOOR * room, quiet, modes, own_frequencies):
@@ -231,33 +231,33 @@ def about_critical_speeds(
     rotor speeds."""
     if len(run) < 2:
         return []
-    found = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
+    known = [Event(**{name: each[name] for name in ("kind", "film", "t_s", "speed_Hz", "frequency_Hz",
                                                      "frequency_ratio")}) for each in events]  # fmt: skip
     time_s, speed = signals.course(signals.SignalOf(run, "time_s"), signals.SignalOf(run, "speed_Hz"))
-    quiet = _quiet_spans(found, float(time_s[-1]))
+    quiet = _quiet_spans(known, float(time_s[-1]))
     modes = signals.critical_speeds(run)
     if modes is None:
         begins, ends = [end for _, end in quiet], [*[begin for begin, _ in quiet[1:]], float(time_s[-1])]
         hidden = [unit.span(signals.speed_at(run, begin), signals.speed_at(run, min(end, time_s[-1])))
                   for begin, end in zip(begins, ends, strict=False) if begin < time_s[-1]]  # fmt: skip
         return [f"During whirl no critical speed is sought: {', '.join(hidden)}."] if hidden else []
-    told: dict[tuple[str, str], list[float]] = {}
+    missed: dict[tuple[str, str], list[float]] = {}
     for first, last in passes(speed):
         way = slice(first, min(last + 1, len(speed)))
         t, size = time_s[way], np.abs(speed[way])
         up = size[-1] > size[0]
         ramp = float(np.ptp(size)) / max(float(np.ptp(t)), 1e-12)
-        seen = [abs(each.speed_Hz) for each in found if each.kind == "critical-speed" and t[0] <= each.t_s <= t[-1]]
-        for mode in told_apart(modes):
+        seen = [abs(each.speed_Hz) for each in known if each.kind == "critical-speed" and t[0] <= each.t_s <= t[-1]]
+        for mode in distinct_modes(modes):
             if not size.min() < mode < size.max() or near(mode, seen, LATE * ramp**0.5):
                 continue
             when = float(np.interp(mode, size if up else size[::-1], t if up else t[::-1]))
             left = abs(float(size[-1]) - mode)
             reason = _why_not_found(when - float(time_s[0]), quiet, left < LATE * ramp**0.5)
-            told.setdefault(("up" if up else "down", reason), []).append(mode)
+            missed.setdefault(("up" if up else "down", reason), []).append(mode)
     return [
         f"No critical speed at {unit.listed(speeds)} on the way {way}: {reason}."
-        for (way, reason), speeds in told.items()
+        for (way, reason), speeds in missed.items()
     ]
 
 
@@ -300,7 +300,7 @@ def _whirls_of_any_frequency(
 ) -> Iterator[Event]:
     """Onset and offset of each whirl of a journal of any frequency well below the speed, relative to room in m: of
     floating ring bearings, with the lock-in, C_i + C_o. A journal that is in no film is driven by something, such as a
-    seal, that has no film that would tell how fast; its room is the length of the machine."""
+    seal, that has no film to give its speed; its room is the length of the machine."""
     settled_s = float(turns.time_s[min(turns.settled, len(turns.time_s) - 1)]) if len(turns.time_s) else 0.0
     for whirl in find_whirls(run, name, room, settled_s) if room > 0.0 else ():
         if whirl.rings_out and not in_films:
@@ -339,7 +339,7 @@ def _whirl(run: RunLike, motion: Complex, turns: Revolutions, name: str) -> Iter
 
 
 def _whirl_event(kind: Kind, run: RunLike, name: str, turns: Revolutions, step: float) -> Event:
-    """The event at a step, or between two; its frequency is that of the window just after an onset, just before an
+    """The event at a step, or between two; its frequency is taken from the window just after an onset, just before an
     offset."""
     last, width = len(turns.time_s) - 1, FREQUENCY_REVOLUTIONS * STEPS
     begin = max(0.0, min(step if kind == "onset" else step - width, last - width))
@@ -380,7 +380,7 @@ def _collar_contact(run: RunLike) -> Iterator[Event]:
 
 
 def _nearest(run: RunLike, film: str) -> str:
-    """The signal that tells how near a journal is to its shell: of one that tilts, at an end."""
+    """The signal of the distance of a journal to its shell: with tilt, at the closer end."""
     at_end = joined("end_eccentricity", film)
     return at_end if at_end in run.signals else joined("eccentricity", film)
 
@@ -403,8 +403,8 @@ def _contacts(run: RunLike, film: str, ended: bool) -> Iterator[Event]:
 
 
 def _turning(run: RunLike) -> Iterator[Event]:
-    """Of a rotor whose speed is free, its highest speed, if it is neither at the start nor held up to the end, and its
-    standstill, up to which it slows down from the last two samples as between them."""
+    """For a rotor of free speed: its highest speed, unless at the start or held up to the end, and its standstill,
+    extrapolated from the last two samples."""
     if DRIVE not in run.signals:
         return
     top, top_s, count = 0.0, 0.0, len(run)

@@ -29,7 +29,7 @@ from frbcli.units import SPEED, ValueFault, quantity
 MEASURED = "measured"  # the command of such a run
 USUAL = {"--unit": 1e-6, "--time-unit": 1.0, "--speed-unit": 1.0}  # SI, of columns without a unit
 SPELLINGS = {"u/min": "rpm", "upm": "rpm", "seconds": "s", "second": "s"}  # of units, in measured files
-RATE_OF_TIME = ("m/s", "m/s^2")  # SI units of what a sensor of motion may give in place of a displacement
+RATE_OF_TIME = ("m/s", "m/s^2")  # SI units of what a sensor of motion may give instead of a displacement
 MOST_NUMBERS = 8  # of a file, in a remedy
 EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 rpm"'}
 SAME = 1e-6  # relative difference of two units that are one
@@ -39,7 +39,7 @@ SLOWEST = 1.0  # samples per second: a smaller number is an interval
 
 @dataclass(frozen=True)
 class Measurement:
-    """Where a motion stands in a file.
+    """The columns of a file that hold a motion.
 
     Parameters
     ----------
@@ -52,13 +52,13 @@ class Measurement:
     time : str, optional
         Column of the times.
     rate : float or str, optional
-        Samples per second in place of `time`, or the name of a single number of the file, such as "fs".
+        Samples per second instead of `time`, or the name of a single number of the file, such as "fs".
     speed : str, optional
         Column of the rotor speed.
     speed_Hz : float, optional
-        A constant rotor speed in Hz, in place of `speed`.
+        A constant rotor speed in Hz, instead of `speed`.
     tacho : str, optional
-        Column of a signal with pulses, from which the rotor speed follows, in place of `speed`.
+        Column of a signal with pulses, from which the rotor speed follows, instead of `speed`.
     pulses : int
         Pulses of `tacho` per revolution.
     unit_m, time_unit_s, speed_unit_Hz : float, optional
@@ -221,19 +221,19 @@ def _without_slow_roll(
     if given.slow_roll_Hz is None:
         return dict(seen), ""
     if tacho is None:
-        problem = "does not tell the angle of the rotor, which a slow roll turns with."
+        problem = "does not hold the angle of the rotor, with which the slow roll turns."
         raise wrong_file(columns.path, problem, "Give --tacho COLUMN, or leave --slow-roll out.")
-    left, told, revolutions = dict[str, Array](), list[str](), 0.0
+    left, vectors, revolutions = dict[str, Array](), list[str](), 0.0
     for name, signal in seen.items():
         try:
-            found = slow_roll(signal, tacho.angle, tacho.speed_Hz, given.slow_roll_Hz)
+            roll = slow_roll(signal, tacho.angle, tacho.speed_Hz, given.slow_roll_Hz)
         except ValueError as error:
             remedy = "Give --slow-roll a speed that it keeps for a while, well below the critical speeds."
             raise wrong_file(columns.path, f"has a rotor that {error}", remedy) from None
-        left[name], revolutions = signal - found.at(tacho.angle), found.revolutions
-        told.append(f"{name} {1e6 * abs(found.vector):.4g} um at {math.degrees(cmath.phase(found.vector)):.4g} deg")
+        left[name], revolutions = signal - roll.at(tacho.angle), roll.revolutions
+        vectors.append(f"{name} {1e6 * abs(roll.vector):.4g} um at {math.degrees(cmath.phase(roll.vector)):.4g} deg")
     at = f"{given.slow_roll_Hz:g} Hz over {revolutions:.3g} revolutions"
-    return left, f"Slow roll subtracted, of {at}: {', '.join(told)}."
+    return left, f"Slow roll subtracted, of {at}: {', '.join(vectors)}."
 
 
 class _Units:
@@ -263,23 +263,23 @@ class _Units:
         return np.asarray(values * one)
 
     def _one(self, name: str, stated: str | None, one: float | None, unit: str, option: str) -> float:
-        """What 1 in a column is in SI."""
-        found = None if stated is None else _in_si(stated, unit)
+        """Value in SI of 1 in a column."""
+        in_unit = None if stated is None else _in_si(stated, unit)
         path = self.columns.path
         if stated is not None and unit == "m" and any(_in_si(stated, other) for other in RATE_OF_TIME):
             problem = f'has "{name}" in {stated}, which is no displacement.'
             raise wrong_file(path, problem, "Integrate it over time first.")
-        if one is None and stated is not None and found is None:
+        if one is None and stated is not None and in_unit is None:
             problem = f'says that "{name}" is in {stated}, which is no unit of this kind.'
-            raise wrong_file(path, problem, f"Say by {option} what 1 {stated} stands for, e.g. {EXAMPLES[option]}.")
+            raise wrong_file(path, problem, f"Say by {option} what 1 {stated} means, e.g. {EXAMPLES[option]}.")
         if one is None:
             assumed = f"{NAMES[option]} (no unit in the file; {option} changes it)"
             self._used[name] = assumed if stated is None else stated
-            return found or USUAL[option]
-        if found is not None and not math.isclose(found, one, rel_tol=SAME):
+            return in_unit or USUAL[option]
+        if in_unit is not None and not math.isclose(in_unit, one, rel_tol=SAME):
             problem = f'says that "{name}" is in {stated}, but {option} is {one:g} {unit}.'
             raise wrong_file(path, problem, f'Give {option} "1 {stated}".')
-        self._used[name] = stated if found is not None and stated else f"{one:g} {unit}"
+        self._used[name] = stated if in_unit is not None and stated else f"{one:g} {unit}"
         return one
 
 
@@ -303,9 +303,9 @@ def _times(units: _Units, given: Measurement, count: int) -> Array:
     rate = columns.rate if given.rate is None else given.rate
     if rate is None:
         numbers = ", ".join(f"{name} = {value:g}" for name, value in list(columns.numbers.items())[:MOST_NUMBERS])
-        beside = f", or --rate NAME of one of its numbers: {numbers}." if numbers else "."
-        remedy = f"Give --time COLUMN, --rate NUMBER{beside}"
-        raise wrong_file(columns.path, "does not tell the times of its samples.", remedy)
+        or_number = f", or --rate NAME of one of its numbers: {numbers}." if numbers else "."
+        remedy = f"Give --time COLUMN, --rate NUMBER{or_number}"
+        raise wrong_file(columns.path, "does not hold the times of its samples.", remedy)
     if isinstance(rate, str):
         rate = _number(columns, rate)
     if not SMALLEST <= rate <= LARGEST:
@@ -326,7 +326,7 @@ def _number(columns: Columns, name: str) -> float:
 
 
 def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tacho | None]:
-    """(the rotor speed (n,) in Hz at the times (n,) in s, what its pulses tell)."""
+    """(the rotor speed (n,) in Hz at the times (n,) in s, the tacho pulses if it follows from them)."""
     columns = units.columns
     if given.speed is not None:
         speed = units.column(given.speed, given.speed_unit_Hz, SPEED, "--speed-unit", gaps=True)
@@ -338,19 +338,19 @@ def _speeds(units: _Units, given: Measurement, time: Array) -> tuple[Array, Tach
         return np.full(len(time), given.speed_Hz), None
     if given.tacho is None:
         remedy = "Give --speed COLUMN, --speed-at, or --tacho COLUMN."
-        raise wrong_file(columns.path, "does not tell the rotor speed.", remedy)
+        raise wrong_file(columns.path, "does not hold the rotor speed.", remedy)
     pulses = columns[given.tacho]
     try:
         if len(pulses) != len(time):
             raise ValueError("has another length than the displacements.")
-        found = tacho_speed(time, pulses, given.pulses)
+        turning = tacho_speed(time, pulses, given.pulses)
     except ValueError as error:
         raise wrong_file(columns.path, f'column "{given.tacho}" {error}', "Choose the column of the pulses.") from None
-    return found.speed_Hz, found
+    return turning.speed_Hz, turning
 
 
 def _check_sampling(columns: Columns, given: Measurement, time: Array, speed: Array) -> None:
-    """Raises InputError if the rotor turns faster than the samples show, which also tells of a wrong unit of times or
+    """Raises InputError if the rotor turns faster than the samples can show; this also finds a wrong unit of times or
     speeds before anything is computed with them."""
     rate = (len(time) - 1) / max(float(time[-1] - time[0]), SMALLEST)
     fastest = float(np.max(np.abs(speed)))

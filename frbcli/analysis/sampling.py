@@ -30,15 +30,15 @@ def require_rising(columns: Columns, name: str, time: Array) -> Array:
     if not np.all(steps > 0.0):
         place = int(np.argmin(steps > 0.0)) + 1
         problem = f'has times in "{name}" that do not rise at {columns.row(place)}.'
-        raise wrong_file(columns.path, problem, "Sort the rows by time, or give --rate in place of --time.")
+        raise wrong_file(columns.path, problem, "Sort the rows by time, or give --rate instead of --time.")
     usual = float(np.median(steps))
     off = np.abs(steps - usual)
     place = int(np.argmax(off))
     if off[place] > JITTER * usual:
-        found = f"has a step of {steps[place]:.4g} s"
-        problem = f'{found} in "{name}" before {columns.row(place + 1)}, and else of {usual:.4g} s.'
+        irregular = f"has a step of {steps[place]:.4g} s"
+        problem = f'{irregular} in "{name}" before {columns.row(place + 1)}, and else of {usual:.4g} s.'
         raise wrong_file(
-            columns.path, problem, "Cut the file there; if no sample is missing, give --rate in place of --time."
+            columns.path, problem, "Cut the file there; if no sample is missing, give --rate instead of --time."
         )
     return time
 
@@ -77,7 +77,7 @@ def sampled_at(time: Array, columns: Columns, name: str, own: Array, values: Arr
         return values
     if len(known) < 2:
         raise wrong_file(columns.path, f'has fewer than two numbers in "{name}".', "Choose another column.")
-    moments, found = own[known], values[known]
+    moments, values_there = own[known], values[known]
     steps = np.diff(moments)
     if not np.all(steps > 0.0):
         place = int(known[int(np.argmin(steps > 0.0)) + 1])
@@ -92,7 +92,7 @@ def sampled_at(time: Array, columns: Columns, name: str, own: Array, values: Arr
         problem = f'has numbers in "{name}" from {moments[0]:.4g} s to {moments[-1]:.4g} s alone.'
         remedy = f"Cut the file to these times; it lasts from {time[0]:.4g} to {time[-1]:.4g} s."
         raise wrong_file(columns.path, problem, remedy)
-    return np.asarray(np.interp(time, moments, found))
+    return np.asarray(np.interp(time, moments, values_there))
 
 
 def even_steps(time: Array, signals: Mapping[str, Array]) -> dict[str, Array]:

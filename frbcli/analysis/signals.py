@@ -87,13 +87,13 @@ def samples(column: SignalColumn, places: NDArray[np.int64]) -> Array:
     if len(places) == 0:
         return np.empty(0)
     first, last = int(places[0]), int(places[-1])
-    found = []
+    parts = []
     for start in range(first, last + 1, PIECE):
         here = places[(places >= start) & (places < start + PIECE)]
         if len(here):
             begin = int(here[0])
-            found.append(column[begin : int(here[-1]) + 1][here - begin])
-    return np.concatenate(found)
+            parts.append(column[begin : int(here[-1]) + 1][here - begin])
+    return np.concatenate(parts)
 
 
 def course(time_s: SignalColumn, speed_Hz: SignalColumn) -> tuple[Array, Array]:
@@ -142,7 +142,7 @@ def joined(*words: str) -> str:
 
 
 def points(names: Iterable[str], kind: str) -> Iterator[str]:
-    """The names behind one of KINDS in the signals: "" of one alone, or that of a bearing or a wheel."""
+    """The names behind one of KINDS in the signals: "" of one alone, or the name of a bearing or a wheel."""
     for name in names:
         if name.endswith(END) and (name == kind + END or name.startswith(kind + "_")):
             yield name[len(kind) + 1 : -len(END)]
@@ -166,7 +166,7 @@ def ring_speed(run: RunLike, name: str, start: int = 0, stop: int | None = None)
 
 
 def film_clearance(run: RunLike, film: str = "") -> float | None:
-    """The clearance in m of a film by its name, or else that of all; None if the run does not say it."""
+    """The clearance in m of a film by its name, or else the common one; None if the run does not state it."""
     lengths = run.references
     return lengths.get(joined("clearance_m", film), lengths.get("clearance_m"))
 
@@ -215,8 +215,8 @@ def times_of(run: RunLike, change: str) -> list[float]:
 
 
 def bearing_clearance(run: RunLike, name: str = "") -> float | None:
-    """How far in m the journal of a bearing can move: the clearance, of a floating ring the sum of both, with that of
-    a damper."""
+    """How far in m the journal of a bearing can move: the clearance, of a floating ring the sum of both, plus the
+    damper's."""
     damper, room = run.references.get(joined("clearance_m", name, "damper")), film_clearance(run, name)
     if name in points(run.signals, "ring"):
         both = [run.references.get(joined("clearance_m", name, side)) for side in ("inner", "outer")]

@@ -3,11 +3,11 @@
 Events of both runs belong together if they have the same kind, film and point, are near in time and in the same order.
 The difference of such a pair, times SAFETY, is the uncertainty. Two runs may agree in one number by chance. So the
 uncertainty of an onset, a lock-in and an offset is at least the usual one of all of them, relative to the speed and to
-the frequency, and that of any event at least what the search does not resolve. What happens at another speed happens
-with another frequency: that of a frequency is at least the uncertainty of the speed, times their ratio.
+the frequency, and any uncertainty at least what the search does not resolve. What happens at another speed happens
+with another frequency: the uncertainty of a frequency is at least the uncertainty of the speed, times their ratio.
 
 How many times the root mean square of n differences holds an error of the same spread in 9 of 10 cases is Student's t
-of n degrees of freedom: 6.3 of a single difference, 2.4 of three. SAFETY is that of a single one, for a run whose
+for n degrees of freedom: 6.3 of a single difference, 2.4 of three. SAFETY is for a single one, of a run whose
 errors are half of the differences. Several whirls share their usual difference, and need less, by the share of the
 differences that the errors of the run are.
 """
@@ -31,17 +31,17 @@ BETWEEN = 0.03  # of a step of the search: how far a moment that is read between
 NEAR = 0.1  # of the time of an event: how much earlier or later it may be in the second run
 NEAR_REVOLUTIONS = 40.0  # of the rotor, or as much: at the beginning of a run a whirl settles in as many
 SAFETY = 3.0  # times the difference of both runs in an event, which may be small by chance ...
-BESIDE = 4.0  # ... times the share of the error, in one of three whirls or more, whose usual one counts, too ...
+BY_SHARE = 4.0  # ... times the share of the error, in one of three whirls or more, whose usual one counts, too ...
 SAFETY_OF_MEANS = 1.5  # ... and of the largest one in a slow signal
 HALF = 0.5  # share of a difference to a run with three times the tolerance, if errors are proportional to it
 STUDENT = (6.31, 2.92, 2.35, 2.13, 2.02, 1.94, 1.89, 1.86)  # t of 1 ... 8 differences, in 9 of 10 cases
 TRIMMED = 1.5  # root mean square of normal differences over that without their largest quarter
-PEAK = 0.1  # of what a search finds a frequency by: beside weaker peaks a parabola is off in both runs alike
-FAINT = 1.5  # times the amplitude from which a whirl counts: below it one run has it and another one has not
+PEAK = 0.1  # of what a search finds a frequency by: next to weaker peaks a parabola is off in both runs alike
+FAINT = 1.5  # times the amplitude from which a whirl counts: weaker whirls may be found in one of both runs only
 RETURNS = 3  # onsets of one whirl within so many windows are a motion that comes and goes
 SMALLER = 100.0  # times: the errors of steps at a tenth of the target, from which a whirl may grow as well
-LONG = 20.0  # revolutions: what comes so early before a contact is a motion beside the shell, not the fall into it
-GIVEN = ("clearance-step", "loss")  # their times stand in the case
+LONG = 20.0  # revolutions: what comes so early before a contact is a motion close to the shell, not the fall into it
+GIVEN = ("clearance-step", "loss")  # their times are given in the case
 SAME = ("kind", "film", "point")
 CONTACT = "contact"
 OF_WHIRLS = ("onset", "lock-in", "offset")
@@ -102,9 +102,9 @@ class _Usual:
 
     @classmethod
     def of(cls, both: Sequence[tuple[Record, Record]], amplitude: float, share: float) -> _Usual:
-        """Those of some pairs. amplitude: least one; share: see with_uncertainties."""
+        """Uncertainties from pairs of events. amplitude: least one; share: see with_uncertainties."""
         kept = {key: _without_outliers([_relative(*pair, key) for pair in both]) for key in NUMBERS}
-        safety = {key: min(BESIDE * share, SAFETY) if len(values) > 1 else SAFETY for key, values in kept.items()}
+        safety = {key: min(BY_SHARE * share, SAFETY) if len(values) > 1 else SAFETY for key, values in kept.items()}
         speed, frequency, usual = (_usual(values, share) for values in kept.values())
         return cls(safety, amplitude, speed, frequency, max(amplitude, usual))
 
@@ -112,16 +112,16 @@ class _Usual:
 def slow_uncertainties(run: RunLike, second: RunLike) -> dict[str, float]:
     """Uncertainties of ring speeds, temperatures, losses and oil fractions over a whole run, as keys of its error: the
     largest difference of the means in WINDOWS parts of the run, times SAFETY_OF_MEANS, in the unit of the name. Of
-    several signals of a kind that of the least certain one; without such signals nothing."""
+    several signals of a kind the least certain one counts; without such signals the result is empty."""
     count = min(len(run), len(second))
     edges = np.unique(np.linspace(0, count, WINDOWS + 1).astype(np.int64))
-    found = {}
+    uncertainties = {}
     for quantity, key in SLOW.items():
         names = [name for name in run.signals if name.startswith(quantity)]
         apart = [_means(run, name, edges) - _means(second, name, edges) for name in names]
         if apart and count:
-            found[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
-    return found
+            uncertainties[key] = SAFETY_OF_MEANS * float(np.abs(apart).max())
+    return uncertainties
 
 
 def _means(run: RunLike, name: str, edges: NDArray[np.int64]) -> Array:
@@ -139,12 +139,12 @@ def partners(events: Sequence[Record], second: Sequence[Record]) -> list[Record 
         for j, other in enumerate(second)
         if _key(other) == _key(event) and _are_near(event, other)
     )
-    found: dict[int, int] = {}
+    partner_of: dict[int, int] = {}
     for _, i, j in candidates:
-        same = [(a, b) for a, b in found.items() if _key(events[a]) == _key(events[i])]
-        if i not in found and all((a < i) == (b < j) and b != j for a, b in same):
-            found[i] = j
-    return [second[found[i]] if i in found else None for i in range(len(events))]
+        same = [(a, b) for a, b in partner_of.items() if _key(events[a]) == _key(events[i])]
+        if i not in partner_of and all((a < i) == (b < j) and b != j for a, b in same):
+            partner_of[i] = j
+    return [second[partner_of[i]] if i in partner_of else None for i in range(len(events))]
 
 
 def _key(event: Record) -> tuple[Any, ...]:
@@ -160,7 +160,7 @@ def _are_near(event: Record, other: Record, times: float = 1.0) -> bool:
 
 
 def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[str, Any]:
-    """What is added to an event that the second run has, too."""
+    """Keys to be added to an event that the second run has, too."""
     if event["kind"] in GIVEN:
         return {"speed_uncertainty_Hz": 0.0, "certain": True}
     step_Hz, line_Hz = resolution(run, event)
@@ -183,7 +183,7 @@ def _matched(run: RunLike, event: Record, other: Record, usual: _Usual) -> dict[
 
 
 def _unmatched(event: Record, events: Sequence[Record], second: Sequence[Record]) -> dict[str, Any]:
-    """What is added to an event that the second run does not have."""
+    """Keys to be added to an event that the second run does not have."""
     elsewhere = [other for other in second if _key(other) == _key(event)]
     again = [other for other in events if _key(other) == _key(event) and _are_near(event, other, RETURNS)]
     if reason := _faint(event):
@@ -219,8 +219,8 @@ def _by_seed(run: RunLike, event: Record, known: float) -> float:
 
 
 def _grazing(run: RunLike, event: Record, near_s: float) -> str:
-    """Why a contact is not certain, "" for any other event: it does not end its run, or the journal has been beside its
-    shell for some time (near_s) before."""
+    """Why a contact is not certain, "" for any other event: it does not end its run, or the journal has been close to
+    its shell for some time (near_s) before."""
     if event["kind"] != CONTACT or (run.status == "contact" and near_s == 0.0):
         return ""
     return "the journal grazes the shell, and may miss it by less than the error of its eccentricity"
@@ -273,5 +273,5 @@ def _usual(kept: Array, share: float) -> float:
     """The uncertainty of an event by the differences of all of them without outliers."""
     if not len(kept):
         return 0.0
-    beside = SAFETY * TRIMMED * STUDENT[min(len(kept), len(STUDENT)) - 1] / STUDENT[0] * share / HALF
-    return (min(beside, SAFETY) if len(kept) > 1 else SAFETY) * float(np.sqrt(np.mean(kept**2)))
+    by_count = SAFETY * TRIMMED * STUDENT[min(len(kept), len(STUDENT)) - 1] / STUDENT[0] * share / HALF
+    return (min(by_count, SAFETY) if len(kept) > 1 else SAFETY) * float(np.sqrt(np.mean(kept**2)))

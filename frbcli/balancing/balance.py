@@ -28,7 +28,7 @@ from frbcli.linear.response import SOUND, Response
 from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run
 
-ERROR = 0.01  # of vectors and of influence coefficients over those of the same point, at least
+ERROR = 0.01  # error of vectors and of influence coefficients over the vectors of the same point, at least
 QUIET = 0.05  # of the largest amplitude, by which a point counts at least
 NOTHING = 1e-9  # of the largest vector: what was not measured has round-off
 ALIKE, INSEPARABLE = 10.0, 1e6  # condition numbers
@@ -50,7 +50,7 @@ class TrialRun:
     unbalance_kg_m : float
         Trial mass times its radius.
     angle_deg : float
-        Its angle on the rotor, in the sense of rotation; the zero is that of the corrections.
+        Its angle on the rotor, in the sense of rotation, from the same zero as the corrections.
     """
 
     plane: str
@@ -74,7 +74,7 @@ class PlaneCorrection:
 
     @property
     def correction(self) -> complex:
-        """What has to be added, kg m with its angle."""
+        """Unbalance to be added, kg m with its angle."""
         return -self.unbalance
 
 
@@ -123,9 +123,9 @@ POINTS = (
 class Balancing(Tabular):
     """Corrections of k planes from p points at s speeds.
 
-    vectors: that were balanced; expected: (s, p, 2) of the unbalances found, in m; residual: weighted norm of the
-    difference over that of the vectors; condition: of the influence coefficients with columns of unit length, large
-    where planes cannot be told apart; doubts: sentences, none of a good result; trials: whether coefficients are of
+    vectors: that were balanced; expected: (s, p, 2) m with the unbalances found; residual: weighted norm of the
+    difference over the norm of the vectors; condition: of the influence coefficients with columns of unit length, large
+    where planes cannot be separated; doubts: sentences, none of a good result; trials: whether coefficients come from
     trial runs.
     """
 
@@ -178,7 +178,7 @@ def balance(
         A computed run, which carries its case, or a measured one with trial runs.
     planes : sequence of str
         Names of disks, where masses can be added; "disk" of a Jeffcott rotor, "journal" of a rigid one. By default
-        those of the trials.
+        the planes of the trials.
     speeds_Hz : sequence of float, optional
         Rotor speeds in Hz; by default the one that the run holds, or eight of its ramp.
     points : sequence of str, optional
@@ -199,7 +199,7 @@ def balance(
         For planes, points, speeds or trials that are not there, a measurement without trials or without the angle of
         the rotor, or fewer vectors than planes.
     NotConverged
-        If the planes cannot be told apart.
+        If the planes cannot be separated.
 
     Examples
     --------
@@ -218,10 +218,10 @@ def balance(
 
 
 def _check_angles(runs: Sequence[Run], triggered: bool) -> None:
-    """Raises InputError for measurements that do not tell the angle of the rotor."""
+    """Raises InputError for measurements without the angle of the rotor."""
     for run in runs:
         if run.command == MEASURED and not triggered and not marked(run):
-            problem = "does not tell the angle of the rotor, to which phases count."
+            problem = "does not hold the angle of the rotor, to which phases refer."
             remedy = "Give --tacho with one pulse per revolution, or --triggered if all files begin at the same angle."
             raise input_error("balance", "run", str(run.path), problem, remedy)
 
@@ -232,26 +232,26 @@ def _computed(run: Run, vectors: SynchronousVectors, named: tuple[str, ...], dou
         remedy = 'Give trial runs, as --trial a=trial.csv:"5 g*mm@30deg".'
         raise input_error("balance", "run", str(run.path), "is a measurement, which carries no case.", remedy)
     case = load_case_text(run.case_text, name=run.case_name)
-    found, influence = computed_influence(case, planes_named(case, named), vectors.speeds_Hz.tolist(), vectors.points)
-    doubts += _nonlinear(found)
+    motion, influence = computed_influence(case, planes_named(case, named), vectors.speeds_Hz.tolist(), vectors.points)
+    doubts += _nonlinear(motion)
     return influence
 
 
-def _nonlinear(found: Response) -> list[str]:
-    beyond = [speed for speed, kind in zip(found.speeds_Hz, found.validity, strict=True) if kind != SOUND]
-    whirls = found.speeds_Hz[found.growth > 0.0].tolist()
-    unit, told = found.case.speed_unit, []
+def _nonlinear(motion: Response) -> list[str]:
+    beyond = [speed for speed, kind in zip(motion.speeds_Hz, motion.validity, strict=True) if kind != SOUND]
+    whirls = motion.speeds_Hz[motion.growth > 0.0].tolist()
+    unit, doubts = motion.case.speed_unit, []
     if beyond:
-        told.append(
+        doubts.append(
             f"At {unit.listed(beyond)} a journal moves so far in its gap that linear influence coefficients are wrong "
             "by more than 15 %."
         )
     if whirls:
-        told.append(
+        doubts.append(
             f"At {unit.listed(whirls)} a whirl grows: the journals do not move about the positions for which the "
             "influence coefficients are computed."
         )
-    return told
+    return doubts
 
 
 def _by_trials(
@@ -286,7 +286,7 @@ def _errors(values: Complex, seen: Truths) -> Array:
 
 
 def _spread(errors: Array, influence: Complex, unbalance: Complex, seen: Truths) -> float:
-    """By what errors of the influence coefficients enlarge those of the vectors (m,), of those that were seen."""
+    """Factor by which errors of the influence coefficients enlarge the errors of the vectors (m,) that were seen."""
     more = sum(abs(size) ** 2 * _errors(influence[..., k], seen) ** 2 for k, size in enumerate(unbalance.tolist()))
     added = np.broadcast_to(np.asarray(more)[:, None], seen.shape)[seen]
     return float(np.sqrt(np.mean(1.0 + added / errors**2)))
@@ -312,7 +312,7 @@ def _solved(
     condition = _condition(rows)
     if not condition < INSEPARABLE:
         raise NotConverged(
-            f"The planes {', '.join(named)} cannot be told apart: their influence coefficients are alike (condition "
+            f"The planes {', '.join(named)} cannot be separated: their influence coefficients are alike (condition "
             f"number {condition:.1g}). Choose other planes, more points, or more speeds."
         )
     unbalance = np.linalg.lstsq(rows, given, rcond=None)[0]
@@ -327,20 +327,20 @@ def _solved(
 
 
 def _condition(rows: Complex) -> float:
-    """Of the columns at unit length; infinite where one is nothing."""
+    """Condition number of the columns at unit length; infinite where a column is 0."""
     lengths = np.linalg.norm(rows, axis=0)
     return math.inf if not lengths.all() else float(np.linalg.cond(rows / lengths))
 
 
 def _uncertain(planes: Sequence[PlaneCorrection], residual: float, condition: float) -> list[str]:
-    told, largest = [], max(abs(plane.unbalance) for plane in planes)
+    doubts, largest = [], max(abs(plane.unbalance) for plane in planes)
     if residual > DOUBTFUL_RESIDUAL:
-        told.append(f"Unbalances in these planes leave {100.0 * residual:.3g} % of the vectors unexplained.")
+        doubts.append(f"Unbalances in these planes leave {100.0 * residual:.3g} % of the vectors unexplained.")
     unsure = [plane.plane for plane in planes if plane.uncertainty > DOUBTFUL_UNCERTAINTY * largest]
     if unsure:
-        why = f": the planes are hard to tell apart (condition number {condition:.3g})" if condition > ALIKE else ""
-        told.append(
+        why = f": the planes are hard to separate (condition number {condition:.3g})" if condition > ALIKE else ""
+        doubts.append(
             f"The corrections of {', '.join(unsure)} are uncertain by more than a fifth of the largest{why}. Take "
             "other planes, more points or more speeds."
         )
-    return told
+    return doubts

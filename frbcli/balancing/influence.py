@@ -30,14 +30,14 @@ def computed_influence(
     case: Case, planes: Sequence[BalancingPlane], speeds_Hz: Sequence[float], points: Sequence[str]
 ) -> tuple[Response, Complex]:
     """The response of a case at s speeds, and (s, p, 2, k) in m/(kg m) what p points move along x and y by a unit of
-    unbalance in each of k planes, at the angle 0 of the rotor, linearised about the resting positions.
+    unbalance in each of k planes, at the angle 0 of the rotor, linearised about the static equilibria.
 
     Raises InputError as response does, NotConverged if the rotor does not rest at a speed."""
-    found = response(case, speeds_Hz)
-    if len(found.speeds_Hz) < len(set(speeds_Hz)):
-        raise NotConverged("The rotor has no resting position at some of the speeds. Choose others, by --at.")
+    linear = response(case, speeds_Hz)
+    if len(linear.speeds_Hz) < len(set(speeds_Hz)):
+        raise NotConverged("The rotor has no static equilibrium at some of the speeds. Choose others, by --at.")
     influence = []
-    for point in found.resting:
+    for point in linear.resting:
         rotor, omega = point.rotor, 2.0 * np.pi * point.speed_Hz
         if rotor is None:
             continue
@@ -45,4 +45,4 @@ def computed_influence(
         pull = np.stack([omega**2 * (nodes[plane.node][1] + 1j * nodes[plane.node][0]) for plane in planes], axis=-1)
         motion = forced_motion(rotor, omega, (omega, pull), *coefficients_of(point.films))
         influence.append([nodes[name] @ motion for name in points])
-    return found, np.array(influence)
+    return linear, np.array(influence)

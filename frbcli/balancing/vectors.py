@@ -1,7 +1,7 @@
 """Synchronous vectors of a run: what its points move with the rotor, with the phase to the rotor's angle.
 
-A point moves with x = Re(A exp(i alpha)), and y likewise, alpha the angle of the rotor. That of a computed run is 0 at
-its begin, that of a measurement 0 at each pulse of its tacho.
+A point moves with x = Re(A exp(i alpha)), and y likewise, alpha the angle of the rotor. In a computed run it is 0 at
+the beginning, in a measurement 0 at each pulse of the tacho.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from frbcli.errors import input_error
 from frbcli.results.records import TIME
 
 OF_SHAFT = ("journal", "disk")  # kinds of points
-SAME, NEAR = 2e-3, 1e-2  # relative: speeds that are one, and that may stand for each other
+SAME, NEAR = 2e-3, 1e-2  # relative: speeds that are equal, and speeds that are close enough to replace each other
 HELD = 2.0  # windows: a speed that is held longer has settled in the second half of that time
 DWELLS = 0.25  # share of a run that holds one speed
 WINDOWS = 0.5  # share of a short run that a window has
@@ -32,8 +32,8 @@ SPEEDS, FROM, TO = 8, 0.4, 0.95  # of a ramp: number, and share of its highest s
 
 @dataclass(frozen=True)
 class SynchronousVectors:
-    """Of p points at s speeds. values: (s, p, 2) complex amplitudes of x and y in m; scatter: (s, p, 2) of the windows
-    in m, 0 where it is not known."""
+    """Vectors of p points at s speeds. values: (s, p, 2) complex amplitudes of x and y in m; scatter: (s, p, 2) of the
+    windows in m, 0 where it is not known."""
 
     speeds_Hz: Array
     points: tuple[str, ...]
@@ -59,9 +59,9 @@ def synchronous_vectors(
         raise input_error("balance", "speed", "", "is not above 0: the rotor turns the other way round.", "")
     speeds = _usual_speeds(tracks[0]) if speeds_Hz is None else sorted(set(speeds_Hz))
     turned = np.exp(2j * np.pi * run.references.get(MARK, 0.0))
-    found = [[_at(track, speed) for track in tracks] for speed in speeds]
-    values = np.array([[value for value, _ in row] for row in found])
-    scatter = np.array([[scatter for _, scatter in row] for row in found])
+    rows = [[_at(track, speed) for track in tracks] for speed in speeds]
+    values = np.array([[value for value, _ in row] for row in rows])
+    scatter = np.array([[scatter for _, scatter in row] for row in rows])
     return SynchronousVectors(np.array(speeds), tuple(names), turned * values, scatter)
 
 
@@ -111,5 +111,5 @@ def _between(speeds: Array, values: Complex, nearest: int, speed: float) -> Comp
 
 
 def marked(run: RunLike) -> bool:
-    """Whether a run tells the angle of the rotor."""
+    """Whether a run holds the angle of the rotor."""
     return math.isfinite(run.references.get(MARK, math.nan))

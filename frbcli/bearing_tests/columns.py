@@ -43,7 +43,7 @@ def force_size(result: Any) -> float:
 
 
 def _fixed(vector: Sequence[float], digits: int) -> list[str]:
-    """Both components and the size, with decimals that give so many digits to the size: round-off beside it is 0."""
+    """Both components and the size, with decimals that give so many digits to the size; round-off below them is 0."""
     size = math.hypot(*vector)
     decimals = max(0, digits - 1 - math.floor(math.log10(size))) if size > 0.0 else 0
     return [f"{value:.{decimals}f}" for value in (*vector, size)]
@@ -60,8 +60,8 @@ def _angle(result: Any) -> float:
 
 
 HEAD = (
-    Column("cavitation", "", "cavitation model", lambda result: result.cavitation or None),
-    Column("theory", "", "`finite`, or the bearing model"),
+    Column("cavitation", "", "cavitation model"),
+    Column("theory", "", "of the film: `finite` or `short`"),
     Column("status", "", "`ok` or `not-converged`"),
 )
 
@@ -174,8 +174,8 @@ STRIBECK = tuple(
 
 
 def error_column(largest: float) -> Column:
-    """The error of a force over the largest one of a table in N: one that nearly vanishes has a large error of its own,
-    which is of no meaning beside the others."""
+    """The error of a force over the largest one of a table in N: a force that nearly vanishes has a large relative
+    error, which means nothing among larger forces."""
     return Column(
         "error", "", "error of the force over the largest |F| of the table: from half the cells, of a short bearing "
         "from the finite one",

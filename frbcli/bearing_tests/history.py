@@ -51,11 +51,11 @@ class History:
 
 @dataclass(frozen=True)
 class Course:
-    """What a moved film went through: its history; field (None of a bearing model) and loads at the moment of the
+    """Result of a moved film: its history; field and loads at the moment of the
     largest force, and the estimated relative error of that force; cost; why it ended early, or nothing."""
 
     history: History
-    field: FilmField | None
+    field: FilmField
     loads: FilmLoads
     force_error: float
     unknowns: int
@@ -154,16 +154,16 @@ def _moments(
 
 
 def _marches(case: Case, film: _MovingFilm, times: Array) -> Iterator[tuple[Moment, ...]]:
-    """The lands beside each other, time by time."""
+    """The moments of all lands, time by time."""
     marches = [march(each.film, each.path, times, film_at=_film_at(case, each.plan, each.film)) for each in film.lands]
     return zip(*marches, strict=True)
 
 
-def collected(found: Iterator[Moved], observe: Callable[[int], None] | None = None) -> tuple[list[Moved], str]:
+def collected(course: Iterator[Moved], observe: Callable[[int], None] | None = None) -> tuple[list[Moved], str]:
     """The moments until the film does not converge, and why it does not. Raises NotConverged if there are none."""
     moments: list[Moved] = []
     try:
-        for moment in found:
+        for moment in course:
             moments.append(moment)
             if observe is not None:
                 observe(len(moments))
@@ -188,9 +188,9 @@ def mean_heat(case: Case, plan: KinematicPlan, path: Path, times: Array) -> tupl
     powers, flows = [], []
     for moments in _marches(case, film, passed):
         if moments[0].time > begin:
-            found, motion = _moment(case, film, moments).loads, path(moments[0].time)
-            push = plan.section.clearance * float(np.dot(found.force, motion.v))
-            powers.append(-found.torque.journal * motion.omega - push)
+            film_loads, motion = _moment(case, film, moments).loads, path(moments[0].time)
+            push = plan.section.clearance * float(np.dot(film_loads.force, motion.v))
+            powers.append(-film_loads.torque.journal * motion.omega - push)
             pairs = zip(film.lands, moments, strict=True)
             flows.append(sum(leaving(land.film, moment.motion, moment.solution) for land, moment in pairs))
     return float(np.mean(powers)), float(np.mean(flows))
@@ -213,7 +213,7 @@ def _error_of_course(
 
 def peak_error(case: Case, times: Array, moments: Sequence[MovedFilm], coarse: Sequence[MovedFilm]) -> float:
     """The largest error of the periods' largest forces over the largest of all, from a course of half the resolution:
-    of first order, since the steps keep the oil as Euler's do."""
+    of first order, as Euler's steps of the oil are."""
     fine_peaks, coarse_peaks = _peaks(case, times, moments), _peaks(case, times, coarse)
     largest = max(fine_peaks.values())
     worst = max(abs(peak - coarse_peaks[n]) for n, peak in fine_peaks.items() if n in coarse_peaks)
@@ -285,7 +285,7 @@ def _film(case: Case, plan: KinematicPlan, path: Path, times: Array) -> VolumeFi
 
 
 def _film_at(case: Case, plan: KinematicPlan, film: VolumeFilm) -> FilmAt:
-    """The film with supply and law of a moment: that of the penalty model follows the eccentricity."""
+    """The film with supply and law of a moment: the law of the penalty model follows the eccentricity."""
 
     def film_at(time: float, motion: Motion) -> VolumeFilm:
         fed = supplied(film, supply_share(time, plan.ramp)) if plan.ramp else film
@@ -304,16 +304,16 @@ def _moment(case: Case, film: _MovingFilm, moments: tuple[Moment, ...]) -> _Mome
         loads(land.film, moment.motion, moment.solution, slip, factor)
         for land, moment in zip(film.lands, moments, strict=True)
     ]
-    found = summed(list(zip(parts, each, strict=True)))
+    film_loads = summed(list(zip(parts, each, strict=True)))
     if plan.modal:  # then nothing turns
-        found = replace(found, force=modal_force(plan, motion, COARSE_MODAL_MESH))
-    found = rubbing_of(case).loads(found, motion, plan.turning)
-    found = replace(found, force=turned(found.force, angle), moment=turned(found.moment, angle))
+        film_loads = replace(film_loads, force=modal_force(plan, motion, COARSE_MODAL_MESH))
+    film_loads = rubbing_of(case).loads(film_loads, motion, plan.turning)
+    film_loads = replace(film_loads, force=turned(film_loads.force, angle), moment=turned(film_loads.moment, angle))
     place = PROBE_WIDTH * plan.section.bearing_width / plan.section.width
     probe = pressure_at(film_field(first.film, moments[0].motion, moments[0].solution), PROBE - angle, place)
     gap = float(gap_on(plan.section, moments[0].motion, np.array([PROBE - angle]), np.array([place]))[0, 0])
     iterations = sum(moment.solution.iterations for moment in moments)
-    return _Moment(time, turned(motion.d, angle), found, probe, gap, iterations, moments)
+    return _Moment(time, turned(motion.d, angle), film_loads, probe, gap, iterations, moments)
 
 
 def _field(film: _MovingFilm, moment: _Moment) -> FilmField:

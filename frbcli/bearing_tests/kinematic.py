@@ -37,15 +37,15 @@ FEWEST_TIMES = 8
 
 @dataclass(frozen=True)
 class KinematicResult:
-    """What one cavitation model says, or the bearing model, then cavitation is empty.
+    """Result of one cavitation model.
 
     status: "ok" | "not-converged", then problem says why. displacement: (2,) over the clearance; loads, field: None if
-    there is no solution, the field also of a bearing model, whose loads are NaN but for the force; force_error,
+    there is no solution; force_error,
     moment_error: estimated, relative to force and moment, NaN if not known, the latter of a rotation; history: None for
-    a rotation. Of a squeeze or a whirl, displacement, loads and field are those of the moment of the largest force, and
-    so is the error; with a law that keeps oil it is the worst of the largest forces of the periods. heat: of a case
-    with heat, in a squeeze or whirl of the mean over the last period; all else is that of its viscosity and clearance,
-    as in `plan`. stribeck: of a rotation under a load between rough surfaces.
+    a rotation. Of a squeeze or a whirl, displacement, loads, field and error are at the moment of the largest force;
+    with a mass-conserving law the error is the worst of the largest forces of the periods. heat: of a case with heat,
+    in a squeeze or whirl the mean over the last period; all else is at its viscosity and clearance, as in `plan`.
+    stribeck: of a rotation under a load between rough surfaces.
     """
 
     cavitation: str
@@ -67,13 +67,9 @@ class KinematicResult:
 
     @property
     def theory(self) -> str:
-        """ "finite", or the name of a bearing model."""
+        """ "finite" or "short"."""
         return self.plan.theory
 
-    @property
-    def name(self) -> str:
-        """Name of the cavitation model or bearing model."""
-        return self.cavitation or self.theory
 
 
 @dataclass(frozen=True, repr=False)
@@ -110,7 +106,7 @@ def rotation(
     case : Case
         The machine, see `load_case`, with [motion].
     cavitations : sequence of str
-        Cavitation models; an empty one stands for that of the case.
+        Cavitation models; an empty one means the model of the case.
     observe : callable, optional
         Called with the number of each moment of each model, and how many there are.
 
@@ -187,27 +183,27 @@ def whirl(
     return _test(case, cavitations, "whirl", _course, observe)
 
 
-Tell = Callable[[int], None]
+Report = Callable[[int], None]
 
 
 def _test(
     case: Case, cavitations: Sequence[str], test: str,
-    solve: Callable[[Case, KinematicPlan, Tell | None], KinematicResult], observe: Observer | None,
+    solve: Callable[[Case, KinematicPlan, Report | None], KinematicResult], observe: Observer | None,
 ) -> KinematicTest:  # fmt: skip
     plans = [kinematic_plan(case, name, test) for name in dict.fromkeys(cavitations or (None,))]
     case = tested_case(case)
     results: list[KinematicResult] = []
     try:
         for number, plan in enumerate(plans):
-            results.append(solve(case, plan, None if observe is None else _telling(observe, number, plans, case)))
+            results.append(solve(case, plan, None if observe is None else _reporter(observe, number, plans, case)))
     except KeyboardInterrupt:
         if not results:
             raise
     return KinematicTest(case, test, tuple(results), len(results) == len(plans))
 
 
-def _telling(observe: Observer, done: int, plans: Sequence[KinematicPlan], case: Case) -> Tell:
-    """A function that observes the moments of one model, numbered on from those of the models before it."""
+def _reporter(observe: Observer, done: int, plans: Sequence[KinematicPlan], case: Case) -> Report:
+    """A function that observes the moments of one model, numbered on from the models before it."""
     counts = [_moment_count(case, plan) for plan in plans]
     before, whole = sum(counts[:done]), sum(counts)
     return lambda number: observe(before + number, whole)
@@ -219,7 +215,7 @@ def _moment_count(case: Case, plan: KinematicPlan) -> int:
     return 1 if plan.test == "rotation" else max(round(case.motion.periods * plan.steps), FEWEST_TIMES)
 
 
-def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
+def _rotation(case: Case, plan: KinematicPlan, report: Report | None) -> KinematicResult:
     assert case.motion is not None
     begun, displacement, warm = working_time().cpu_s, (math.nan, math.nan), None
     omega = 2.0 * math.pi * (case.motion.speed or 0.0)
@@ -235,8 +231,8 @@ def _rotation(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicRe
             stribeck = stribeck_curve(case, plan)
     except NotConverged as problem:
         return _failed(plan, displacement, begun, str(problem))
-    if tell is not None:
-        tell(1)
+    if report is not None:
+        report(1)
     return KinematicResult(
         cavitation=plan.cavitation,
         status=OK,
@@ -262,8 +258,8 @@ def _lasting(case: Case, plan: KinematicPlan) -> Motion:
     assert motion is not None
     omega = 2.0 * math.pi * (motion.speed or 0.0)
     if motion.load is not None:
-        found = tested_film(plan).rest(case, plan, motion.load, omega)
-        return Motion((float(found[0]), float(found[1])), (0.0, 0.0), omega)
+        place = tested_film(plan).rest(case, plan, motion.load, omega)
+        return Motion((float(place[0]), float(place[1])), (0.0, 0.0), omega)
     e, angle, section = motion.eccentricity or 0.0, motion.angle, plan.section
     along, across = (math.cos(angle), math.sin(angle)), (-math.sin(angle), math.cos(angle))
     turn = e * 2.0 * math.pi * motion.whirl_speed
@@ -274,7 +270,7 @@ def _lasting(case: Case, plan: KinematicPlan) -> Motion:
     return Motion(displacement_of(case), (rates[0], rates[1]), omega, slope, slope_rate)
 
 
-def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResult:
+def _course(case: Case, plan: KinematicPlan, report: Report | None) -> KinematicResult:
     assert case.motion is not None
     motion, begun, warm = case.motion, working_time().cpu_s, None
     assert motion.eccentricity is not None
@@ -289,7 +285,7 @@ def _course(case: Case, plan: KinematicPlan, tell: Tell | None) -> KinematicResu
             if case.heat is not None:
                 warm = warm_moved_film(case, plan, omega, path, times)
                 case, plan = warm.case, warm.plan
-            course = tested_film(plan).course(case, plan, path, times, tell)
+            course = tested_film(plan).course(case, plan, path, times, report)
     except NotConverged as problem:
         return _failed(plan, (math.nan, math.nan), begun, str(problem))
     worst = int(np.argmax(np.hypot(*course.history.force.T)))

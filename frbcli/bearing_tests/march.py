@@ -69,9 +69,9 @@ def march(
     and law as they are at a time and a motion, else it stays the same. A step that does not converge is taken in
     halves. Raises NotConverged.
 
-    A law that keeps its oil stores it as implicit Euler steps do, but lets it flow through the gap of the middle of the
-    step, which makes the pressure of a full film second order; moments are then of that time. Else the film follows
-    from the motion of the moment. Openings whose supply gives a flow at the most are full at first; their filling stays
+    A mass-conserving law stores oil as implicit Euler steps do, but lets it flow through the gap of the middle of the
+    step, which makes the pressure of a full film second order; moments are then at that time. Other films follow from
+    the motion of the moment. Openings whose supply is flow-limited are full at first; their filling stays
     during a step, as in runs.
     """
     steps = _Steps(film, path, film.full() if start is None else start, times, film_at)

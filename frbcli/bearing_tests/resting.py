@@ -39,13 +39,13 @@ def resting_displacement(
 ) -> Array:
     """(2,) displacement over the clearance at which the film carries a load in N along -y, omega in rad/s.
 
-    Sought with few cells first, then with those of the plan. force: of the film for a motion, on cells. Raises
+    Sought with few cells first, then with the plan's. force: of the film for a motion, on cells. Raises
     NotConverged if no start leads to one, or if the film cannot carry anything.
     """
     if plan.remembers and plan.law.empties and no_inflow(plan.section):
         cavity = plan.section.cavitation_pressure / BAR
         raise NotConverged(
-            f"no resting position under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
+            f"no static equilibrium under {load:g} N: in the long run {plan.law.label}'s film carries 0 N, at any "
             "eccentricity. Where its pressure is above the cavitation pressure it loses oil at its edges, and none "
             f"comes in: neither supply nor oil bath is above the cavitation pressure, {cavity:g} bar. "
             "Raise the supply pressure, or supply it through axial grooves or feed holes."
@@ -67,7 +67,7 @@ def resting_displacement(
         except NotConverged as problem:
             problems.append(str(problem))
     raise NotConverged(
-        f"no resting position under {load:g} N from {len(starts)} starts; the last one: "
+        f"no static equilibrium under {load:g} N from {len(starts)} starts; the last one: "
         f"{problems[-1].rstrip('.')}. {_capacity(case, plan, omega, force)} "
         "Give a higher speed or more viscosity, width or supply, or a smaller clearance."
     )
@@ -80,8 +80,8 @@ def _capacity(case: Case, plan: KinematicPlan, omega: float, force_of: ForceOf) 
     for e in sorted(STARTS):
         place = (side * e * math.sin(ATTITUDE), -e * math.cos(ATTITUDE))
         with suppress(NotConverged):
-            found = force_of(case, plan, COARSE_CELLS, Motion(place, (0.0, 0.0), omega), None)
-            forces[e] = float(np.linalg.norm(found.force))
+            loads = force_of(case, plan, COARSE_CELLS, Motion(place, (0.0, 0.0), omega), None)
+            forces[e] = float(np.linalg.norm(loads.force))
     if not forces:
         return f"There is no steady film at the eccentricities {', '.join(f'{e:g}' for e in sorted(STARTS))}."
     highest = max(forces, key=forces.__getitem__)
@@ -89,7 +89,7 @@ def _capacity(case: Case, plan: KinematicPlan, omega: float, force_of: ForceOf) 
 
 
 def _in_a_table(bearing: Section, load: Array, omega: float, starts: list[Array]) -> list[Array]:
-    """The resting position in the tabulated half-Sommerfeld film, to begin from, if there is one."""
+    """The static equilibrium in the tabulated half-Sommerfeld film, to begin from, if there is one."""
     film, c, still = make_film(bearing, "finite", "half-sommerfeld", TABLE_MESH), bearing.clearance, np.zeros(2)
     for start in starts:
         with suppress(NotConverged):
@@ -103,12 +103,12 @@ def _carried(force: Near, section: Section, load: Array, omega: float, start: Ar
 
     def balance(position: Array, before: ForceBalance[FilmForce] | None) -> ForceBalance[FilmForce]:
         x, y = (position[0] / section.clearance).tolist()
-        found = force(Motion((x, y), (0.0, 0.0), omega), before.films if before else None)
-        return ForceBalance(found.force - load, found.by_displacement, found)
+        rest = force(Motion((x, y), (0.0, 0.0), omega), before.films if before else None)
+        return ForceBalance(rest.force - load, rest.by_displacement, rest)
 
     size, c = float(np.linalg.norm(load)), section.clearance
-    found = search_rest(balance, c * start[None], lambda at: at / c, Search(0.0, SETTLED * size, SMALLEST_SHARE))
-    place: Array = found.position[0] / c
-    if not found.settled:
-        raise NotConverged(f"{found.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")
+    rest = search_rest(balance, c * start[None], lambda at: at / c, Search(0.0, SETTLED * size, SMALLEST_SHARE))
+    place: Array = rest.position[0] / c
+    if not rest.settled:
+        raise NotConverged(f"{rest.balance.left / size:.1e} of the load is left over at {np.round(place, 3)}.")
     return place

@@ -45,11 +45,11 @@ class FilmField:
 
 @dataclass(frozen=True)
 class FilmMoment:
-    """A film at one moment: its field, None of a bearing model, the loads on the whole bearing, the estimated relative
+    """A film at one moment: its field, the loads on the whole bearing, the estimated relative
     errors of force and moment, and what it took; side_flow: m^3/s that leave through the open ends, where it was asked
-    for. The field of a bearing whose lands differ is that of the land at z < 0."""
+    for. The field of a bearing whose lands differ is the one of the land at z < 0."""
 
-    field: FilmField | None
+    field: FilmField
     loads: FilmLoads
     force_error: float
     unknowns: int
@@ -64,21 +64,21 @@ def steady_film(
 ) -> FilmMoment:  # fmt: skip
     """The film for a motion that lasts, solved on half the cells each way, and from there on all.
 
-    cells: around and along the whole film; one cut at its plane of symmetry gets half of those along; factor: of the
+    cells: around and along the whole film; half of them along for a film cut at its plane of symmetry; factor: of the
     torque, for a shell at rest. Raises NotConverged.
     """
     coarse, film = _films(section, law, motion, cells)
     first = FilmSolver(coarse).steady(motion)
     solution = FilmSolver(film).steady(motion, film.from_coarser(coarse, first.w))
-    found, rough = loads(film, motion, solution, factor=factor), loads(coarse, motion, first)
+    fine, rough = loads(film, motion, solution, factor=factor), loads(coarse, motion, first)
     return FilmMoment(
         film_field(film, motion, solution),
-        found,
-        estimate(found.force, rough.force, law.order),
+        fine,
+        estimate(fine.force, rough.force, law.order),
         int(np.count_nonzero(~film.grid.fixed)),
         first.iterations + solution.iterations,
         leaving(film, motion, solution) if flow else math.nan,
-        estimate(found.moment, rough.moment, law.order),
+        estimate(fine.moment, rough.moment, law.order),
     )
 
 
@@ -120,14 +120,14 @@ def film_moment(
     require_gap(plan.section, motion)
     parts = lands(plan.section, motion, case.bearings[0].films[0].supply.mirrored)
     factor = case.film.cavitation_factor
-    found = _whole([(land, steady_film(land.section, law, land.motion, cells, factor, flow)) for land in parts])
+    moment = _whole([(land, steady_film(land.section, law, land.motion, cells, factor, flow)) for land in parts])
     if plan.rectangle is None or not plan.modal:
-        return found
+        return moment
     place, velocity = _si(plan, motion)
     force, coarse = modal_force(plan, motion), modal_force(plan, motion, COARSE_MODAL_MESH)
     top = largest_pressure(plan.rectangle, MODAL_MESH, place, velocity, motion.omega)
-    told = replace(found.loads, force=force, p_max=top)
-    return replace(found, loads=told, force_error=estimate(force, coarse))
+    film_loads = replace(moment.loads, force=force, p_max=top)
+    return replace(moment, loads=film_loads, force_error=estimate(force, coarse))
 
 
 def require_gap(section: Section, motion: Motion) -> None:
@@ -139,20 +139,20 @@ def require_gap(section: Section, motion: Motion) -> None:
 
 
 def _whole(parts: Sequence[tuple[Land, FilmMoment]]) -> FilmMoment:
-    """The film of a bearing from those of its lands, whose errors add up at the worst."""
-    found = summed([(land, each.loads) for land, each in parts])
+    """The film of a bearing from its lands, whose errors add up at the worst."""
+    whole = summed([(land, each.loads) for land, each in parts])
     if len(parts) == 1:
-        return replace(parts[0][1], loads=found)
+        return replace(parts[0][1], loads=whole)
     force_errors = [each.force_error * math.hypot(*each.loads.force) for _, each in parts]
     moment_error = sum(
         each.moment_error * math.hypot(*each.loads.moment) + abs(land.centre) * error
         for (land, each), error in zip(parts, force_errors, strict=True)
     )
-    force, moment = math.hypot(*found.force), math.hypot(*found.moment)
+    force, moment = math.hypot(*whole.force), math.hypot(*whole.moment)
     films = [each for _, each in parts]
     return FilmMoment(
         films[0].field,
-        found,
+        whole,
         sum(force_errors) / force if force > 0.0 else 0.0,
         sum(each.unknowns for each in films),
         sum(each.iterations for each in films),

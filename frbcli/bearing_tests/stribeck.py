@@ -51,8 +51,8 @@ class _Point(NamedTuple):
 def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
     """The curve of a planned rotation; None without a load, a speed, rough surfaces or a known torque.
 
-    Films on cells have COARSE_CELLS. It ends where a journal rests nowhere. Raises NotConverged if it does not rest at
-    the speed of the test.
+    Finite-volume films have COARSE_CELLS. It ends where a journal has no static equilibrium. Raises NotConverged if it
+    has none at the speed of the test.
     """
     motion = case.motion
     if motion is None or motion.load is None or not motion.speed or not case.contact.rough or not plan.form.solved:
@@ -66,7 +66,7 @@ def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
 
 
 def _film_alone(points: Sequence[_Point]) -> bool:
-    """Whether the last one is far beyond those at which summits touch."""
+    """Whether the last speed is far above the speeds at which summits touch."""
     touching = [abs(each.speed) for each in points if each.share > 0.0] or [abs(points[0].speed)]
     return abs(points[-1].speed) > FILM_ALONE * max(touching)
 
@@ -74,14 +74,14 @@ def _film_alone(points: Sequence[_Point]) -> bool:
 def _walk(
     point: Callable[[float], _Point], begun: list[_Point], ratio: float, ends: Callable[[Sequence[_Point]], bool]
 ) -> list[_Point]:
-    """Points and those behind them, at speeds that grow by a ratio, up to one that ends them."""
-    found = list(begun)
-    while len(found) < len(begun) + MOST and not ends(found):
+    """Given points and further ones, at speeds that grow by a ratio, up to one that ends them."""
+    points = list(begun)
+    while len(points) < len(begun) + MOST and not ends(points):
         try:
-            found.append(point(found[-1].speed * ratio))
+            points.append(point(points[-1].speed * ratio))
         except NotConverged:
             break
-    return found
+    return points
 
 
 def _point(case: Case, plan: KinematicPlan, load: float, speed: float) -> _Point:

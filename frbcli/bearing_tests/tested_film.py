@@ -9,7 +9,6 @@ from functools import partial
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.bearing_tests.forms.bearing_model import model_course, model_force, model_moment
 from frbcli.bearing_tests.forms.short import short_course, short_force, short_moment
 from frbcli.bearing_tests.history import Course, film_course
 from frbcli.bearing_tests.resting import ForceOf, resting_displacement
@@ -18,12 +17,11 @@ from frbcli.case.schema import Case
 from frbcli.film.cells.motion import Motion, Path
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import GIVEN
 from frbcli.scene.forms.tables import SHORT
 from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan
 
-Tell = Callable[[int], None]
+Report = Callable[[int], None]
 
 
 @dataclass(frozen=True)
@@ -31,15 +29,15 @@ class TestedFilm:
     """The film of a planned test of a case, as functions that raise NotConverged.
 
     rest(case, plan, load, omega): (2,) displacement over the clearance in which it carries a load in N along -y at
-    omega rad/s. moment(case, plan, motion): the film for a motion that lasts. course(case, plan, path, times, tell):
-    the film along a path at the times (n,) in s, see film_course; tell: called with the number of each moment.
+    omega rad/s. moment(case, plan, motion): the film for a motion that lasts. course(case, plan, path, times, report):
+    the film along a path at the times (n,) in s, see film_course; report: called with the number of each moment.
     """
 
     __test__ = False  # no test case, whatever its name begins with
 
     rest: Callable[[Case, KinematicPlan, float, float], Array]
     moment: Callable[[Case, KinematicPlan, Motion], FilmMoment]
-    course: Callable[[Case, KinematicPlan, Path, Array, Tell | None], Course]
+    course: Callable[[Case, KinematicPlan, Path, Array, Report | None], Course]
 
 
 def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: float) -> Array:
@@ -47,19 +45,19 @@ def _rest(force: ForceOf, case: Case, plan: KinematicPlan, load: float, omega: f
 
 
 def _rubbing(force: ForceOf) -> ForceOf:
-    """The force of a film with that of its summits."""
+    """The force of a film including its summits."""
 
     def whole(
         case: Case, plan: KinematicPlan, cells: tuple[int, int], motion: Motion, near: FilmForce | None
     ) -> FilmForce:
         film, c = force(case, plan, cells, motion, near), plan.section.clearance
-        return rubbing_of(case).beside(film, c * np.array(motion.d), c * np.array(motion.v), motion.omega)
+        return rubbing_of(case).with_summits(film, c * np.array(motion.d), c * np.array(motion.v), motion.omega)
 
     return whole
 
 
 def _on_summits(case: Case, motion: Motion, film: FilmMoment) -> FilmMoment:
-    """A film with its summits beside it."""
+    """A film including its summits."""
     rubbing = rubbing_of(case)
     whole = rubbing.loads(film.loads, motion)
     return replace(film, loads=whole, force_error=film.force_error * rubbing.share_of_error(film.loads, whole))
@@ -75,11 +73,6 @@ FILMS: dict[FilmForm, TestedFilm] = {
         partial(_rest, _rubbing(short_force)),
         lambda case, plan, motion: _on_summits(case, motion, short_moment(plan, motion)),
         lambda case, plan, path, times, _: short_course(plan, rubbing_of(case), path, times),
-    ),
-    GIVEN: TestedFilm(
-        partial(_rest, model_force),
-        lambda case, plan, motion: model_moment(case, plan, motion),
-        lambda case, plan, path, times, _: model_course(case, plan, path, times),
     ),
 }
 

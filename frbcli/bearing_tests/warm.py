@@ -38,10 +38,10 @@ def warm_resting_film(case: Case, plan: KinematicPlan, omega: float, place: Plac
 
     def dissipated(alike: Case, its_plan: KinematicPlan) -> tuple[float, float]:
         motion = place(alike, its_plan)
-        found = film_moment(alike, its_plan, motion, its_plan.cells, flow=True)
-        push = float(np.dot(found.loads.force, motion.v)) * its_plan.section.clearance
-        push += float(np.dot(found.loads.moment, tilt_rate_of(alike))) if motion.tilts else 0.0
-        return -found.loads.torque.journal * omega - push, found.side_flow
+        moment = film_moment(alike, its_plan, motion, its_plan.cells, flow=True)
+        push = float(np.dot(moment.loads.force, motion.v)) * its_plan.section.clearance
+        push += float(np.dot(moment.loads.moment, tilt_rate_of(alike))) if motion.tilts else 0.0
+        return -moment.loads.torque.journal * omega - push, moment.side_flow
 
     return _warm_film(case, plan, omega, dissipated, heat_of(case).start)
 

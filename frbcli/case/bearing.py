@@ -33,7 +33,7 @@ from frbcli.materials.solids import SOLIDS, Solid
 
 
 class BearingWalls(Model):
-    """Keys of a bearing that take the place of those of [thermal]."""
+    """Keys of a bearing that override the keys of [thermal]."""
 
     shaft: AnyWall | None = Field(default=None, description="replaces thermal.shaft")
     housing: AnyWall | None = Field(default=None, description="replaces thermal.housing")
@@ -61,12 +61,12 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
-        """Its films, without that of a damper."""
+        """Its films, except a damper's."""
         return (self,)
 
     @property
     def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table, in their order."""
+        """Keys of its films in its table, in their order."""
         return ("",)
 
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:
@@ -159,12 +159,12 @@ class FloatingRingBearing(BearingWalls):
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
-        """Its films from the journal outwards, without that of a damper."""
+        """Its films from the journal outwards, except a damper's."""
         return (self.inner, self.outer)
 
     @property
     def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table, in their order."""
+        """Keys of its films in its table, in their order."""
         return ("inner", "outer")
 
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:
@@ -201,12 +201,12 @@ class FloatingRingBearing(BearingWalls):
 
     @property
     def ring_width(self) -> float:
-        """Axial width of the ring in m: as given, or that of the wider film."""
+        """Axial width of the ring in m: as given, or the wider film's."""
         return max(self.inner.width, self.outer.width) if self.ring.width is None else self.ring.width
 
 
 def _both_sides(given: object) -> object:
-    """One film as that of both ends of a cartridge."""
+    """One film, used for both ends of a cartridge."""
     return [given, given] if isinstance(given, dict | Model) else given
 
 
@@ -238,7 +238,7 @@ class CartridgeBearing(BearingWalls):
 
     @property
     def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table, in their order."""
+        """Keys of its films in its table, in their order."""
         places = (("inner", self.inner), ("outer", self.outer))
         return tuple(key if one == other else f"{key}.{end}" for end in range(2) for key, (one, other) in places)
 
@@ -283,7 +283,7 @@ def _as_list(given: object) -> object:
         return [given]
     if isinstance(given, list | tuple) and len(given) > 1:
         in_film = [bearing for bearing in given if not _without_film(bearing)]
-        # The one film of a symmetric rotor keeps the plain names of its signals beside elements.
+        # The one film of a symmetric rotor keeps the plain names of its signals next to elements.
         plain = in_film if len(in_film) == 1 and _position(in_film[0]) is None else []
         return [
             bearing if any(bearing is one for one in plain) else _named(bearing, str(number))

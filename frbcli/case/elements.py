@@ -46,7 +46,7 @@ AxialForce = Annotated[float, AXIAL]
 
 
 def _both_directions(given: object) -> object:
-    """One quantity as that of both directions, without cross-coupling."""
+    """One quantity, used for both directions, without cross-coupling."""
     if isinstance(given, str | int | float) and not isinstance(given, bool):
         return [[given, 0.0], [0.0, given]]
     return given
@@ -87,12 +87,12 @@ class BearingWithoutFilm(Model):
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
-        """None, without that of a damper."""
+        """None; a damper's film does not count."""
         return ()
 
     @property
     def film_keys(self) -> tuple[str, ...]:
-        """Where its films stand in its table."""
+        """Keys of its films in its table."""
         return ()
 
     def with_films(self, films: Sequence[FilmGeometry]) -> Self:

@@ -1,8 +1,7 @@
 """The geometry of one film: its gap, its ends and its supply.
 
-Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are those of the
-whole bearing, both symmetric halves.
-"""
+Angles are phi of the developed gap: 0 at the top, counter-clockwise. Pressures are absolute. Widths are of the whole
+bearing, both symmetric halves. """
 
 from __future__ import annotations
 
@@ -155,7 +154,7 @@ class FilmGeometry(Model):
 
     @property
     def sealing(self) -> tuple[str, str] | None:
-        """The line of the plan on sealed ends: their share, and what it stands for; None without seals."""
+        """The line of the plan on sealed ends: their share, and its meaning; None without seals."""
         if self.sealed == 1.0:
             return None
         reason = "let out that share of the flow of open ends where a constant gap is fed in the middle or by a groove"

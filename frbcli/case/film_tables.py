@@ -1,4 +1,4 @@
-"""What the films of a case file name: cavitation laws and bearing models, and the tables [film.NAME] of their keys."""
+"""The cavitation laws that the films of a case file name, and the tables [film.NAME] of their keys."""
 
 from __future__ import annotations
 
@@ -11,13 +11,11 @@ from pydantic.fields import FieldInfo
 
 from frbcli.case.model import Model
 from frbcli.case.quantities import Quantity
-from frbcli.film.bearing_model.model import BearingModel
-from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.law import Key, Law
 from frbcli.film.cavitation.table import laws, names
 from frbcli.units import NUMBER
 
-THEORIES = ("auto", "short", "finite")  # those of the program
+THEORIES = ("auto", "short", "finite")
 if TYPE_CHECKING:
     Cavitation = str
     Theory = str
@@ -25,32 +23,28 @@ else:
     Cavitation = Literal[names()]
     Theory = Literal[THEORIES]
 
-THEORY, CAVITATION = "theory", "cavitation"  # the keys that take the name of a theory and of a law
+CAVITATION = "cavitation"  # the key that takes the name of a law
 
 
 class FilmTable(Model):
-    """A table [film.NAME], made from the keys of a law or of a bearing model."""
+    """A table [film.NAME], made from the keys of a law."""
 
 
-def attribute(of: type[Law] | BearingModel) -> str:
-    """The attribute of a FilmModel that holds the table of a law or of a bearing model."""
+def attribute(of: type[Law]) -> str:
+    """The attribute of a FilmModel that holds the table of a law."""
     return of.name.replace("-", "_")
 
 
 def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
-    """Give the model of [film] the table of every law and bearing model that has keys and of no other, its `theory` the
-    names of all theories, and its `cavitation`, and that of `others`, the names of all laws. Models that hold one of
-    these have to be rebuilt by the caller."""
+    """Give the model of [film] the table of every law that has keys and of no other, and its `cavitation` and that of
+    `others` the names of all laws. Models that hold one of these have to be rebuilt by the caller."""
     fields = film.model_fields
     for name in [name for name, field in fields.items() if isinstance(field.default, FilmTable)]:
         del fields[name]
     for of in _with_keys():
-        told = None if isinstance(of, BearingModel) else "keys of this model"
         alias = None if attribute(of) == of.name else of.name
-        made = Field(default=_table(of)(), alias=alias, description=told)
+        made = Field(default=_table(of)(), alias=alias, description="keys of this model")
         fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
-    theories: Any = Literal[(*THEORIES, *(model.name for model in models()))]
-    fields[THEORY].annotation = theories
     for model in (film, *others):
         its = model.model_fields[CAVITATION]
         all_laws: Any = Literal[names()]
@@ -67,15 +61,13 @@ def __getattr__(name: str) -> Any:
 
 
 def _with_keys() -> Iterator[Any]:
-    own: tuple[Any, ...] = (*laws(), *models())
-    return (of for of in own if of.keys)
+    return (law for law in laws() if law.keys)
 
 
 @cache
 def _table(of: Any) -> type[FilmTable]:
-    name = attribute(of) if isinstance(of, BearingModel) else of.__name__
     entries: dict[str, Any] = {key.name: _entry(key) for key in of.keys}
-    return create_model(name, __base__=FilmTable, __doc__=of.meaning, __module__=__name__, **entries)
+    return create_model(of.__name__, __base__=FilmTable, __doc__=of.meaning, __module__=__name__, **entries)
 
 
 def _entry(key: Key) -> Any:

@@ -43,7 +43,7 @@ class Model(BaseModel):
             raise _frozen(self, *update)
         return super().model_copy(deep=deep)
 
-    def copy(self, **changes: Any) -> Self:  # pydantic 2 still has it, and warns of it
+    def copy(self, **changes: Any) -> Self:  # still part of pydantic 2, which warns of it
         """A copy without changes. Raises FrozenError for any."""
         if changes:
             raise _frozen(self, *changes)

@@ -40,7 +40,7 @@ class _Constant(Quantity):
     def read(self, given: object) -> float:
         if is_over_time(given):
             problem = "changes over time, and the pressures of all films count from one that stays."
-            raise ValueFault(problem, "Give one pressure; that of a supply may change over time.")
+            raise ValueFault(problem, "Give one pressure; only the pressure of a supply may change over time.")
         return super().read(given)
 
 
@@ -179,12 +179,12 @@ class Oil(Model):
         return self.law.at(self.temperature)
 
     def heat_capacity_at(self, temperature: float) -> float:
-        """The specific heat capacity [J/(kg K)] at a temperature in K: given, or that of a petroleum oil."""
+        """The specific heat capacity [J/(kg K)] at a temperature in K: given, or of a petroleum oil."""
         return self.heat_capacity or heat_capacity(self._density_15, temperature)
 
     @property
     def thermal_conductivity(self) -> float:
-        """The thermal conductivity [W/(m K)]: given, or that of a petroleum oil at 80 degC."""
+        """The thermal conductivity [W/(m K)]: given, or of a petroleum oil at 80 degC."""
         return self.conductivity or conductivity(self._density_15, USUAL_TEMPERATURE)
 
     @property

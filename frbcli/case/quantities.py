@@ -62,8 +62,8 @@ class Quantity:
             (self.most is not None and value > self.most, "at most", self.most),
         ):
             if bad and bound is not None:
-                told = "0" if bound == 0.0 else display(bound, self.unit)
-                raise ValueFault(f"is {self._beside(value, bound)}, but must be {words} {told}.", self.as_remedy())
+                limit = "0" if bound == 0.0 else display(bound, self.unit)
+                raise ValueFault(f"is {self._beside(value, bound)}, but must be {words} {limit}.", self.as_remedy())
         return value
 
     def _beside(self, value: float, bound: float) -> str:
@@ -78,7 +78,7 @@ class Quantity:
         return f"Write e.g. {self.written_example()}."
 
     def written_example(self) -> str:
-        """The example as it stands in a case file."""
+        """The example as written in a case file."""
         return self.example if self.unit == NUMBER else f'"{self.example}"'
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -128,7 +128,7 @@ class Count:
         raise ValueFault(f"is not a whole number from {self.least} to {self.most}.", f"Write e.g. {self.example}.")
 
     def written_example(self) -> str:
-        """A value as a case file has it."""
+        """A value as written in a case file."""
         return str(self.example)
 
     def __get_pydantic_core_schema__(self, _source: Any, _handler: GetCoreSchemaHandler) -> CoreSchema:
@@ -158,7 +158,7 @@ def _identifier(text: str) -> str:
 Label = Annotated[str, AfterValidator(_printable)]
 Identifier = Annotated[str, AfterValidator(_identifier)]
 
-# Limits of sizes and masses, well above those of the largest machines: rotors of 500 t and 80 m.
+# Limits of sizes and masses, well above the largest machines: rotors of 500 t and 80 m.
 LONGEST, HEAVIEST = 1e3, 1e7  # m, kg
 MOST_INERTIA, MOST_UNBALANCE = 1e9, 1e5  # kg m^2, kg m
 

@@ -67,7 +67,7 @@ def with_loss(unbalance: float, phase: float, loss: Loss | None) -> tuple[float,
 
 
 def unbalance_sizes(part: RigidRotor | JeffcottRotor | Disk) -> float:
-    """The unbalance of a rotor or a disk and that of its loss, in phase, kg m."""
+    """The unbalance of a rotor or a disk plus its loss, in phase, kg m."""
     return part.unbalance + (0.0 if part.loss is None else part.loss.unbalance)
 
 
@@ -111,7 +111,7 @@ class TurbochargerRotor(Model):
     """A beam of [[shaft]] sections with [[disk]] entries, reduced to its lowest modes."""
 
     symmetric: ClassVar[bool] = False
-    polar_inertia: ClassVar[None] = None  # that of its sections and disks
+    polar_inertia: ClassVar[None] = None  # follows from its sections and disks
 
     kind: Literal["turbocharger"] = Field(description="a shaft of [[shaft]] sections with [[disk]] entries")
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
@@ -170,15 +170,15 @@ class Bow(MachineTable):
         elif not 0.0 <= self.position <= length * (1.0 + 1e-9):
             problem = f"is {display(self.position, 'm')}, not on the shaft of {display(length, 'm')}."
             yield Breach((*path, "position"), problem, "Positions count from the start of the first section.")
-        elif any(other is not self and abs(other.position - self.position) < BESIDE * length for other in case.bows):
-            problem = "is, within a thousandth of the shaft, that of another one, between which no shaft bends so."
+        elif any(other is not self and abs(other.position - self.position) < APART * length for other in case.bows):
+            problem = "coincides, within a thousandth of the shaft, with another one, between which no shaft bends so."
             yield Breach((*path, "position"), problem, "Keep one of the two.")
         elif self is case.bows[0] and len(bow_places(case)) < LEAST_PLACES:
             problem = "is at a bearing, and a straight line runs through this and the other outermost bearing."
             yield Breach((*path, "position"), problem, "Add a [[bow]] at another place.")
 
 
-BESIDE, LEAST_PLACES = 1e-3, 3  # of the shaft's length: places that count as one; a bow has
+APART, LEAST_PLACES = 1e-3, 3  # of the shaft's length: places that count as one; a bow has
 
 
 def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
@@ -187,7 +187,7 @@ def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
     if not any(bow.offset for bow in case.bows):
         return ()
     given = tuple((bow.position, cmath.rect(bow.offset, bow.phase)) for bow in case.bows)
-    held, near = [each.position or 0.0 for each in case.placed_bearings], BESIDE * sum(s.length for s in case.shaft)
+    held, near = [each.position or 0.0 for each in case.placed_bearings], APART * sum(s.length for s in case.shaft)
     ends = (end for end in (min(held), max(held)) if all(abs(end - place) >= near for place, _ in given))
     return *((end, 0j) for end in ends), *given
 

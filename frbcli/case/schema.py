@@ -151,8 +151,8 @@ class Case(Model):
         """In a notebook: its values in SI and as they are written."""
         from frbcli.case.reading.listing import values  # it is made of cases
 
-        told = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
-        return html_table(self.heading, ("key", "SI", "", "reads"), told, len(told))
+        rows = [(each.key, each.value, each.unit, each.shown if each.unit else "") for each in values(self)]
+        return html_table(self.heading, ("key", "SI", "", "reads"), rows, len(rows))
 
     def with_settings(self, *settings: str | Mapping[str, object]) -> Case:
         """This case with other values of some keys, checked as a case file is; this case itself stays.
@@ -198,7 +198,8 @@ class Case(Model):
 
     @property
     def films(self) -> tuple[FilmGeometry, ...]:
-        """All films: of the bearings in their order, from the journal outwards, and behind them those of dampers."""
+        """All films: of the bearings in their order, from the journal outwards, and behind them the films of
+        dampers."""
         own = (film for bearing in self.given_bearings for film in bearing.films)
         return (*own, *(bearing.damper for bearing in self.given_bearings if bearing.damper is not None))
 
@@ -234,7 +235,7 @@ class Case(Model):
 
     @property
     def given_speed(self) -> SpeedRamp | None:
-        """The speeds of a run, those that its drive is expected to reach at the most; None of a case without any."""
+        """The speeds of a run, those that its drive is expected to reach at most; None of a case without any."""
         if self.drive is None or not self.polar_inertia:
             return self.speed_ramp
         return self.drive.expected(self.polar_inertia)
@@ -264,14 +265,15 @@ class Case(Model):
 
     @property
     def oil_viscosity(self) -> float:
-        """The dynamic viscosity [Pa s] of the oil: given, or at its temperature, or at that of the supply."""
+        """The dynamic viscosity [Pa s] of the oil: given, or at its temperature, or at the supply temperature."""
         law = self.oil.law
         if law is not None and self.oil.temperature is None and self.thermal is not None:
             return law.at(largest(self.thermal.supply_temperature))
         return self.oil.viscosity
 
     def viscosity(self, film: FilmGeometry) -> float:
-        """The dynamic viscosity [Pa s] in `film`, without heat: its own, by its own temperature, or that of the oil."""
+        """The dynamic viscosity [Pa s] in `film`, without heat: its own, by its own temperature, or the viscosity of
+        the oil."""
         if film.viscosity is not None:
             return film.viscosity
         law = self.oil.law
@@ -280,7 +282,7 @@ class Case(Model):
         return self.oil_viscosity
 
     def cavitation(self, film: FilmGeometry) -> Cavitation:
-        """The cavitation model of `film`: its own, or that of all films."""
+        """The cavitation model of `film`: its own, or the one of all films."""
         own = film.cavitation if isinstance(film, RingFilm) else None
         return self.film.cavitation if own is None else own
 

@@ -130,7 +130,7 @@ class Terminal:
             _write(sys.stderr, f"{printable(text)}\n")
 
     def text(self, text: str) -> None:
-        """Print a text that was asked for, quiet or not; with json the document has it."""
+        """Print a requested text, also with --quiet; with --json it is in the document instead."""
         if not self.json:
             _write(sys.stdout, text)
 
@@ -189,15 +189,15 @@ def _widths(columns: Sequence[str], rows: Sequence[Sequence[str]], width: int) -
     """Widths of the columns of a table wider than `width`: at least their longest words; the rest of the room goes to
     the cells, then to the heads. None where all fits, or where not even the words do."""
     cells = list(zip(*rows, strict=True)) or [()] * len(columns)
-    found = [_longest_word((head, *column)) for head, column in zip(columns, cells, strict=True)]
+    widths = [_longest_word((head, *column)) for head, column in zip(columns, cells, strict=True)]
     rows_need = [max((_length(cell) for cell in column), default=0) for column in cells]
     whole = [max(_length(head), most) for head, most in zip(columns, rows_need, strict=True)]
     room = width - BETWEEN * len(columns) - 1
-    if sum(whole) <= room or sum(found) > room:
+    if sum(whole) <= room or sum(widths) > room:
         return [None] * len(columns)
     for wanted in (rows_need, whole):
-        found = _widened(found, wanted, room - sum(found))
-    return list(found)
+        widths = _widened(widths, wanted, room - sum(widths))
+    return list(widths)
 
 
 def _length(cell: str) -> int:
@@ -205,16 +205,16 @@ def _length(cell: str) -> int:
 
 
 def _widened(widths: Sequence[int], wanted: Sequence[int], room: int) -> list[int]:
-    """Widths with more room: those first get all they need that need no more than an equal share, the others in
-    proportion to what they need."""
-    needs, found = [max(most - least, 0) for most, least in zip(wanted, widths, strict=True)], list(widths)
+    """Widths with more room: columns that need no more than an equal share get all they need, the others a share in
+    proportion to their need."""
+    needs, widened = [max(most - least, 0) for most, least in zip(wanted, widths, strict=True)], list(widths)
     order = sorted(range(len(needs)), key=needs.__getitem__)
     for place, number in enumerate(order):
         more, left = needs[number], sum(needs[k] for k in order[place:])
         if more * (len(order) - place) > room:
             more = room * more // left
-        found[number], room = found[number] + more, room - more
-    return found
+        widened[number], room = widened[number] + more, room - more
+    return widened
 
 
 def _write(stream: TextIO, text: str) -> None:

@@ -1,4 +1,4 @@
-"""What the shell completes beside commands and options: shipped cases, files, keys of a case."""
+"""What the shell completes besides commands and options: shipped cases, files, keys of a case."""
 
 from __future__ import annotations
 
@@ -19,12 +19,12 @@ def complete_case(_: click.Context, __: click.Parameter, incomplete: str) -> lis
     """Shipped cases that begin so, then files."""
     from frbcli.case.reading.shipped import shipped_names
 
-    found = [CompletionItem(name) for name in shipped_names() if name.startswith(incomplete)]
-    return [*found, CompletionItem(incomplete, type="file")]
+    shipped = [CompletionItem(name) for name in shipped_names() if name.startswith(incomplete)]
+    return [*shipped, CompletionItem(incomplete, type="file")]
 
 
 def complete_key(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
-    """Keys of the case that stands before on the line, else the most usual ones."""
+    """Keys of the case given earlier on the line, else the most usual ones."""
     from frbcli.case.reading.listing import values
 
     case = _case_on_line(context)

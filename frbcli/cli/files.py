@@ -67,15 +67,15 @@ def note_read(path: Path, context: click.Context | None) -> None:
 
 
 def force_option(
-    words: str = "Replace files that frb did not write.", told: bool = False
+    words: str = "Replace files that frb did not write.", exposed: bool = False
 ) -> Callable[[Function], Function]:
-    """Give a command the option --force; told: it receives `force: bool`."""
+    """Give a command the option --force; exposed: it receives `force: bool`."""
 
     def remember(context: click.Context, _: click.Parameter, force: bool) -> bool:
         context.meta[_FORCE] = force
         return force
 
-    return click.option("--force", is_flag=True, is_eager=True, expose_value=told, callback=remember, help=words)
+    return click.option("--force", is_flag=True, is_eager=True, expose_value=exposed, callback=remember, help=words)
 
 
 def forced() -> bool:
@@ -103,8 +103,8 @@ def check_outputs(*files: tuple[Path | None, Kind], picture: Path | None = None)
     require_places(wanted, () if context is None else context.meta.get(_READS, ()), forced())
 
 
-def beside(run: Path, what: str) -> Path:
-    """The default place of a result: beside its run."""
+def next_to(run: Path, what: str) -> Path:
+    """The default place of a result: next to its run."""
     return run.parent / (run.stem + what)
 
 

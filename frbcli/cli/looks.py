@@ -48,12 +48,12 @@ class Size(click.ParamType[tuple[float, float]]):
         try:
             if not any(letter.isalpha() for letter in width):
                 width = f"{width} {unit}"
-            found = tuple(quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
+            sides = tuple(quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
         except ValueError as fault:
             self.fail(f'{value!r} {fault} Write e.g. "160 mm x 90 mm".', param, ctx)
-        if not all(0.5 <= side <= 60.0 for side in found):
+        if not all(0.5 <= side <= 60.0 for side in sides):
             self.fail(f"{value!r} is no size of a picture: 13 mm to 1500 mm.", param, ctx)
-        return found[0], found[1]
+        return sides[0], sides[1]
 
 
 @dataclass(frozen=True)
@@ -93,9 +93,9 @@ def look_options(function: Function) -> Function:
 
 def look_of(context: click.Context) -> Look:
     """The look that the options of a command ask for."""
-    found = context.meta.get(_LOOK, Look())
-    assert isinstance(found, Look)
-    return found
+    look = context.meta.get(_LOOK, Look())
+    assert isinstance(look, Look)
+    return look
 
 
 def _option(name: str, field: str, **settings: Any) -> Callable[[Function], Function]:

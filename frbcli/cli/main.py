@@ -1,8 +1,8 @@
 """`frb`: the table of commands, and the one place where errors become exit codes.
 
 Exit codes: 0 done; 2 the input is wrong; 3 the run ended early for a reason that it names; 130 interrupted; 1 a bug, or
-too little memory; `process.main` adds the codes of streams that cannot be written. docs/command-line.md lists those of
-each command.
+too little memory; `process.main` adds the codes for streams that cannot be written. docs/command-line.md lists the
+codes of each command.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ COMMANDS = {
     ),
     "bearing": (
         "frbcli.cli.bearings.bearing",
-        "Resting position, K, C, loss, flow of every film over speed or eccentricity.",
+        "Static equilibrium, K, C, loss, flow of every film over speed or eccentricity.",
         "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
     "thrust": (
@@ -85,7 +85,7 @@ COMMANDS = {
     ),
     "stability": (
         "frbcli.cli.machines.stability",
-        "Resting positions, linear coefficients, eigenvalues, threshold speed.",
+        "Static equilibria, linear coefficients, eigenvalues, threshold speed.",
         "frb stability jeffcott --speed '100 Hz' --speed '200 Hz'",
     ),
     "response": (
@@ -222,19 +222,19 @@ def run(arguments: Sequence[str]) -> int:
     except click.ClickException as wrong_usage:
         if isinstance(wrong_usage, click.NoSuchOption) and wrong_usage.option_name == "--set":
             wrong_usage = click.UsageError(f"{wrong_usage.format_message()} {NO_CASE}", wrong_usage.ctx)
-        told = io.StringIO()
-        wrong_usage.show(told)
-        _tell(told.getvalue().rstrip("\n"))
+        message = io.StringIO()
+        wrong_usage.show(message)
+        _show(message.getvalue().rstrip("\n"))
         _emit_error(arguments, InputError("command line", (_usage_fault(wrong_usage),)))
         return wrong_usage.exit_code if isinstance(wrong_usage, click.UsageError) else InputError.exit_code
     except FrbError as error:
-        return _tell_error(arguments, error)
+        return _show_error(arguments, error)
     except Exception as error:
         del spare
         known = _of_files(error) or shortage(error)
         if known is None:
             raise
-        return _tell_error(arguments, known)
+        return _show_error(arguments, known)
     return code if isinstance(code, int) else 0
 
 
@@ -251,7 +251,7 @@ def _of_files(error: Exception) -> FrbError | None:
     return input_error(f"file {name}", "file", "", f"cannot be used: {error.strerror}.", "Check path and permissions.")
 
 
-def _tell(text: str) -> None:
+def _show(text: str) -> None:
     """Write an error; on a terminal in lines that fit it, elsewhere a line for each fault."""
     lines = printable(text).split("\n")
     if sys.stderr.isatty():
@@ -261,8 +261,8 @@ def _tell(text: str) -> None:
     click.echo("\n".join(lines), err=True)
 
 
-def _tell_error(arguments: Sequence[str], error: FrbError) -> int:
-    _tell(f"frb: {error}")
+def _show_error(arguments: Sequence[str], error: FrbError) -> int:
+    _show(f"frb: {error}")
     _emit_error(arguments, error)
     return error.exit_code
 

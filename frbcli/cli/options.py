@@ -31,14 +31,14 @@ class QuantityOption(click.ParamType[float]):
         with suppress(ValueError):  # then it has a unit
             value = float(str(value))
         try:
-            found = quantity(value, self.unit, self.example)
+            number = quantity(value, self.unit, self.example)
         except ValueError as fault:
             self.fail(f"{value!r} {fault}", param, ctx)
         if self.unit == "Hz" and ctx is not None and is_per_minute(value):
             ctx.meta[PER_MINUTE] = True
-        if self.positive and found <= 0.0:
+        if self.positive and number <= 0.0:
             self.fail(f'{value!r} is not greater than 0. Write e.g. "{self.example}".', param, ctx)
-        return found
+        return number
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class UnitOption(QuantityOption):
 
 @dataclass(frozen=True)
 class RangeOption(QuantityOption):
-    """Two quantities, as "8000..12000 rpm": a unit at the end is that of both."""
+    """Two quantities, as "8000..12000 rpm": a unit at the end holds for both."""
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The lower and the upper one in `unit`."""
@@ -72,7 +72,7 @@ class RangeOption(QuantityOption):
 
 @dataclass(frozen=True)
 class SupportOption(QuantityOption):
-    """What a rotor lies in: "free", "bearings", those of the case, or a stiffness."""
+    """The support of a rotor: "free", "bearings" as in the case, or a stiffness."""
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> Any:
         """The word, or the stiffness in `unit`."""
@@ -129,7 +129,7 @@ class Numbers(click.ParamType[tuple[float, ...]]):
             self.fail(f"{value} is not a list of numbers, such as 1,0.5.", param, ctx)
 
 
-def _models(name: str, what: str, default: str = "that of CASE") -> Callable[[Function], Function]:
+def _models(name: str, what: str, default: str = "as in CASE") -> Callable[[Function], Function]:
     return click.option(name, type=Names(), default=(), metavar="A,B", help=f"{what}, separated by commas. [{default}]")
 
 
@@ -157,7 +157,7 @@ def signal_option(default: str | None = "journal") -> Callable[[Function], Funct
 
 def over_option(default: str | None) -> Callable[[Function], Function]:
     """Give a command the option --over, the axis of a picture."""
-    words = "Horizontal axis." if default else "Horizontal axis. [time; speed with --order]"
+    words = "Horizontal axis." if default else "Horizontal axis. [speed where it rises or falls all the time]"
     return click.option("--over", type=click.Choice(["time", "speed"]), default=default,
                         show_default=default is not None, help=words)  # fmt: skip
 

@@ -1,5 +1,5 @@
 """The picture and the table of a command: their options, their places, which are checked before the work, and how they
-are written. A picture beside results never affects them: a failure is a remark."""
+written. A picture next to results never affects them: a failure is a remark."""
 
 from __future__ import annotations
 
@@ -32,24 +32,24 @@ MISSING = re.compile(r"Glyph (\d+) .*missing from")  # how matplotlib begins its
 
 @dataclass(frozen=True)
 class Outputs:
-    """The picture and the table that a command writes beside its text, None for none."""
+    """The picture and the table that a command writes in addition to its text, None for none."""
 
     picture: Path | None
     csv: Path | None
 
     def write(
-        self, terminal: Terminal, found: Tabular, what: str = "picture", picture: Callable[[], Picture] | None = None
+        self, terminal: Terminal, table: Tabular, what: str = "picture", picture: Callable[[], Picture] | None = None
     ) -> dict[str, Path | None]:
-        """Write those of a result, and return their paths as parts of a JSON document. what: the name of the picture in
-        the text; picture: in place of that of the result."""
+        """Write picture and table of a result, and return their paths as parts of a JSON document. what: the name of
+        the picture in the text; picture: drawn instead of the picture of the table."""
         if self.csv is not None:
             from frbcli.results.files.write import write_table
 
-            write_table(found.to_pandas(), self.csv, forced())
+            write_table(table.to_pandas(), self.csv, forced())
             terminal.result(f"table: {self.csv}")
         if self.picture is None:
             return {"picture": None, "csv": self.csv}
-        return {"picture": draw(terminal, picture or partial(picture_of, found), self.picture, what), "csv": self.csv}
+        return {"picture": draw(terminal, picture or partial(picture_of, table), self.picture, what), "csv": self.csv}
 
 
 def picture_of(result: object) -> Picture:
@@ -124,7 +124,7 @@ def draw_wanted(terminal: Terminal, picture: Callable[[], Picture], target: Path
         save_figure(figure, target, look.dpi, forced())
     terminal.result(f"{what}: {target}")
     texts = [str(warning.message) for warning in caught]
-    letters = dict.fromkeys(chr(int(found[1])) for found in map(MISSING.match, texts) if found)
+    letters = dict.fromkeys(chr(int(match[1])) for match in map(MISSING.match, texts) if match)
     if letters:
         shown = ", ".join(letter if letter.isprintable() else repr(letter) for letter in letters)
         terminal.remark(f"{target}: the font has no {shown}; boxes are drawn instead.")

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 AGAIN_s = 0.01
-WITHIN_s, WAITS_s = 10.0, 60.0  # CPU time and time for which an import is not interrupted: beside other work it is slow
+WITHIN_s, WAITS_s = 10.0, 60.0  # CPU time and time without interruption of an import, which is slow on a busy machine
 YOUNG = 300_000  # objects between two searches for garbage: what imports make stays, and searches find nothing
 IMPORTS = "<frozen importlib._bootstrap>"  # where Python imports a module
 

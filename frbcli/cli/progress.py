@@ -1,6 +1,6 @@
 """Progress on the terminal: lines that are redrawn, or without a terminal one now and then; the compilation of kernels.
 
-Kernels are compiled at the first start and kept beside their sources.
+Kernels are compiled at the first start and kept next to their sources.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
     from frbcli.scene.costs.preparation import Kernels
 
 REFRESH_Hz = 8
-TOLD_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
-# What takes long is announced there as soon as the first numbers tell: after so much time, if so much is left.
+PRINT_EVERY_s = 30.0  # CPU time between two lines of progress where there is no terminal
+# A long command is announced there as soon as its first numbers show it: after so much time, if so much is left.
 ANNOUNCED_s, LONG_s = 1.0, 5.0
 COMPUTING, READING, WRITING = "Computing.", "Reading.", "Writing."
 CLOCK_AFTER_s = 1.0  # without a change the time is shown
@@ -54,25 +54,25 @@ class Display:
         return self._draw is not None
 
     def redraw(self, lines: str) -> None:
-        """Show lines in place of the last ones, where that is possible."""
+        """Show lines instead of the last ones, where that is possible."""
         if self._draw is not None:
             self._draw(lines)
 
     def line(self, line: str) -> None:
-        """Show a line in place of the last one, or print it."""
+        """Show a line instead of the last one, or print it."""
         if self._draw is None:
             self._terminal.remark(line)
         else:
             self._draw(line)
 
     def now_and_then(self) -> NowAndThen:
-        """A function that redraws lines; without a terminal it prints them as one line, every TOLD_EVERY_s."""
+        """A function that redraws lines; without a terminal it prints them as one line, every PRINT_EVERY_s."""
         return NowAndThen(self)
 
     def counting(self, what: str = "") -> Callable[[int, int], None]:
         """A function that shows a number of so many, and the time left.
 
-        The time left is that of the numbers since the first one, which compiles.
+        The time left is extrapolated from the numbers after the first one, which includes compilation.
         """
         begun, first, announced, show = 0.0, 0, False, self.now_and_then()
 
@@ -83,8 +83,8 @@ class Display:
             done, spent = number - first, time.monotonic() - begun
             left = spent / done * (count - number) if done else 0.0
             long = not announced and spent > ANNOUNCED_s and left > LONG_s
-            told = show(f"{what}{number} of {count}" + (f"  {_clock(left)} left" if done else ""), at_once=long)
-            announced = announced or told
+            written = show(f"{what}{number} of {count}" + (f"  {_clock(left)} left" if done else ""), at_once=long)
+            announced = announced or written
 
         return observe
 
@@ -99,19 +99,19 @@ class Display:
 
 
 class NowAndThen:
-    """Shows lines of progress on a display; without a terminal only now and then, see TOLD_EVERY_s."""
+    """Shows lines of progress on a display; without a terminal only now and then, see PRINT_EVERY_s."""
 
     def __init__(self, display: Display) -> None:
-        self._display, self._told_s = display, time.process_time()
+        self._display, self._printed_s = display, time.process_time()
 
     def __call__(self, lines: str, at_once: bool = False) -> bool:
         """Show lines; returns whether they were shown. at_once: also without a terminal."""
         if self._display.redraws:
             self._display.redraw(lines)
             return True
-        if not at_once and time.process_time() <= self._told_s + TOLD_EVERY_s:
+        if not at_once and time.process_time() <= self._printed_s + PRINT_EVERY_s:
             return False
-        self._told_s = time.process_time()
+        self._printed_s = time.process_time()
         self._display.line(lines.replace("\n", ": "))
         return True
 
@@ -173,20 +173,20 @@ def compilation_shown(
     from frbcli.compilation import counted  # heavy: only where kernels are used
     from frbcli.scene.costs.preparation import compile_s
 
-    told, about = 0.0, ""
+    shown_s, about = 0.0, ""
 
     def observe() -> None:
-        nonlocal told, about
+        nonlocal shown_s, about
         now = time.monotonic()
-        if told == 0.0:
+        if shown_s == 0.0:
             from frbcli.solve.time_loop import some_are_kept
 
             most = "at most " if some_are_kept() else ""  # of which this machine needs some, maybe
             about = f"{most}about {compile_s([case, *also], kernels) * slowness():.0f} s"
-            told = now
+            shown_s = now
             shown.line(f"Compiling the kernels, once: {about} of CPU time.")
-        elif compilations.functions and (shown.redraws or now - told > COMPILING_EVERY_s):
-            told = now
+        elif compilations.functions and (shown.redraws or now - shown_s > COMPILING_EVERY_s):
+            shown_s = now
             line = f"Compiling the kernels, once: {compilations.functions} functions"
             shown.line(f"{line}, {compilations.spent_s:.0f} s of {about}.")
 

@@ -61,27 +61,26 @@ def follow_branch(
     observe: Callable[[Cycle], None] | None = None,
     until: Callable[[Cycle], bool] | None = None,
 ) -> Branch:
-    """The cycles from a place on, as that of a Hopf point. observe: called with each cycle;
-    until: called with each cycle, special ones too, the last one being that for which it says so.
-    """
+    """The cycles from a place on, e.g. a Hopf point. observe: called with each cycle; until: called with each cycle,
+    special ones too; the branch ends where it returns True. """
     machine = follower.machine
     place, length, strides = start, STRIDES.first, STRIDES
     cycles: list[Cycle] = []
     note = ""
     for _ in range(strides.points):
-        found, length = halved_until(partial(follower.stepped, place), length, strides.shortest)
-        if found is None:
+        ahead, length = halved_until(partial(follower.stepped, place), length, strides.shortest)
+        if ahead is None:
             note = _why_not(follower, place)
             break
-        if follower.free and cycles and passed_rest(machine, place, found):
+        if follower.free and cycles and passed_rest(machine, place, ahead):
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
-        beyond = not follower.range[0] <= found.y[-1] <= follower.range[1]
+        beyond = not follower.range[0] <= ahead.y[-1] <= follower.range[1]
         if beyond:
-            limit = follower.range[0] if found.y[-1] < follower.range[0] else follower.range[1]
-            found, note = at_speed(follower, place, found, limit), LEFT
-            if found is None:
+            limit = follower.range[0] if ahead.y[-1] < follower.range[0] else follower.range[1]
+            ahead, note = at_speed(follower, place, ahead, limit), LEFT
+            if ahead is None:
                 break
-        cycle = follower.cycle(found, near=cycles[-1] if cycles else None)
+        cycle = follower.cycle(ahead, near=cycles[-1] if cycles else None)
         known = len(cycles)
         cycles += special_cycles(follower, cycles[-1] if cycles else None, place, cycle, length)
         cycles.append(cycle)
@@ -91,13 +90,13 @@ def follow_branch(
             observe(cycle)
         if beyond:
             break
-        if largest(machine, found.y) > LARGEST:
+        if largest(machine, ahead.y) > LARGEST:
             note = f"The journal comes nearer to its shell than an eccentricity of {LARGEST}."
             break
-        if follower.free and len(cycles) > 3 and amplitude(machine, found.y) < SMALL:
+        if follower.free and len(cycles) > 3 and amplitude(machine, ahead.y) < SMALL:
             return Branch(tuple(cycles), AT_REST, ends_at_rest=True)
-        length = next_length(length, strides, resized_like(place, found, machine.size), found)
-        place = found
+        length = next_length(length, strides, resized_like(place, ahead, machine.size), ahead)
+        place = ahead
     else:
         note = f"It was followed over {strides.points} cycles and goes on."
     return Branch(tuple(cycles), note)
@@ -115,32 +114,32 @@ def first_place(hopf: HopfPoint) -> Place:
 
 def special_cycles(follower: Follower, before: Cycle | None, place: Place, after: Cycle, length: float) -> list[Cycle]:
     """Folds, flips and torus points between a place and the cycle a step behind it."""
-    found: list[Cycle] = []
+    special: list[Cycle] = []
     if place.tangent[-1] * after.place.tangent[-1] < 0.0:
         fold = follower.fold(follower.as_fine(place, after.place), length)
         if fold is not None:
-            found.append(follower.cycle(fold, FOLD, after))
+            special.append(follower.cycle(fold, FOLD, after))
     ends = sorted((place.y[-1], after.y[-1]))
-    for speed in follower.asked if not found else ():  # beside a fold there are two of them, or none
+    for speed in follower.asked if not special else ():  # next to a fold there are two of them, or none
         there = at_speed(follower, place, after.place, speed) if ends[0] < speed <= ends[1] else None
         if there is not None:
-            found.append(follower.cycle(there, ASKED, after))
-    found.sort(key=lambda cycle: abs(cycle.y[-1] - place.y[-1]))
+            special.append(follower.cycle(there, ASKED, after))
+    special.sort(key=lambda cycle: abs(cycle.y[-1] - place.y[-1]))
     if before is None:
-        return found
+        return special
     change = after.multipliers.unstable - before.multipliers.unstable
-    folds = any(cycle.kind == FOLD for cycle in found)
+    folds = any(cycle.kind == FOLD for cycle in special)
     if change == 0 or (folds and abs(change) == 1):
-        return found
+        return special
     kind = _kind(before if change < 0 else after)
     if kind == FOLD:  # a real multiplier at 1 away from a fold is one that the harmonics have not resolved
-        return found
+        return special
     finer = follower.as_fine(place, after.place)
     place_there = _crossing(follower, finer, length, (before.multipliers, after.multipliers))
     if place_there is not None:
         crossed = follower.cycle(place_there, kind, after)
-        found.append(replace(crossed, kind=_kind_of(_nearest(crossed)) or kind))
-    return found
+        special.append(replace(crossed, kind=_kind_of(_nearest(crossed)) or kind))
+    return special
 
 
 def _kind(cycle: Cycle) -> str:
@@ -167,11 +166,11 @@ def _kind_of(multiplier: complex) -> str:
 
 def _crossing(follower: Follower, place: Place, length: float, ends: tuple[Multipliers, Multipliers]) -> Place | None:
     """Where a multiplier crosses the unit circle within a step, between those at its ends."""
-    number, asked = max(found.unstable for found in ends) - 1, follower.equations(place)
+    number, asked = max(pair_of.unstable for pair_of in ends) - 1, follower.equations(place)
     known = {0.0: ends[0].growth(number), length: ends[1].growth(number)}
     if known[0.0] * known[length] > 0.0:  # one end is within the error of the trivial multiplier
-        found = step_from(asked, place, min(known, key=lambda along: abs(known[along])))
-        return None if found is None else oriented(found, place.tangent)
+        crossing = step_from(asked, place, min(known, key=lambda along: abs(known[along])))
+        return None if crossing is None else oriented(crossing, place.tangent)
 
     def growth(one: Place) -> float:
         return follower.multipliers(one, ends[1]).growth(number)
@@ -185,7 +184,7 @@ def _why_not(follower: Follower, place: Place) -> str:
     harmonics = (len(place.y) - 2) // machine.size // 2
     tail = left_out(follower.course.machine(place.y), follower.course.with_speed(place.y))
     there = f"{place.y[-1] * follower.course.scale:.4g} {follower.course.unit}".rstrip()
-    told = f"It could not be followed beyond {there}, an eccentricity of {largest(machine, place.y):.4f}"
+    reason = f"It could not be followed beyond {there}, an eccentricity of {largest(machine, place.y):.4f}"
     if harmonics >= MOST_HARMONICS - 2:
-        return f"{told}: {harmonics} harmonics leave {tail:.1g} of the clearance."
-    return f"{told}: the steps became too short."
+        return f"{reason}: {harmonics} harmonics leave {tail:.1g} of the clearance."
+    return f"{reason}: the steps became too short."

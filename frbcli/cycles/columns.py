@@ -1,4 +1,4 @@
-"""The columns of limit cycles: resting positions, cycles, whirls with unbalance, special points and maps."""
+"""The columns of limit cycles: static equilibria, cycles, whirls with unbalance, special points and maps."""
 
 from __future__ import annotations
 
@@ -39,8 +39,8 @@ def _largest(films: Sequence[str]) -> Column:
 
 def _largest_uncertainty(films: Sequence[str]) -> Column:
     def by_name(point: Any) -> dict[str, Any] | None:
-        found = point.eccentricity_max_uncertainty
-        return None if found is None else by_film(films, found)
+        uncertainty = point.eccentricity_max_uncertainty
+        return None if uncertainty is None else by_film(films, uncertainty)
 
     return Column("eccentricity_max_uncertainty", "", "its uncertainty, by film", by_name,
                   flat=False)  # fmt: skip
@@ -147,8 +147,8 @@ def _in_last_digits(head: str, digits: int, value: str, uncertainty: Callable[[S
 
 def _largest_shown(point: SpecialPoint) -> str:
     film = int(point.eccentricity_max.argmax())
-    found = point.eccentricity_max_uncertainty
-    return with_uncertainty(float(point.eccentricity_max[film]), None if found is None else float(found[film]), 4)
+    error = point.eccentricity_max_uncertainty
+    return with_uncertainty(float(point.eccentricity_max[film]), None if error is None else float(error[film]), 4)
 
 
 def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -> tuple[Column, ...]:
@@ -235,9 +235,9 @@ def diagram_columns(
 ) -> tuple[Column, ...]:  # fmt: skip
     """The columns of a diagram in pandas: of the number of a branch, -1 for none, and one of its points.
 
-    over: the number that is varied; films: their names; rings: their number; lines: names of those of whirls with
-    unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether journals tilt.
-    """
+    over: the number that is varied; films: their names; rings: their number; lines: names of the spectral lines of
+    whirls with unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether
+    journals tilt. """
     value = Column(over, "", "value of the varied key", _number("value"))
     whirl = Column("unbalance", "", "true: whirl with unbalance",
                    lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
@@ -290,10 +290,10 @@ def _number(name: str, place: int | None = None, at_rest: str = "") -> Callable[
     RestingPoint, if that is another."""
 
     def value(point: Any) -> float:
-        found = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
-        if found is None:
+        number = getattr(point, at_rest if at_rest and isinstance(point, RestingPoint) else name, None)
+        if number is None:
             return math.nan
-        return float(found if place is None else found[place])
+        return float(number if place is None else number[place])
 
     return value
 

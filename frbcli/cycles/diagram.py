@@ -1,4 +1,4 @@
-"""From resting positions and their Hopf points to a whole diagram, over the speed or another number of the case."""
+"""From static equilibria and their Hopf points to a whole diagram, over the speed or another number of the case."""
 
 from __future__ import annotations
 
@@ -40,13 +40,13 @@ SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf
 
 @dataclass
 class CycleCount:
-    """Counts cycles, and tells an observer their number, value and largest eccentricity."""
+    """Counts cycles and passes number, value and largest eccentricity to an observer."""
 
     observe: Observer | None
     count: int = 0
 
     def __call__(self, value: float, eccentricity_max: Array) -> None:
-        """Count a cycle, and tell its place and eccentricities."""
+        """Count a cycle, and report its place and eccentricities."""
         self.count += 1
         if self.observe is not None:
             self.observe(self.count, value, float(eccentricity_max.max()))
@@ -54,7 +54,7 @@ class CycleCount:
 
 @dataclass(frozen=True)
 class Walk:
-    """What a diagram is computed of: the resting positions along the course of a follower, which follows the branches;
+    """What a diagram is computed of: the static equilibria along the course of a follower, which follows the branches;
     meshes: others, for the errors of cycles; unknown: why there are none."""
 
     resting: Resting
@@ -68,44 +68,44 @@ class Walk:
         return self.follower.course
 
     def value(self, motion: Cycle | Equilibrium) -> float:
-        """The number of a cycle or a resting position, in its unit."""
+        """The number of a cycle or a static equilibrium, in its unit."""
         share = motion.value if isinstance(motion, Equilibrium) else float(motion.place.y[-1])
         return share * self.course.scale
 
 
 def diagram(case: Case, walk: Walk, observe: Observer | None, cpu: Callable[[], float]) -> LimitCycles:
     """The branches of all Hopf points of a walk. observe: see limit_cycles; cpu: gives the CPU time so far in s."""
-    resting, course, told = walk.resting, walk.course, CycleCount(observe)
+    resting, course, count = walk.resting, walk.course, CycleCount(observe)
 
-    def tell(cycle: Cycle) -> None:
-        told(walk.value(cycle), cycle.eccentricity_max)
+    def record(cycle: Cycle) -> None:
+        count(walk.value(cycle), cycle.eccentricity_max)
 
     branches: list[Branch | None] = []
     for number, hopf in enumerate(resting.hopf):
         known = any(branch is not None and _ends_in(walk, branch, hopf) for branch in branches[:number])
-        branches.append(None if known else follow_branch(walk.follower, first_place(hopf), tell))
+        branches.append(None if known else follow_branch(walk.follower, first_place(hopf), record))
     followed: list[tuple[int | None, Branch]] = [(i, branch) for i, branch in enumerate(branches) if branch is not None]
     numbers = {hopf: number for number, (hopf, _) in enumerate(followed)}
     notes = [resting.note, *_notes(case, walk)]
     if not any(point.stable for point in resting.points) and not resting.hopf:
-        seeded = _seeded(walk, tell)
+        seeded = _seeded(walk, record)
         followed += [] if seeded is None else [(None, seeded)]
     special = [hopf_special(walk, hopf, numbers.get(i)) for i, hopf in enumerate(resting.hopf)]
-    found = tuple(
+    grown = tuple(
         CycleBranch(hopf, tuple(point_of(walk, cycle) for cycle in branch.cycles), branch.note)
         for hopf, branch in followed
     )
-    notes += [_uncertain(walk, point) for point in special_cycles(found) if point.certain is False]
+    notes += [_uncertain(walk, point) for point in special_cycles(grown) if point.certain is False]
     return LimitCycles(
         case=case,
         over=course.over,
         unit=course.unit,
         films=walk.follower.machine.names,
         equilibria=tuple(_resting(walk, point) for point in resting.points),
-        branches=found,
-        special=(*special, *special_cycles(found)),
+        branches=grown,
+        special=(*special, *special_cycles(grown)),
         notes=tuple(filter(None, notes)),
-        cost=Cost(cpu(), told.count),
+        cost=Cost(cpu(), count.count),
     )
 
 
@@ -143,12 +143,12 @@ def _uncertain(walk: Walk, point: SpecialPoint) -> str:
     return f"The fold at {at} is uncertain: it was not found with the same films on another mesh."
 
 
-def with_hopf_errors(found: LimitCycles, walk: Walk) -> LimitCycles:
+def with_hopf_errors(computed: LimitCycles, walk: Walk) -> LimitCycles:
     """The diagram with the errors of its Hopf points by the other meshes of the walk."""
     hopf = [
-        _with_hopf_error(walk, point, begin) for point, begin in zip(found.of(HOPF), walk.resting.hopf, strict=True)
+        _with_hopf_error(walk, point, begin) for point, begin in zip(computed.of(HOPF), walk.resting.hopf, strict=True)
     ]
-    return replace(found, special=(*hopf, *found.special[len(hopf) :]))
+    return replace(computed, special=(*hopf, *computed.special[len(hopf) :]))
 
 
 def _with_hopf_error(walk: Walk, point: SpecialPoint, hopf: HopfPoint) -> SpecialPoint:
@@ -160,15 +160,15 @@ def _with_hopf_error(walk: Walk, point: SpecialPoint, hopf: HopfPoint) -> Specia
     )
 
 
-def with_response(found: LimitCycles, walk: Walk, response: Branch | None) -> LimitCycles:
+def with_response(computed: LimitCycles, walk: Walk, response: Branch | None) -> LimitCycles:
     """The diagram with the synchronous response."""
     if response is None:
-        return replace(found, notes=(*found.notes, "No synchronous response was found at the highest speed."))
+        return replace(computed, notes=(*computed.notes, "No synchronous response was found at the highest speed."))
     points = tuple(_cycle(walk, cycle) for cycle in response.cycles)
-    cost = replace(found.cost, cycles=found.cost.cycles + len(points))
+    cost = replace(computed.cost, cycles=computed.cost.cycles + len(points))
     if not response.note.startswith(LEFT):
-        found = replace(found, notes=(*found.notes, f"Synchronous response: {response.note}"))
-    return replace(found, synchronous=points, special=(*found.special, *special_cycles((), points)), cost=cost)
+        computed = replace(computed, notes=(*computed.notes, f"Synchronous response: {response.note}"))
+    return replace(computed, synchronous=points, special=(*computed.special, *special_cycles((), points)), cost=cost)
 
 
 def _notes(case: Case, walk: Walk) -> list[str]:
@@ -182,13 +182,13 @@ def _notes(case: Case, walk: Walk) -> list[str]:
     if all(point.stable for point in points):
         notes.append(f"No whirl begins between {between}: every small motion decays there.")
     elif not any(point.stable for point in points):
-        notes.append(f"The resting position is unstable between {between}: the whirl begins outside of the range.")
+        notes.append(f"The static equilibrium is unstable between {between}: the whirl begins outside of the range.")
     else:
         notes.append(f"No whirl begins between {between}.")
     return notes
 
 
-def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
+def _seeded(walk: Walk, record: Callable[[Cycle], None]) -> Branch | None:
     """The branch through a cycle that no Hopf point in the range leads to, from its low to its high end."""
     points = walk.resting.points
     for resting in (points[len(points) // 2], points[0], points[-1]):
@@ -198,8 +198,8 @@ def _seeded(walk: Walk, tell: Callable[[Cycle], None]) -> Branch | None:
             break
     else:
         return None
-    up = follow_branch(walk.follower, place, tell)
-    down = follow_branch(walk.follower, oriented(place, -place.tangent), tell)
+    up = follow_branch(walk.follower, place, record)
+    down = follow_branch(walk.follower, oriented(place, -place.tangent), record)
     notes = dict.fromkeys((down.note, up.note))
     return Branch((*reversed(down.cycles), *up.cycles), " ".join(notes), down.ends_at_rest or up.ends_at_rest)
 
@@ -264,7 +264,7 @@ def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoin
     """A Hopf point with its criticality; branch: number of the one that begins there."""
     here = hopf.equilibrium
     d = here.u[: 2 * here.machine.film_count].reshape(-1, 2)
-    found = lyapunov_coefficient(hopf)
+    lyapunov = lyapunov_coefficient(hopf)
     return SpecialPoint(
         kind=HOPF,
         branch=branch,
@@ -272,16 +272,16 @@ def hopf_special(walk: Walk, hopf: HopfPoint, branch: int | None) -> SpecialPoin
         speed_Hz=hertz(here.omega),
         frequency_Hz=hertz(hopf.nu),
         eccentricity_max=np.hypot(d[:, 0], d[:, 1]),
-        criticality=criticality_of(found),
-        lyapunov=found.value.real,
-        lyapunov_uncertainty=found.uncertainty,
+        criticality=criticality_of(lyapunov),
+        lyapunov=lyapunov.value.real,
+        lyapunov_uncertainty=lyapunov.uncertainty,
     )
 
 
-def criticality_of(found: Lyapunov) -> str | None:
+def criticality_of(lyapunov: Lyapunov) -> str | None:
     """Whether a Hopf point is subcritical or supercritical, by its Lyapunov coefficient; None where the error leaves
     that open."""
-    return (None, SUBCRITICAL, SUPERCRITICAL)[found.sign]
+    return (None, SUBCRITICAL, SUPERCRITICAL)[lyapunov.sign]
 
 
 def cycle_special(walk: Walk, cycle: Cycle, branch: int) -> SpecialPoint:

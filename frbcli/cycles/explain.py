@@ -28,23 +28,23 @@ FREQUENCY_WEIGHT = 3.0  # of the frequency against the speed, where it is asked 
 AHEAD = 1.02  # an onset may be seen so much below its cause, by the resolution of events
 
 
-def explanations(found: LimitCycles, events: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
+def explanations(diagram: LimitCycles, events: Sequence[Mapping[str, Any]]) -> tuple[str, ...]:
     """A sentence for each onset and offset of a run's events that a point of the diagram explains."""
-    told, unit = [], found.case.speed_unit
+    sentences, unit = [], diagram.case.speed_unit
     for event in events:
         if event["kind"] not in ("onset", "offset"):
             continue
         seen = f"{event['kind'].capitalize()} at {unit.words(event['speed_Hz'], 1)}"
         starts = event["kind"] == "onset"
-        causes = [point for point in found.special if point.kind in (HOPF, FOLD) and not point.synchronous]
+        causes = [point for point in diagram.special if point.kind in (HOPF, FOLD) and not point.synchronous]
         if starts:
             causes = [point for point in causes if point.speed_Hz <= AHEAD * event["speed_Hz"]]
         if not causes:
-            told.append(f"{seen}: no Hopf point and no fold of the diagram without unbalance causes it.")
+            sentences.append(f"{seen}: no Hopf point and no fold of the diagram without unbalance causes it.")
             continue
         cause = min(causes, key=lambda point: _distance(point, event))
-        told.append(f"{seen}: {_sentence(cause, starts, event['speed_Hz'], unit)}")
-    return tuple(told)
+        sentences.append(f"{seen}: {_sentence(cause, starts, event['speed_Hz'], unit)}")
+    return tuple(sentences)
 
 
 def _distance(point: SpecialPoint, event: Mapping[str, Any]) -> float:
@@ -67,7 +67,7 @@ def _sentence(cause: SpecialPoint, starts: bool, speed_Hz: float, unit: SpeedUni
     return f"the cycles end in the fold at {where}, {off} away."
 
 
-BESIDE = 0.03  # relative: range about the threshold in which its Hopf point is looked for
+SEARCH_RANGE = 0.03  # relative: range about the threshold in which its Hopf point is looked for
 
 
 @dataclass(frozen=True)
@@ -88,7 +88,7 @@ def threshold_kind(case: Case, threshold_Hz: float) -> ThresholdKind | None:
         system = make_system(case, make_plan(case))
         machine = make_machine(system, fastest)
         omega = 2.0 * math.pi * threshold_Hz
-        near = resting_curve(system, machine, (1.0 - BESIDE) * omega, (1.0 + BESIDE) * omega)
+        near = resting_curve(system, machine, (1.0 - SEARCH_RANGE) * omega, (1.0 + SEARCH_RANGE) * omega)
     except (FrbError, Unreachable):
         return None
     if not near.hopf:

@@ -46,7 +46,7 @@ class Family(Changing):
         """KEY=VALUE of a share of the largest value."""
         return f"{self.over}={share * self.high!r} {self.unit}".strip()
 
-    def beside(self, setting: str) -> Family:
+    def with_setting(self, setting: str) -> Family:
         """The machines with another setting of another key."""
         return Family(self.case, self.over, self.high, self.unit, self.speed, (setting,))
 
@@ -94,10 +94,10 @@ def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, fl
 
 def _number(key: str, text: str) -> tuple[float, str]:
     """A number and its unit."""
-    found = NUMBER.fullmatch(text.strip())
-    if found is None or not math.isfinite(float(found[1])):
+    match = NUMBER.fullmatch(text.strip())
+    if match is None or not math.isfinite(float(match[1])):
         raise input_error(key, key, text[:LONGEST_SHOWN], "is no number with a unit.", REMEDY)
-    return float(found[1]), found[2].strip()
+    return float(match[1]), match[2].strip()
 
 
 def check(case: Case, shooting: bool = False, with_unbalance: bool = False) -> tuple[float, float]:

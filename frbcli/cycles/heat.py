@@ -1,10 +1,9 @@
 """Limit cycles of a machine with heat: its temperatures are those at which the means over a period balance.
 
 Temperatures are slow: over a period they stay, and the heat that the films dissipate on the mean leaves with the oil
-and through the walls. So they follow from a motion y: T(y), by H(T, P(y, T), Q(y, T)) = 0. The equations of cycles are
-those of the machine at T(y), and how they change with y has the part of T(y) in it. Whether a cycle is stable is asked
-twice: of the motion while the temperatures stay, and of the temperatures while the motion follows them.
-"""
+and through the walls. So they follow from a motion y: T(y), by H(T, P(y, T), Q(y, T)) = 0. Cycles satisfy the equations
+of the machine at T(y); their derivatives by y include the part by T(y). A cycle is stable if both the motion (at fixed
+temperatures) and the temperatures (with the motion following) recover from a disturbance. """
 
 from __future__ import annotations
 
@@ -83,10 +82,10 @@ class HeatOfMotions:
         def heats(machine: Machine) -> FilmHeats:
             return film_heats(machine, self.ends, motion, nu, omega)
 
-        t, found, gain_by, by_heat, slopes = self._balanced(heats, near)
-        by_motion = by_heat[0] @ found.power_by + by_heat[1] @ found.flow_by
+        t, heat, gain_by, by_heat, slopes = self._balanced(heats, near)
+        by_motion = by_heat[0] @ heat.power_by + by_heat[1] @ heat.flow_by
         warmer = np.linalg.solve(gain_by, -by_motion)
-        return WarmMotion(self.machine(t), slopes @ warmer, found.loads_by_scale, t, gain_by, by_motion, slopes)
+        return WarmMotion(self.machine(t), slopes @ warmer, heat.loads_by_scale, t, gain_by, by_motion, slopes)
 
     def machine_along(self, u: Array, v: Array, omega: float) -> Machine:
         """The machine at the temperatures that balance the means over moments of a motion, u and its rate (n, c), at
@@ -100,49 +99,49 @@ class HeatOfMotions:
         derivatives of what nodes gain by power and flow. heats: of the machine at some temperatures."""
         t, free = (self.start if near is None else near).copy(), self.free
         for _ in range(ITERATIONS):
-            found = self._with_flow(heats(self.machine(t)), t)
-            gain, by_heat, slopes = self._gain(t, found)
-            by_own = by_heat[0] * found.power_by_scale + by_heat[1] * found.flow_by_scale
-            gain_by = self._gain_by_temperature(t, found) + by_own @ slopes
+            heat = self._with_flow(heats(self.machine(t)), t)
+            gain, by_heat, slopes = self._gain(t, heat)
+            by_own = by_heat[0] * heat.power_by_scale + by_heat[1] * heat.flow_by_scale
+            gain_by = self._gain_by_temperature(t, heat) + by_own @ slopes
             step = np.linalg.solve(gain_by, -gain[free])
             step *= min(1.0, LONGEST / max(float(np.abs(step).max()), 1e-300))
             t[free] += step
             if not np.isfinite(t).all() or t[: len(slopes)].max() >= self.model.hottest:
                 raise Unreachable
             if float(np.abs(step).max()) < SETTLED:
-                return t, found, gain_by, by_heat, slopes
+                return t, heat, gain_by, by_heat, slopes
         raise Unreachable
 
-    def _with_flow(self, found: FilmHeats, t: Array) -> FilmHeats:
+    def _with_flow(self, heat: FilmHeats, t: Array) -> FilmHeats:
         """What films do at temperatures t, with the flow of concentric ones where that is asked for."""
         if self.concentric is None:
-            return found
+            return heat
         machine = self.machine(t)
         flow = self.concentric * machine.clearances**3 / (machine.scales * self.made)
-        return replace(found, flow=flow, flow_by=np.zeros_like(found.flow_by), flow_by_scale=-flow)
+        return replace(heat, flow=flow, flow_by=np.zeros_like(heat.flow_by), flow_by_scale=-flow)
 
     def _rates(self, t: Array, power: Array, flow: Array) -> Array:
         return rates(self.model, t, power, flow, self.base.clearances)
 
-    def _gain(self, t: Array, found: FilmHeats) -> tuple[Array, tuple[Array, Array], Array]:
-        """W that all nodes gain (n,); derivatives of that of the free ones by power and flow (free, F) of each film;
+    def _gain(self, t: Array, heat: FilmHeats) -> tuple[Array, tuple[Array, Array], Array]:
+        """W gained by all nodes (n,); derivatives of the gain of free nodes by power and flow (free, F) of each film;
         slopes of WarmMotion."""
-        count, free = len(found.power), self.free
-        gain = self._rates(t, found.power, found.flow)
-        by_power = np.column_stack([self._rates(t, found.power + one, found.flow) - gain for one in np.eye(count)])
+        count, free = len(heat.power), self.free
+        gain = self._rates(t, heat.power, heat.flow)
+        by_power = np.column_stack([self._rates(t, heat.power + one, heat.flow) - gain for one in np.eye(count)])
         unit = 1e-6  # m^3/s: the gain is linear in the flows
-        by_flow = np.column_stack([self._rates(t, found.power, found.flow + unit * one) for one in np.eye(count)])
+        by_flow = np.column_stack([self._rates(t, heat.power, heat.flow + unit * one) for one in np.eye(count)])
         slopes = np.zeros((count, len(t)))
         _, a, c = self.model.viscosity
         slopes[:, :count] = np.diag(-a / (t[:count] + c) ** 2)
         return gain, (by_power[free], (by_flow - gain[:, None])[free] / unit), slopes[:, free]
 
-    def _gain_by_temperature(self, t: Array, found: FilmHeats) -> Array:
+    def _gain_by_temperature(self, t: Array, heat: FilmHeats) -> Array:
         """(free, free) W/K while power and flow stay."""
         free = self.free
         ahead, behind = (
             np.column_stack(
-                [self._rates(t + sign * DIFFERENCE * one, found.power, found.flow) for one in np.eye(len(t))[free]]
+                [self._rates(t + sign * DIFFERENCE * one, heat.power, heat.flow) for one in np.eye(len(t))[free]]
             )
             for sign in (1.0, -1.0)
         )
@@ -176,7 +175,7 @@ class WarmSpeed(MachineCourse):
 
         return at
 
-    def multipliers(self, found: Multipliers, y: Array, slope: Callable[[Machine], Array]) -> Multipliers:
+    def multipliers(self, fast: Multipliers, y: Array, slope: Callable[[Machine], Array]) -> Multipliers:
         """Multipliers of the motion while the temperatures stay, and of the temperatures while the motion follows."""
         warm = self._warm(y)
         by_own = slope(warm.machine)
@@ -188,11 +187,12 @@ class WarmSpeed(MachineCourse):
         growth = np.linalg.eigvals((warm.gain_by + by_motion @ follows) / capacity[:, None])
         period = 2.0 * np.pi / (y[-2] * self.top.pace)
         slow = np.exp(np.clip((growth * period).real, None, MOST_GROWTH) + 1j * (growth * period).imag)
-        others = np.concatenate([found.others, slow])
-        return replace(found, values=np.concatenate([found.values[:1], others[largest_first(others)]]))
+        others = np.concatenate([fast.others, slow])
+        return replace(fast, values=np.concatenate([fast.values[:1], others[largest_first(others)]]))
 
     def _warm(self, y: Array, near: Array | None = None) -> WarmMotion:
-        """The motion or the resting position y at its temperatures, see HeatOfMotions.warm; the latest one is kept."""
+        """The motion or the static equilibrium y at its temperatures, see HeatOfMotions.warm; the latest one is
+        kept."""
         if near is not None:
             return self._heat.warm(*self.harmonics(y), near)
         if self._latest is None or not np.array_equal(self._latest[0], y):
@@ -211,7 +211,7 @@ def warm_courses(
     case: Case, plan: Plan, system: System, fastest: float
 ) -> tuple[Callable[[System], WarmSpeed], RestingPosition]:
     """What makes the course of a system of a case with heat, the machine itself or that on films of another mesh, and
-    the resting position at the fastest speed in rad/s. Raises NotConverged without one."""
+    the static equilibrium at the fastest speed in rad/s. Raises NotConverged without one."""
     assert case.heat is not None
     heat = heat_of(case)
     made = np.array([case.viscosity(place.geometry) for place in film_places(case)])

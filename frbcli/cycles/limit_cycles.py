@@ -1,4 +1,4 @@
-"""Limit cycles of a case over its speed: resting positions, Hopf points, and the branches of cycles from them."""
+"""Limit cycles of a case over its speed: static equilibria, Hopf points, and the branches of cycles from them."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def limit_cycles(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """Compute resting positions, Hopf points and branches of limit cycles over the speed range of a case.
+    """Compute static equilibria, Hopf points and branches of limit cycles over the speed range of a case.
 
     Parameters
     ----------
@@ -60,10 +60,10 @@ def limit_cycles(
     Raises
     ------
     InputError
-        If openings turn beside oil that a film keeps, without a speed range, for a speed outside of it, or
+        If openings turn in a mass-conserving film, without a speed range, for a speed outside of it, or
         with_unbalance for a case without unbalance.
     NotConverged
-        Without a resting position at the highest speed.
+        Without a static equilibrium at the highest speed.
 
     Examples
     --------
@@ -76,27 +76,27 @@ def limit_cycles(
     asked = [2.0 * math.pi * speed for speed in speeds_Hz]
     _check_asked(case, asked, slowest, fastest)
     if by_shooting(case):
-        found = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
-        return _with_missing(of_no_whirl(found) if with_unbalance else found, speeds_Hz)
+        computed = limit_cycles_by_shooting(case, slowest, fastest, asked, observe, with_unbalance)
+        return _with_missing(of_no_whirl(computed) if with_unbalance else computed, speeds_Hz)
     system = make_system(case, make_plan(case))
     try:
         with advised(case):
             walk = _walk(case, system, slowest / fastest, fastest, [speed / fastest for speed in asked])
     except Unreachable:
-        raise NotConverged(f"The resting positions could not be followed down from {hertz(fastest):.4g} Hz.") from None
-    found = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
+        raise NotConverged(f"The static equilibria could not be followed down from {hertz(fastest):.4g} Hz.") from None
+    computed = _with_missing(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), speeds_Hz)
     if case.heat is not None:
-        found = with_hopf_errors(found, walk)
-    elif found.of(HOPF):
-        found = replace(found, special=_with_errors(case, fastest, found.special))
+        computed = with_hopf_errors(computed, walk)
+    elif computed.of(HOPF):
+        computed = replace(computed, special=_with_errors(case, fastest, computed.special))
     if with_unbalance:
-        found = whirls_with_unbalance(found, walk.course, observe)
+        computed = whirls_with_unbalance(computed, walk.course, observe)
     rotor = system.rotor
     if rotor.over_speed is None and (rotor.loads or rotor.unbalance_cos.any() or rotor.unbalance_sin.any()):
         response = synchronous_response(Synchronous(walk.course, slowest / fastest), walk.resting.points[-1])
-        found = with_response(found, walk, response)
-    found = replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
-    return of_no_whirl(found) if with_unbalance else found
+        computed = with_response(computed, walk, response)
+    computed = replace(computed, cost=replace(computed.cost, cpu_s=working_time().cpu_s - begun))
+    return of_no_whirl(computed) if with_unbalance else computed
 
 
 def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: float) -> None:
@@ -109,8 +109,8 @@ def _check_asked(case: Case, asked: Sequence[float], slowest: float, fastest: fl
 
 
 def _walk(case: Case, system: System, lowest: float, fastest: float, asked: Sequence[float]) -> Walk:
-    """Resting positions and cycles up to a speed in rad/s; lowest, asked: speeds over it. Raises NotConverged without a
-    resting position there, and Unreachable."""
+    """Static equilibria and cycles up to a speed in rad/s; lowest, asked: speeds over it. Raises NotConverged without a
+    static equilibrium there, and Unreachable."""
     plan = make_plan(case)
     course, position = _courses(case, plan, system, fastest)
     own = course(system)
@@ -123,7 +123,7 @@ def _courses(
     case: Case, plan: Plan, system: System, fastest: float
 ) -> tuple[Callable[[System], MachineCourse], RestingPosition]:
     """What makes the course over the speed of a system, the machine itself or that on films of another mesh, and the
-    resting position at the fastest speed in rad/s. Raises NotConverged without one."""
+    static equilibrium at the fastest speed in rad/s. Raises NotConverged without one."""
     if case.heat is not None:
         return warm_courses(case, plan, system, fastest)
     if system.rotor.over_speed is None:
@@ -146,18 +146,18 @@ def _with_errors(case: Case, fastest: float, special: Sequence[SpecialPoint]) ->
 
 def _with_error(machines: StaticMachines, point: SpecialPoint) -> SpecialPoint:
     try:
-        found = threshold_at(machines, point.speed_Hz, point.frequency_Hz)
+        threshold = threshold_at(machines, point.speed_Hz, point.frequency_Hz)
     except NotConverged:
         return point
     return replace(
         point,
-        value_uncertainty=found.speed_uncertainty_Hz,
-        frequency_uncertainty_Hz=found.frequency_uncertainty_Hz,
+        value_uncertainty=threshold.speed_uncertainty_Hz,
+        frequency_uncertainty_Hz=threshold.frequency_uncertainty_Hz,
     )
 
 
-def _with_missing(found: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
+def _with_missing(computed: LimitCycles, speeds_Hz: Sequence[float]) -> LimitCycles:
     """With a note on each speed at which there is no cycle."""
-    met = {round(point.speed_Hz, 6) for branch in found.branches for point in branch.points}
+    met = {round(point.speed_Hz, 6) for branch in computed.branches for point in branch.points}
     missing = [f"No limit cycle at {speed:g} Hz." for speed in speeds_Hz if round(speed, 6) not in met]
-    return replace(found, notes=(*found.notes, *missing))
+    return replace(computed, notes=(*computed.notes, *missing))

@@ -25,7 +25,7 @@ from frbcli.errors import NotConverged
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.remedies import advised
 
-POINTS = 41  # resting positions of the diagram
+POINTS = 41  # static equilibria of the diagram
 
 
 def limit_cycles_over(
@@ -71,20 +71,19 @@ def limit_cycles_over(
     try:
         resting = resting_over(family, first / last)
     except Unreachable:
-        raise NotConverged(f"The resting positions could not be followed over {key}.") from None
+        raise NotConverged(f"The static equilibria could not be followed over {key}.") from None
     plan, lowest = make_plan(family.case_at(1.0)), first / last
     meshes = tuple(
         OtherMesh(Follower(family.on_mesh(number), lowest), other.share)
         for number, other in enumerate(other_films(plan))
     )
     walk = Walk(resting, Follower(family, lowest), meshes, why_no_error(plan))
-    found = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
-    return replace(found, cost=replace(found.cost, cpu_s=working_time().cpu_s - begun))
+    computed = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
+    return replace(computed, cost=replace(computed.cost, cpu_s=working_time().cpu_s - begun))
 
 
 def resting_over(family: Family, lowest: float) -> Resting:
-    """Resting positions over the key, ascending, sought from the largest value on. Raises Unreachable,
-    NotConverged."""
+    """Static equilibria over the key, ascending, sought from the largest value on. Raises Unreachable, NotConverged."""
     with advised(family.case):
         near = at_rest(family.top, resting_position(family.system(1.0), family.speed))
     points = []

@@ -1,4 +1,4 @@
-"""What `limit_cycles` returns: resting positions, branches of cycles, special points; frozen."""
+"""What `limit_cycles` returns: static equilibria, branches of cycles, special points; frozen."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ def hertz(omega: float) -> float:
 
 @dataclass(frozen=True)
 class RestingPoint:
-    """A resting position. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
-    the clearance; ring_speeds_Hz: (R,); eigenvalues:
-    (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,) of the films, empty without heat;
-    end_eccentricity: (F,) the larger one of both ends, empty of films that do not tilt."""
+    """A static equilibrium. value: of the number that the diagram goes over; displacement: (F, 2) of the journals over
+    the clearance; ring_speeds_Hz: (R,); eigenvalues: (N,) 1/s; stable: whether all of them decay; temperatures_K: (F,)
+    of the films, empty without heat; end_eccentricity: (F,) the larger one of both ends, empty of films that do not
+    tilt."""
 
     value: float
     speed_Hz: float
@@ -48,13 +48,12 @@ class RestingPoint:
 class CyclePoint:
     """A limit cycle. value: of the number that the diagram goes over; speed_Hz: of the rotor; frequency_Hz: of the
     cycle; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; torque_N_m: mean, that turns the rotor against its films;
-    stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics:
-    (H + 1, F, 2) complex, of the displacements over the clearance; kind: "", that of a special point, or "asked" at a
+    stable: whether all disturbances decay; multipliers: (N,) the trivial one first, then by falling size; harmonics: (H
+    + 1, F, 2) complex, of the displacements over the clearance; kind: "", the kind of a special point, or "asked" at a
     speed that was asked for; temperatures_K: (F,) of the films, empty without heat; value_uncertainty: of a fold;
     frequency_uncertainty_Hz, eccentricity_max_uncertainty (F,): by the mesh of the films, at the same value, NaN where
     no such cycle was found on films of another mesh; the latter is None if none was sought; end_eccentricity_max: (F,)
-    the larger one of both ends, empty of films that do not tilt.
-    """
+    the larger one of both ends, empty of films that do not tilt. """
 
     value: float
     speed_Hz: float
@@ -91,8 +90,8 @@ class SpectralLine:
 @dataclass(frozen=True)
 class UnbalancedWhirl:
     """A whirl that has locked in with the unbalance, at half the speed. speed_Hz: of the rotor; frequency_Hz: of the
-    whirl; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; lines: those of whirl and unbalance, then the largest
-    others; stable: whether all disturbances decay; temperatures_K: (F,) of the films, empty without heat."""
+    whirl; eccentricity_max: (F,); ring_speeds_Hz: (R,) mean; lines: of whirl and unbalance, then the largest others;
+    stable: whether all disturbances decay; temperatures_K: (F,) of the films, empty without heat."""
 
     speed_Hz: float
     frequency_Hz: float
@@ -105,7 +104,7 @@ class UnbalancedWhirl:
 
 @dataclass(frozen=True)
 class MissingWhirl:
-    """A speed at which no whirl locks in with the unbalance beside a stable cycle. reason: why, without a full stop."""
+    """A speed with a stable cycle at which no whirl locks in with the unbalance. reason: without a full stop."""
 
     speed_Hz: float
     reason: str
@@ -113,9 +112,9 @@ class MissingWhirl:
 
 @dataclass(frozen=True)
 class CycleBranch:
-    """Cycles in their order from a Hopf point on. start: its number among the special points,
-    None where the Hopf point lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones
-    lock in with, if asked for; missing: those of them that do not lock in."""
+    """Cycles in their order from a Hopf point on. start: its number among the special points, None where the Hopf point
+    lies outside of the range; note: why it ends; with_unbalance: what some of the stable ones lock in with, if asked
+    for; missing: the ones that do not lock in."""
 
     start: int | None
     points: tuple[CyclePoint, ...]
@@ -127,13 +126,12 @@ class CycleBranch:
 @dataclass(frozen=True)
 class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
-    point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it
-    cannot be told, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of
-    criticality.py; eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and
-    folds and of the frequency, by the mesh of the films;
-    eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a fold was found on films of another mesh,
-    None of others and where it was not sought; synchronous: whether it is of the synchronous response.
-    """
+    point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it is
+    uncertain, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of criticality.py;
+    eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and folds and of
+    the frequency, by the mesh of the films; eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a
+    fold was found on films of another mesh, None of others and where it was not sought; synchronous: whether it is of
+    the synchronous response. """
 
     kind: str
     branch: int | None
@@ -181,11 +179,11 @@ class LimitCycles(Tabular):
         return any(len(point.end_eccentricity) for point in self.equilibria)
 
     def of(self, kind: str) -> tuple[SpecialPoint, ...]:
-        """The special points of a kind, without those of the synchronous response."""
+        """The special points of a kind, except on the synchronous response."""
         return tuple(point for point in self.special if point.kind == kind and not point.synchronous)
 
     def table(self) -> Table:
-        """One row per resting position and cycle, and per whirl with unbalance, if they were asked for."""
+        """One row per static equilibrium and cycle, and per whirl with unbalance, if they were asked for."""
         from frbcli.cycles.columns import diagram_columns  # of what is declared here
 
         numbered = list(enumerate(self.branches))

@@ -36,6 +36,6 @@ class BaseElement(MachineElement):
         load = changing_load(self.name, np.array(self.given.amplitude), self.given)
         return Parts(loads=((GROUND, load),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         x, y = (display(each, "m/s^2") for each in self.given.amplitude)
         return "ground", f"{x} in x, {y} in y", f"{self.given.turning}; displacements are those against the ground"

@@ -1,7 +1,6 @@
 """Given coefficients: the force on the shaft is -K d - C d' - M d'' with the displacement d (2,) of the shaft.
 
-K, C and M may depend on the speed of the rotor; for the motion at each moment they are those of its speed then.
-"""
+K, C and M may depend on the speed of the rotor; for the motion at each moment the speed at that moment counts. """
 
 from __future__ import annotations
 
@@ -61,7 +60,7 @@ class GivenCoefficients(MachineElement):
         remedy = "Load the case with load_case or case_from_dict."
         return [Fault(f"{self.key}.file", self.given.file, None, problem, remedy)]
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         value, reason = self._values()
         return "bearings", f"{self.given.name}: {value}".removeprefix(": "), reason
 

@@ -1,8 +1,7 @@
 """A squeeze film damper: the shell of a bearing is a body that moves in a film, on a centring spring, without turning.
 
-The film is one of the machine's films, between the shell and its seat; the spring lies beside it. Equal bearings of a
-symmetric rotor move alike: one body stands for both shells.
-"""
+The film is one of the machine's films, between the shell and its seat; the spring acts in parallel. Equal bearings of a
+symmetric rotor move alike: one body represents both shells. """
 
 from __future__ import annotations
 
@@ -32,7 +31,7 @@ class DamperElement(MachineElement):
     given: Damper
 
     symbol: ClassVar[str] = "damper"
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -58,7 +57,7 @@ class DamperElement(MachineElement):
         """The link between shell and seat on which spring and film act."""
         return Link(self.node, site.seat(self.bearing), site.count)
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} in a film".removeprefix(": ")
         spring = "no centring spring: it sinks under a static load"
         if any(self.given.spring):

@@ -52,7 +52,7 @@ class MachineElement(ABC):
 
     symbol: ClassVar[str] = ""  # how a sketch draws it at its bearing, a row of report/svg.py
     arrow: ClassVar[tuple[str, str] | None] = None  # letter and words of its arrow in a sketch
-    beside: ClassVar[bool] = False  # whether it lets the shells of bearings move, or pulls at the shaft beside them
+    besides_bearings: ClassVar[bool] = False  # whether it moves shells of bearings, or pulls at the shaft
 
     @classmethod
     @abstractmethod
@@ -60,7 +60,7 @@ class MachineElement(ABC):
         """The elements of this kind in a case."""
 
     @abstractmethod
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         """Its line of the plan."""
 
     @property

@@ -51,12 +51,12 @@ class ForceElement(MachineElement):
         amplitude = np.array([x + 1j * y, y - 1j * x] if given.rotating else [x, y])
         return Parts(loads=((self.node, changing_load(self.name, amplitude, given)),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         x, y = (display(each, "N") for each in self.given.amplitude)
         turning = f"{self.given.turning}, {'rotating, ' if self.given.rotating else ''}"
         where = "at each of both equal bearings" if equal_places(self.node, site) > 1.0 else "at one place"
         value = f"{self.node.replace('_', ' ')}: {x} in x, {y} in y"
-        reason = f"{'constant, ' if self.given.constant else turning}{where}; beside unbalance and weight"
+        reason = f"{'constant, ' if self.given.constant else turning}{where}; besides unbalance and weight"
         return "force", value, reason
 
 
@@ -71,5 +71,5 @@ def changing_load(name: str, amplitude: Array, given: AppliedForce | Base) -> Lo
 
 
 def equal_places(node: str, site: Site) -> float:
-    """Places of the machine that a node stands for."""
+    """Number of places of the machine that a node represents."""
     return 1.0 if node.startswith(("disk", "housing")) else site.count

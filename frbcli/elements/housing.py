@@ -1,4 +1,4 @@
-"""The housing that all bearings stand in: a rigid body on mounts, or the modes of an elastic one.
+"""The housing of all bearings: a rigid body on mounts, or the modes of an elastic one.
 
 A rigid housing moves by q = [x, y, a, b]: its centre of mass, and the slopes of its axis in the planes x z and y z; a
 bearing at a distance l of the centre moves by (x + l a, y + l b). Both ends of a symmetric rotor move alike, and so its
@@ -35,7 +35,7 @@ class HousingElement(MachineElement):
     given: Housing
     bearings: tuple[tuple[str, float], ...]
 
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -50,15 +50,15 @@ class HousingElement(MachineElement):
     def parts(self, site: Site) -> Parts:
         return Parts(bodies=(self._modal(site.gravity) if self.given.modes else self._rigid(site.gravity),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         if self.given.modes:
             frequencies = ", ".join(f"{mode.frequency:.4g}" for mode in self.given.modes)
             weight = "its weight at its masses" if self.given.masses else "without its weight, for no masses are given"
-            return "housing", f"{len(self.given.modes)} modes", f"{frequencies} Hz; all bearings stand in it; {weight}"
+            return "housing", f"{len(self.given.modes)} modes", f"{frequencies} Hz; carries all bearings; {weight}"
         mass, count = display(self.given.mass or 0.0, "kg"), len(self.given.mounts)
         tilts = "moves and tilts" if self.bearings else "moves, and does not tilt with a symmetric rotor"
         mounts = f"{count} mounts" if count > 1 else "one mount"
-        return "housing", f"{mass} on {mounts}", f"a rigid body that {tilts}, with its weight; all bearings stand in it"
+        return "housing", f"{mass} on {mounts}", f"a rigid body that {tilts}, with its weight; carries all bearings"
 
     def _rigid(self, gravity: float) -> Body:
         given = self.given

@@ -28,7 +28,7 @@ class MagneticPullElement(MachineElement):
     given: MagneticPull
 
     arrow: ClassVar[tuple[str, str] | None] = ("M", "a magnetic pull")
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -44,7 +44,7 @@ class MagneticPullElement(MachineElement):
         pull = LinearPart.of(-self.given.pull * np.eye(2))
         return Parts(links=((Link(self.node, self.stator, equal_places(self.node, site)), pull),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         value = f"{self.node.replace('_', ' ')}: {display(self.given.pull, 'N/m')}"
         stator = self.stator.replace("_", " ") or "the ground"
         return "magnetic pull", value, f"out of the middle of its stator, on {stator}; a spring of negative stiffness"

@@ -1,9 +1,8 @@
 """Pins of semi-floating rings and cartridges: they act on the turning of a ring alone.
 
 M = -(K (phi - phi_0) + C phi') beyond the play phi_0 to one side, K = k r^2 and C = c r^2 of a pin at the radius r, as
-long as it pushes the ring back, and 0 within the play; solve/pin.py has it in a stage of the time loop. At rest the
-drag of its films holds a ring against its pin.
-"""
+long as it pushes the ring back, and 0 within the play; solve/pin.py solves it in a stage of the time loop. At rest the
+drag of its films holds a ring against its pin. """
 
 from __future__ import annotations
 
@@ -37,7 +36,7 @@ class PinElement(MachineElement):
             if bearing.pin is not None:
                 yield cls(f"{key}.pin", bearing.name, bearing.pin)
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         pin = self.given
         value = f"{self.bearing}: play {display(pin.play, 'm')}".removeprefix(": ")
         free = f"{math.degrees(pin.play / pin.radius):.3g} deg to either side"

@@ -20,8 +20,10 @@ from frbcli.case.surroundings.places import node_at
 from frbcli.case.surroundings.spring import Spring
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.force import equal_places
+from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND, Link
 from frbcli.rotor.loads import LinearPart
+from frbcli.rotor.own_laws import fingerprint, problem_of
 from frbcli.rotor.port import (
     D_X,
     D_Y,
@@ -45,6 +47,7 @@ from frbcli.units import display
 STIFFNESS, CUBIC, GAP, DAMPING, FRICTION, RADIUS = range(6)  # of the numbers of a law
 STICKS = 1e-3  # m/s: sliding below which friction falls to nothing, tanh(u / STICKS)
 SMALL = 1e-5  # m: over which a spring without a gap counts
+LAWS = "force_laws"  # among the versions of a run
 
 
 @dataclass(frozen=True)
@@ -130,7 +133,7 @@ class SpringElement(MachineElement):
     given: Spring
 
     arrow: ClassVar[tuple[str, str] | None] = ("K", "a spring or a stop")
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -145,12 +148,17 @@ class SpringElement(MachineElement):
     def parts(self, site: Site) -> Parts:
         given, link = self.given, Link(*self.nodes, equal_places(self.nodes[0], site))
         if not given.linear:
-            signal = "stop_force" if given.gap else "spring_force"
-            return Parts(ports=((f"{signal}_{self.number}", link, SpringForce(given)),))
+            law = given.own_law if given.law else SpringForce(given)
+            signal = law.quantity or ("stop_force" if given.gap else "spring_force")
+            return Parts(ports=((f"{signal}_{self.number}", link, law),))
         part = LinearPart.of((given.stiffness or 0.0) * np.eye(2), given.damping * np.eye(2))
         return Parts(links=((link, part),))
 
-    def told(self, site: Site) -> Line:
+    def faults(self) -> list[Fault]:
+        problem = problem_of(self.given.own_law) if self.given.law else ""
+        return [Fault(self.key, self.given.law, None, problem, "Correct the law.")] if problem else []
+
+    def plan_line(self, site: Site) -> Line:
         given, (first, second) = self.given, (each.replace("_", " ") or "the ground" for each in self.nodes)
         values = [display(given.stiffness, "N/m")] if given.stiffness else []
         values += [display(given.cubic, "N/m^3")] if given.cubic else []
@@ -159,4 +167,13 @@ class SpringElement(MachineElement):
         if given.gap:
             reason = f"touches beyond {display(given.gap, 'm')}"
             reason += f", rubs with a coefficient of {given.friction:g}" if given.friction else ""
+        if given.law:
+            values, reason = [given.law], "a force law added from Python"
         return "spring", f"{first}: {', '.join(values)}", f"against {second}; {reason}"
+
+
+def law_record(case: Case) -> dict[str, str]:
+    """The record of the force laws of a run that were added from Python; empty without any."""
+    laws = (spring for spring in case.springs if spring.law)
+    words = ", ".join(f"{spring.law} with forces {fingerprint(spring.own_law)}" for spring in laws)
+    return {LAWS: words} if words else {}

@@ -1,8 +1,7 @@
 """The support of a bearing: its shell is a body on springs and dampers, M u'' + C u' + K u = weight + what acts on it.
 
 Film or coefficients act between the shaft, or the ring, and that body. Equal bearings of a symmetric rotor move alike:
-one body stands for both, with twice their mass, stiffness and damping.
-"""
+one body represents both, with twice their mass, stiffness and damping. """
 
 from __future__ import annotations
 
@@ -29,7 +28,7 @@ class SupportElement(MachineElement):
     given: Support
 
     symbol: ClassVar[str] = "spring"
-    beside: ClassVar[bool] = True
+    besides_bearings: ClassVar[bool] = True
 
     @classmethod
     def of(cls, case: Case) -> Iterator[Self]:
@@ -47,7 +46,7 @@ class SupportElement(MachineElement):
         link = Link(self.node, site.ground(self.bearing), site.count)
         return Parts((point_mass(self.node, site.count * self.given.mass, site.gravity),), ((link, mount),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         springs = directions(self.given.stiffness, "N/m")
         damping = f", {directions(self.given.damping, 'N*s/m')}" if any(self.given.damping) else ", undamped"
         value = f"{self.bearing}: {display(self.given.mass, 'kg')} on springs".removeprefix(": ")

@@ -41,7 +41,7 @@ class TiltingFilm:
 
 @dataclass(frozen=True)
 class RestingFilm:
-    """A film at its resting position.
+    """A film at its static equilibrium.
 
     displacement: (2,) of the journal over the clearance; attitude_deg: from the load line to the displacement, positive
     counter-clockwise, NaN where nothing is carried; stiffness (2, 2) in N/m, damping (2, 2) in N s/m, -dF/dD and
@@ -88,9 +88,9 @@ def settled_force(
     """Force and derivatives of film i with its journal at rest at `place` (c,) in m, of a film that keeps oil when this
     has settled in each of two neighbouring motions. total: omega_J + omega_S; slip: see System.force. Raises
     NotConverged."""
-    found = system.force(i, place, np.zeros_like(place), total, near, slip)
+    force = system.force(i, place, np.zeros_like(place), total, near, slip)
     if not system.remembering[i]:
-        return found
+        return force
     size = len(place)
 
     def moved(motion: Array) -> Array:
@@ -111,7 +111,7 @@ def settled_force(
             system.force(i, place, side * pace * unit, total, None, slip).force for side in (1.0, -1.0)
         )
         by_velocity[:, column] = (ahead - behind) / (2.0 * pace)
-    return replace(found, by_displacement=by_displacement, by_velocity=by_velocity)
+    return replace(force, by_displacement=by_displacement, by_velocity=by_velocity)
 
 
 @dataclass(frozen=True)
@@ -126,8 +126,8 @@ class FilmsAtRest:
 
 
 def films_at_rest(system: System, omega: float, position: RestingPosition, settled: bool = True) -> FilmsAtRest:
-    """The films of a machine that rests at omega rad/s. settled: whether the derivatives of films that keep oil are
-    those of settled_force, else one-sided ones. Raises NotConverged."""
+    """The films of a machine that rests at omega rad/s. settled: whether the derivatives of mass-conserving films come
+    from settled_force, else one-sided ones. Raises NotConverged."""
     speeds, near = position.ring_speeds, position.films
     totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
 

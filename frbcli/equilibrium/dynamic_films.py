@@ -1,9 +1,11 @@
-"""Machines at rest whose films keep their oil: the dynamic stiffness of the films, and eigenvalues of machine and oil.
+"""Machines at rest whose films are mass-conserving: the dynamic stiffness of the films, and eigenvalues of machine and
+oil.
 
-The eigenvalues s are those of M s^2 + (D + Omega G) s + K + sum of L Z(s) P, by nonlinear inverse iteration from the
+The eigenvalues s of M s^2 + (D + Omega G) s + K + sum of L Z(s) P follow by nonlinear inverse iteration from the
 eigenvalues of a machine on films with a few states each (projections, see film/cells/dynamic_stiffness.py). P maps the
-motion of the machine onto that of the journals, and of the angles of rings onto the angle by which journal and shell
-turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the drag.
+motion of the machine onto the motion of the journals, and of the angles of rings onto the angle by which journal and
+shell turn together; L maps forces onto the machine, and onto the rings their moments and what missing oil leaves of the
+drag.
 
 How a film answers depends on where its fronts lie between its cells: fronts cross cells one at a time, and the
 derivative jumps. So Z is the mean over PLACES of the cells. Its error is of first order in the size of the cells:
@@ -35,12 +37,12 @@ from frbcli.film.rectangles.film import FilmForce
 # Cells around, and along a half of the width, with their weights in the extrapolation.
 MESHES = (((96, 12), 2.0), ((48, 6), -1.0))
 PLACES = 8  # of the cells, over one cell
-SPREAD = 2.0  # standard deviations of what the mean over the places leaves that are told as its error
+SPREAD = 2.0  # standard deviations of the mean over the places that are stated as its error
 PROJECTED = (0.25, 0.5, 1.0, 4.0)  # frequencies over the rotor's speed
 DAMPED = 1.0  # over the rotor's speed: motions that decay faster are none of interest
 TRUSTED = 1e-2  # relative error of the projection at an eigenvalue, beyond which this is not one of the machine
-# Relative distance to a pole of a projection within which a motion is one of the projection alone: to that of a film
-# with gas belong some that grow and move nothing, next to which the inverse iteration ends at once.
+# Relative distance to a pole of a projection within which a motion belongs to the projection alone: the projection of a
+# film with gas has some that grow and move nothing, next to which the inverse iteration ends at once.
 POLE = 1e-8
 # Difference of the films of both meshes over the smaller one. Next to a pole of the finer mesh it is 1, next to one of
 # the coarser mesh more; at eigenvalues of machines it is 0.01 to 0.3, of those that hardly oscillate up to 0.5.
@@ -57,10 +59,10 @@ INSTANT = 1e-5  # delay over the longest one of all films, below which the oil o
 
 @dataclass(frozen=True)
 class DynamicFilm:
-    """A film that may keep its oil. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one place,
-    exact: the film that this is a projection of, None of a film without memory; summits: which all of them have beside
-    the oil, but for `exact`; lying: of each of MESHES with its cells in each of PLACES, times the weight of the mesh.
-    `turns`: whether it is one beside rings, see LinearFilm.turning."""
+    """A film that may be mass-conserving. own: extrapolated; fine: of the finer mesh alone; one: of the cells in one
+    place, exact: the film that this is a projection of, None of a film without memory; summits: asperities, which all
+    of them include in addition to the oil, except `exact`; lying: of each of MESHES with its cells in each of PLACES,
+    times the weight of the mesh. `turns`: whether it is next to a ring, see LinearFilm.turning."""
 
     own: DynamicStiffness
     fine: DynamicStiffness
@@ -75,7 +77,7 @@ class DynamicFilm:
         return z.real, z.imag / frequency
 
     def on(self, summits: FilmForce) -> DynamicFilm:
-        """The film with the summits of rough surfaces beside it, which have no memory, and whose friction does not
+        """The film with the summits of rough surfaces in parallel, which have no memory, and whose friction does not
         follow the angle by which journal and shell turn together."""
         more = without_memory(*np.zeros((2, *self.own.place.shape)))
         at = slice(0, len(summits.force))
@@ -87,9 +89,8 @@ class DynamicFilm:
 def dynamic_film(
     film: Callable[[tuple[int, int]], LinearOf], place: Array, total: float, omega: float, turns: bool = False
 ) -> DynamicFilm:
-    """A film that keeps its oil, its journal at rest at `place` (c,) in m and rad. film: on any cells, see
-    Films.linear; total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises
-    NotConverged."""
+    """A mass-conserving film, its journal at rest at `place` (c,) in m and rad. film: on any cells, see Films.linear;
+    total: omega_J + omega_S; omega: speed of the rotor, rad/s; turns: see DynamicFilm. Raises NotConverged."""
     frequencies = [share * abs(omega) for share in PROJECTED]
     lying: list[tuple[DynamicStiffness, ...]] = []
     means: list[DynamicStiffness] = []
@@ -193,7 +194,7 @@ def modes(
 
     own: the films' dynamic stiffness. None of the machine are eigenvalues at which the projections are not to be
     trusted, at which the films of the two meshes are not the same, and those far from where the iteration began."""
-    found: list[tuple[complex, Complex]] = []
+    pairs: list[tuple[complex, Complex]] = []
     for start, shape in machine.starts([film.one for film in films]):
         if start.imag < -NEARLY_REAL * abs(start) or start.real < -DAMPED * abs(omega):
             continue
@@ -202,21 +203,21 @@ def modes(
             value, vector = value.conjugate(), vector.conj()
         if not abs(value - start) < MOVED * max(abs(start), abs(omega)) or value.real < -DAMPED * abs(omega):
             continue
-        if any(abs(value - other) < EQUAL * abs(value) for other, _ in found):
+        if any(abs(value - other) < EQUAL * abs(value) for other, _ in pairs):
             continue
         if any((np.abs(1.0 + value * film.delays) < POLE).any() for film in own):
             continue
         if all(_trusted(film, value) and _known(film, value) for film in films):
-            found.append((value, vector))
-    return found
+            pairs.append((value, vector))
+    return pairs
 
 
 def followed(
     machine: Oscillator, films: Sequence[DynamicStiffness], known: Sequence[tuple[complex, Complex]]
 ) -> list[tuple[complex, Complex]]:
     """The eigenvalues of `modes` on other films, those that are known leading to them."""
-    found = [_iterated(machine, films, value, shape) for value, shape in known]
-    return [each for each in found if math.isfinite(each[0].real)]
+    refined = [_iterated(machine, films, value, shape) for value, shape in known]
+    return [each for each in refined if math.isfinite(each[0].real)]
 
 
 def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Complex) -> Array:
@@ -226,7 +227,7 @@ def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Comp
     passes into the next cell. The mean over P places misses that by J (1/2 - x) / P, with x as likely anywhere from 0
     to 1: in the square by J^2 / (12 P^2). Neighbours among the places differ by J / P, or by J (1 - 1 / P) across the
     jump: the sum of their squares is J^2 (1 - 1 / P). Several fronts add up in the square."""
-    own, found = [film.own for film in films], np.zeros(len(values))
+    own, errors = [film.own for film in films], np.zeros(len(values))
     for number, s in enumerate(values.tolist()):
         matrix, slope = machine.at(s, own)
         left, _, right = np.linalg.svd(matrix)
@@ -239,8 +240,8 @@ def place_errors(machine: Oscillator, films: Sequence[DynamicFilm], values: Comp
                 shifts = np.array([balance @ push @ part.at(s)[0] @ journal @ moved for part in places]) / scale
                 count = len(places)
                 square += float(np.sum(np.abs(shifts - np.roll(shifts, 1)) ** 2)) / (12.0 * count * max(count - 1, 1))
-        found[number] = SPREAD * math.sqrt(square)
-    return found
+        errors[number] = SPREAD * math.sqrt(square)
+    return errors
 
 
 def _iterated(

@@ -33,8 +33,8 @@ def oscillating(eigenvalues: Complex) -> NDArray[np.bool_]:
 def whirls(eigenvalues: Complex, slowest: float = 0.0) -> NDArray[np.int64]:
     """(W,) numbers of the eigenvalues that oscillate, by falling growth. slowest: frequency in rad/s above which a
     motion counts as a whirl."""
-    found = np.flatnonzero(oscillating(eigenvalues) & (eigenvalues.imag > slowest))
-    return found[fastest_first(eigenvalues[found])]
+    numbers = np.flatnonzero(oscillating(eigenvalues) & (eigenvalues.imag > slowest))
+    return numbers[fastest_first(eigenvalues[numbers])]
 
 
 class AtRest(Protocol):
@@ -70,8 +70,7 @@ def hopf_points(
 ) -> Iterator[Crossing[Rest]]:
     """The Hopf points between machines at rest whose values are in their order.
 
-    between: the machine at a value between those of two; close: relative error of the value at a Hopf point.
-    """
+    between: the machine at a value between two others; close: relative error of the value at a Hopf point. """
     for low, high in itertools.pairwise(points):
         yield from _within(between, low, high, close, HALVINGS)
 
@@ -134,8 +133,8 @@ def located(
 def growth_of(eigenvalues: Complex, number: int, slowest: float = 0.0) -> float:
     """Growth in 1/s of the whirl number 0, 1, ... of eigenvalues (N,) by falling growth; -inf if there are not as many.
     slowest: see whirls."""
-    found = whirls(eigenvalues, slowest)
-    return float(eigenvalues[found[number]].real) if number < len(found) else -math.inf
+    numbers = whirls(eigenvalues, slowest)
+    return float(eigenvalues[numbers[number]].real) if number < len(numbers) else -math.inf
 
 
 def growing(eigenvalues: Complex) -> int:

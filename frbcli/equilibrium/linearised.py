@@ -60,8 +60,8 @@ def rotor_at_rest(
 
 
 def _beside_rings(system: System, rotor: LinearRotor, bodies: Array, places: Array) -> tuple[Array, Array]:
-    """Maps of the films beside rings, L (films, n, c + 1) and P (films, c + 1, n) of dynamic_films; bodies, places: see
-    ring_torques."""
+    """Maps of the films next to rings, L (films, n, c + 1) and P (films, c + 1, n) of dynamic_films; bodies, places:
+    see ring_torques."""
     spins, (films, c, n) = list(system.spins), rotor.journals.shape
     pushes, journals = np.zeros((films, n, c + 1)), np.zeros((films, c + 1, n))
     pushes[:, :, :c] = rotor.multiplicity[:, None, None] * np.swapaxes(rotor.journals, 1, 2)
@@ -71,8 +71,8 @@ def _beside_rings(system: System, rotor: LinearRotor, bodies: Array, places: Arr
 
 
 def oscillator(system: System, omega: float, at_rest: FilmsAtRest, films: Sequence[DynamicFilm]) -> Oscillator:
-    """The machine at omega rad/s without its films, which keep their oil. These turn its rings with all of their
-    forces, and summits, which have torques of their own, are taken off here."""
+    """The machine at omega rad/s without its films, which are mass-conserving. The films turn its rings with all of
+    their forces; summits, which have their own torques, are removed here."""
     off, speeds = [(-film.summits.place, -film.summits.rate) for film in films], at_rest.position.ring_speeds
     rotor = rotor_at_rest(system, omega, speeds, at_rest, off)
     here, journals = rotor.at(omega), rotor.journals
@@ -110,8 +110,8 @@ def small_motions(matrices: tuple[Array, Array, Array], turning: tuple[int, ...]
     """As eigenpairs, of mass, damping and stiffness (n, n). turning: see LinearRotor."""
     values, vectors = np.linalg.eig(states(matrices, turning))
     motions = vectors[-len(matrices[0]) :].astype(complex)  # velocities, of which each degree of freedom has one
-    found = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
-    return found, motions
+    corrected = _grown_by_work(values.astype(complex), motions, matrices, _sensitivity(vectors, matrices[0]))
+    return corrected, motions
 
 
 def _sensitivity(vectors: Complex, mass: Array) -> Array:
@@ -145,13 +145,13 @@ def _grown_by_work(
     exactly 0 of an undamped motion, where the real part that a solver finds is round-off of the largest eigenvalue. A
     motion without stiffness and damping, of a free body, has a double eigenvalue 0, of which a solver finds the root of
     its round-off."""
-    found, (mass, damping, stiffness) = values.copy(), matrices
+    corrected, (mass, damping, stiffness) = values.copy(), matrices
     size, noise = float(np.max(np.abs(values), initial=0.0)), len(values) * float(np.finfo(float).eps)
 
     def work(matrix: Array) -> tuple[Complex, Array]:
         """x^H A x of all motions, and its round-off."""
-        taken = np.einsum("in,ij,jn->n", motions.conj(), matrix, motions)
-        return taken, noise * np.einsum("in,ij,jn->n", *(np.abs(each) for each in (motions, matrix, motions)))
+        done = np.einsum("in,ij,jn->n", motions.conj(), matrix, motions)
+        return done, noise * np.einsum("in,ij,jn->n", *(np.abs(each) for each in (motions, matrix, motions)))
 
     (m, _), (d, off_d), (k, off_k) = map(work, (mass, damping, stiffness))
     frequency, slow = values.imag, math.sqrt(noise) * size
@@ -161,10 +161,10 @@ def _grown_by_work(
         growth = -(frequency * d.real + k.imag) / inertia
         least = (np.abs(frequency) * off_d + off_k) / np.abs(inertia)
     none = (np.abs(growth) <= least) | ((growth > 0.0) & (growth <= noise * size * sensitivity))
-    found.real[doubtful] = np.where(none, 0.0, growth)[doubtful]
+    corrected.real[doubtful] = np.where(none, 0.0, growth)[doubtful]
     free = (np.abs(k) <= noise * size**2 * m.real) & (np.abs(d) <= noise * size * m.real + off_d)
-    found[(np.abs(values) <= slow) & free | (np.abs(values) <= noise * size)] = 0.0
-    return found
+    corrected[(np.abs(values) <= slow) & free | (np.abs(values) <= noise * size)] = 0.0
+    return corrected
 
 
 def first_order(mass: Array, damping: Array, stiffness: Array) -> Array:

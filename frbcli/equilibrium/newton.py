@@ -19,7 +19,7 @@ Films = TypeVar("Films")
 ITERATIONS = 80
 GAP_KEPT = 0.25  # a step may shrink 1 - eps of a journal to this share of it
 SHORTER = 0.5  # of the share of a step that is tried, while the force that is left over does not fall
-NEAR = 0.1  # share that a step leaves of the force left over, below which its change tells what the slopes lack
+NEAR = 0.1  # share that a step leaves of the force left over, below which its change shows what the slopes lack
 STUCK, GAIN = 10, 1e-3  # shortened steps in a row that each take less than this share of the force that is left over
 
 
@@ -40,7 +40,7 @@ class ForceBalance(Generic[Films]):
 
 @dataclass(frozen=True)
 class Search:
-    """When a search ends. step: over the clearance, a full step below it has arrived; untaken: over the clearance, a
+    """When a search ends. step: over the clearance, a full step below it has arrived; negligible: over the clearance, a
     step below it is not taken any more, where films are dear; force: N, and so has less left
     over; share: smallest one of a step that is tried until less is left over; patience: places that may be no better
     one after the other, where forces have jumps; gap: over the clearance, a journal that is nearer to its shell and
@@ -51,7 +51,7 @@ class Search:
     share: float
     patience: int = 0
     gap: float = 0.0
-    untaken: float = 0.0
+    negligible: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -83,45 +83,45 @@ def search_rest(
     still = ends(np.zeros_like(start))
     since = stuck = 0
     for _ in range(ITERATIONS):
-        found = here.balance
-        if found.left < search.force:
+        current = here.balance
+        if current.left < search.force:
             return replace(here, settled=True)
-        slope = found.slope + here.lacking
+        slope = current.slope + here.lacking
         if not (np.isfinite(slope).all() and np.linalg.matrix_rank(slope) == len(slope)):
             break
-        solved = np.asarray(np.linalg.solve(slope, -found.residual), dtype=np.float64)
+        solved = np.asarray(np.linalg.solve(slope, -current.residual), dtype=np.float64)
         step = solved.reshape(*here.position.shape)
         there, moved = ends(here.position), ends(step) - still
         if _leaves(there, moved, search.gap):
             break
         share = whole = min([1.0, *(largest_share(*pair) for pair in zip(there, moved, strict=True))])
-        if (size := float(np.abs(moved).max())) < search.untaken:
+        if (size := float(np.abs(moved).max())) < search.negligible:
             return replace(here, settled=True)
         arrives = size < search.step
         while True:
             following = here.position + share * step
-            new = balance(following, found)
-            if arrives or new.left < found.left or SHORTER * share <= search.share:
+            new = balance(following, current)
+            if arrives or new.left < current.left or SHORTER * share <= search.share:
                 break
             share *= SHORTER
         settled = arrives and share == 1.0
-        lacks = here.lacking if settled else _lacking(here.lacking, found, new, share * solved)
+        lacks = here.lacking if settled else _lacking(here.lacking, current, new, share * solved)
         here = SearchEnd(following, new, settled, lacks)
         since = 0 if arrives or new.left < best.balance.left else since + 1
         best = here if since == 0 else best
-        stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * found.left else 0
+        stuck = stuck + 1 if share < whole and new.left > (1.0 - GAIN) * current.left else 0
         if here.settled or since > search.patience or stuck == STUCK:
             break
     return best
 
 
-def _lacking(before: Array, found: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
-    """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): as the
-    change of what is left over tells it along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
-    if not 0.0 < new.left < NEAR * found.left:
+def _lacking(before: Array, current: ForceBalance[Films], new: ForceBalance[Films], step: Array) -> Array:
+    """(c films, c films) what the slopes lack, as those by the speeds of rings do, after a step (c films,): from the
+    change of the residual along the step (Broyden, Math. Comp. 19, 1965). None while the step is long."""
+    if not 0.0 < new.left < NEAR * current.left:
         return np.zeros_like(before)
-    told = 0.5 * (found.slope + new.slope) @ step + before @ step
-    return before + np.outer(new.residual - found.residual - told, step) / (step @ step)
+    predicted = 0.5 * (current.slope + new.slope) @ step + before @ step
+    return before + np.outer(new.residual - current.residual - predicted, step) / (step @ step)
 
 
 def _leaves(places: Array, moved: Array, gap: float) -> bool:

@@ -1,11 +1,10 @@
-"""The resting position of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
+"""The static equilibrium of a rotor at a given speed: K q = f_static + sum over films of m P^T F(P q, 0, omega).
 
 The rotor is linear, and the films see its journals only. So it is condensed first to the force that it exerts on its
 films with the journals held at given places; Newton's method then runs on the two coordinates of each journal. Floating
 rings turn with the speeds at which the torques on them balance (ring_speed.py), which follow from the places of the
 journals: they are no unknowns of their own. Films that see tilts have the rotor in all its degrees of freedom, and its
-load does not tell the force of each; there the speeds of the rings are unknowns in place of their angles.
-"""
+load does not determine the force of each; there the speeds of the rings are unknowns instead of their angles. """
 
 from __future__ import annotations
 
@@ -39,7 +38,7 @@ from frbcli.scene.machine.system import System
 
 SEARCH = Search(step=1e-10, force=0.0, share=1e-8, gap=1.0 - LARGEST_ECCENTRICITY)
 STILL = 1e-6  # N: round-off of the films of a rotor without weight
-ARM = 100.0  # clearances: torques on rings over it count beside forces, and not too much before the speeds are near
+ARM = 100.0  # clearances: torques on rings over it count next to forces, and not too much before the speeds are near
 OUTER_START = 0.9  # eccentricity of the last start that is tried
 
 
@@ -57,10 +56,10 @@ class RestingPosition:
     lacking: Array | None = None
 
     def velocities(self, system: System) -> Array:
-        """(n,) those of all degrees of freedom: the rings turn."""
-        found = np.zeros_like(self.displacements)
-        found[list(system.spins)] = self.ring_speeds
-        return found
+        """(n,) velocities of all degrees of freedom: the rings turn."""
+        speeds = np.zeros_like(self.displacements)
+        speeds[list(system.spins)] = self.ring_speeds
+        return speeds
 
 
 def resting_position(
@@ -69,16 +68,16 @@ def resting_position(
     start: Array | None = None,
     search: Search = SEARCH,
     held: HeldRotor | None = None,
-    beside: RestingPosition | None = None,
+    neighbour: RestingPosition | None = None,
 ) -> RestingPosition:
     """Where the machine rests at omega rad/s, sought from the displacements `start` (n,), if journals are within their
     gaps there, then from the centre. held: the rotor with its journals held in their planes, if it is at hand;
-    beside: a position near the start, from the fields of whose films, and with what their slopes lack, it is sought.
+    neighbour: a position near the start; its film fields and the corrections of their slopes start the search.
 
     Raises NotConverged if no start leads to one.
     """
     if system.rotor.ports:
-        return _at_ports(system, omega, start, search, beside)
+        return _at_ports(system, omega, start, search, neighbour)
     held, clearances = held or held_in_plane(system, omega), np.array(system.clearances)[:, None]
     loads = held.load.reshape(-1, 2)
     size = np.linalg.norm(loads, axis=1, keepdims=True)
@@ -93,7 +92,7 @@ def resting_position(
         starts = [held.shape + held.following @ each.ravel() for each in starts]
         held = whole_rotor(system.rotor, omega)
         starts = [_with_rings(system, held, omega, each) for each in starts]
-    films, lacking = ((), None) if beside is None else (beside.films, beside.lacking)
+    films, lacking = ((), None) if neighbour is None else (neighbour.films, neighbour.lacking)
     balance = partial(_balance, system, held, omega, films)
     if held.journals is not None:
         balance = partial(_whole_balance, system, held, held.journals, omega, films)
@@ -108,28 +107,28 @@ def resting_position(
             tries.insert(0, (near, reach))
     left = np.inf
     for first, reach in (each for each in tries if _outmost(system, held, each[1], each[0]) < 1.0):
-        found = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
-        if found.settled and _outmost(system, held, reach, found.position) < LARGEST_ECCENTRICITY:
-            displacements = held.shape + held.following @ found.position.ravel()
-            return replace(_position(system, held, omega, displacements, found.balance.films), lacking=found.lacking)
-        left = min(left, found.balance.left)
+        end = search_rest(balance, first, partial(_ends, system, held, reach), search, lacking)
+        if end.settled and _outmost(system, held, reach, end.position) < LARGEST_ECCENTRICITY:
+            displacements = held.shape + held.following @ end.position.ravel()
+            return replace(_position(system, held, omega, displacements, end.balance.films), lacking=end.lacking)
+        left = min(left, end.balance.left)
     if not loads.any() and left < STILL:  # films that do not turn hold nothing, and have nothing to hold
         return _position(system, held, omega, held.shape, ())
     raise NotConverged(
-        f"No resting position at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
+        f"No static equilibrium at {omega / (2 * np.pi):.4g} Hz below an eccentricity of {LARGEST_ECCENTRICITY}: "
         f"{len(tries)} starts, residual {left:.3g} N of {np.linalg.norm(loads):.3g} N. {_remedy(system, omega)}"
     )
 
 
 def _at_ports(
-    system: System, omega: float, start: Array | None, search: Search, beside: RestingPosition | None
+    system: System, omega: float, start: Array | None, search: Search, neighbour: RestingPosition | None
 ) -> RestingPosition:
     """resting_position of a machine with ports, from the given start, the centre, and where the static load pushes each
     port over its length: a stop that nothing touches holds nothing."""
 
     def rest(flat: LinearRotor, q: Array) -> tuple[Array, RestingPosition]:
-        found = resting_position(replace(system, rotor=flat), omega, q, search, None, beside)
-        return found.displacements, found
+        position = resting_position(replace(system, rotor=flat), omega, q, search, None, neighbour)
+        return position.displacements, position
 
     starts = [] if start is None else [start]
     starts += [np.zeros(system.rotor.size), pushed(system.rotor)]
@@ -165,7 +164,7 @@ def _position(
 
 
 def _ring_unit(system: System, omega: float) -> float:
-    """Speed of a ring in rad/s that an unknown of 1 m stands for: a film's clearance for the speed of the rotor."""
+    """Speed of a ring in rad/s per unknown of 1 m: the speed of the rotor over a film's clearance."""
     return max(abs(omega), 1.0) / system.clearances[0]
 
 
@@ -177,7 +176,8 @@ def _parted(system: System, omega: float, unknowns: Array) -> tuple[Array, Array
 
 
 def _with_rings(system: System, held: HeldRotor, omega: float, displacements: Array) -> Array:
-    """(n,) unknowns of a whole rotor at displacements (n,), its rings turning as the drag of their films has it."""
+    """(n,) unknowns of a whole rotor at displacements (n,), with its rings at the speeds given by the drag of their
+    films."""
     drag, unknowns = drags(system, _places(system, held, displacements)), displacements.copy()
     for ring, spin in enumerate(system.spins):
         outer, inner = (system.bodies == ring).T
@@ -190,7 +190,7 @@ def _forces(
     system: System, omega: float, speeds: Array, places: Array, near: tuple[FilmForce, ...]
 ) -> tuple[FilmForce, ...]:
     """The films with journals at rest at places (films, c) and rings at speeds (rings,) in rad/s; near: those near by,
-    from whose fields films on cells are sought, if there are any."""
+    from whose fields finite-volume films are sought, if there are any."""
     omegas, slips = (each.tolist() for each in (system.omegas(omega, speeds), system.slips(omega, speeds)))
     return tuple(
         system.force(i, place, np.zeros_like(place), omegas[i], near[i] if near else None, slips[i])
@@ -202,7 +202,7 @@ def _balance(
     system: System, held: HeldRotor, omega: float, near: tuple[FilmForce, ...], position: Array,
     before: ForceBalance[tuple[FilmForce, ...]] | None,
 ) -> ForceBalance[tuple[FilmForce, ...]]:  # fmt: skip
-    """What rotor and films put on the journals; near: films near those of the first position, see _forces."""
+    """What rotor and films put on the journals; near: films near the first position, see _forces."""
     surplus = held.load - held.stiffness @ position.ravel()
     slope = -held.stiffness.copy()
     near = _foreseen(before.films if before else near, position)
@@ -227,7 +227,7 @@ def _by_rubbed_rings(
 ) -> Array:
     """(2 films, 2 films) what the speeds of rings that follow the places of the journals change of the forces of the
     summits, less that as of a film. following: see _following."""
-    found, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
+    by_rings, many, still = np.zeros((position.size,) * 2), np.repeat(system.rotor.multiplicity, 2), np.zeros(2)
 
     def summits(speeds: Array) -> list[FilmForce]:
         totals, slips = system.omegas(omega, speeds), system.slips(omega, speeds)
@@ -237,7 +237,7 @@ def _by_rubbed_rings(
         ]
 
     for i, own in enumerate(summits(ring_speeds(system, held, omega, position, near))):
-        found[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
+        by_rings[2 * i : 2 * i + 2] -= np.outer(by_total(own, position[i]), following[i])
     for column in range(position.size):
         step = np.zeros(position.size)
         step[column] = NUDGE * system.clearances[column // 2]
@@ -245,8 +245,8 @@ def _by_rubbed_rings(
             np.concatenate([own.force for own in summits(ring_speeds(system, held, omega, position + moved, near))])
             for moved in (step.reshape(-1, 2), -step.reshape(-1, 2))
         )
-        found[:, column] += (ahead - behind) / (2.0 * step[column])
-    return many[:, None] * found
+        by_rings[:, column] += (ahead - behind) / (2.0 * step[column])
+    return many[:, None] * by_rings
 
 
 def _whole_balance(
@@ -277,12 +277,12 @@ def _whole_balance(
 
 def _places(system: System, held: HeldRotor, position: Array) -> Array:
     """(films, c) coordinates of the journals in their shells; position: the unknowns of the rotor."""
-    found = held.places(position, len(system.names))
-    return found if held.journals is None else found + system.films.standing
+    coordinates = held.places(position, len(system.names))
+    return coordinates if held.journals is None else coordinates + system.films.standing
 
 
 def _ends(system: System, held: HeldRotor, reach: float, position: Array) -> Array:
-    """See Films.ends, over the reach, 1 or that of an elastic shell; position: the unknowns of the rotor."""
+    """See Films.ends, over the reach, 1 or an elastic shell's; position: the unknowns of the rotor."""
     return np.asarray(system.films.ends(_places(system, held, position)) / reach)
 
 
@@ -301,15 +301,15 @@ def _on_shells(
 ) -> list[Array]:
     """The starts with the journals of films that do not turn, and so carry nothing, pressed into their elastic shells;
     loads: (films, 2) N that the rotor puts on its films. None where all films turn."""
-    found = []
+    starts_ = []
     for start in starts if still.any() else ():
         pressed = start.copy()
         for i in np.flatnonzero(still):
             carried = loads[i] / system.rotor.multiplicity[i]
             size = max(float(np.hypot(*carried)), np.finfo(float).tiny)
             pressed[i] = shell.pressed(size, system.clearances[i]) * carried / size
-        found.append(pressed)
-    return found
+        starts_.append(pressed)
+    return starts_
 
 
 def _foreseen(films: tuple[FilmForce, ...], position: Array) -> tuple[FilmForce, ...]:
@@ -344,8 +344,8 @@ def _following(
     off = at(position, drag) - speeds
     by_rings = system.turning[:, SUM, 1:]
     by_speeds = (by_drag * by_total) @ by_rings
-    found = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
-    return by_rings @ found[:, 0], by_rings @ found[:, 1:]
+    solution = np.linalg.solve(np.eye(rings) - by_speeds, np.column_stack([off, by_place]))
+    return by_rings @ solution[:, 0], by_rings @ solution[:, 1:]
 
 
 def _drag_slopes(

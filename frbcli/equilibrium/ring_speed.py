@@ -55,8 +55,8 @@ def drags(system: System, places: Array, films: Sequence[FilmForce] = ()) -> Arr
 def ring_speeds(
     system: System, held: HeldRotor, omega: float, position: Array, films: Sequence[FilmForce] = ()
 ) -> Array:
-    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in
-    m, where the rotor's load tells the forces of the films; 0 of rings with a pin, which takes what is left over.
+    """(rings,) speeds in rad/s at which the torques on the rings balance, their journals in `position` (films, 2) in m,
+    where the rotor's load determines the forces of the films; 0 of rings with a pin, which takes what is left over.
     films: see drags."""
     if not system.ring_count:
         return np.zeros(0)
@@ -82,8 +82,9 @@ def balanced_speeds(system: System, held: HeldRotor, omega: float, position: Arr
 
 
 def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Array, drag: float) -> float:
-    """The speed of a ring that its films alone would turn with speeds[ring], and the summits beside them. drag: what
-    the torque of the films falls by per speed, N m s. So does that of friction: the root is the only one."""
+    """The speed of a ring that its films alone would turn with speeds[ring], under films and summits together. drag:
+    decrease of the film torque per speed, N m s. The friction torque falls with the speed, too, so that there is one
+    root only."""
     from scipy.optimize import brentq  # takes long to load
 
     free = float(speeds[ring])
@@ -102,13 +103,13 @@ def _rubbed(system: System, ring: int, omega: float, position: Array, speeds: Ar
 def summit_torque(system: System, ring: int, omega: float, places: Array, speeds: Array) -> float:
     """Torque in N m on a ring by the friction of rough surfaces, at speeds (rings,) in rad/s. What the rotor puts on a
     film is carried by the summits in part, whose force has no share in the moment of the film."""
-    found, totals, slips = 0.0, system.omegas(omega, speeds), system.slips(omega, speeds)
+    torque, totals, slips = 0.0, system.omegas(omega, speeds), system.slips(omega, speeds)
     for i in np.flatnonzero((system.bodies == ring).any(axis=1)):
         shell = 0.5 * float(totals[i] - slips[i])
         on_journal, on_shell, moment = system.rubbing(int(i)).pulled(places[i], float(slips[i]), shell)
-        found += on_journal if system.bodies[i, 0] == ring else on_shell
-        found += 0.5 * moment if system.torque == "all" else 0.0
-    return found
+        torque += on_journal if system.bodies[i, 0] == ring else on_shell
+        torque += 0.5 * moment if system.torque == "all" else 0.0
+    return torque
 
 
 def across(place: Array) -> Array:
@@ -118,20 +119,20 @@ def across(place: Array) -> Array:
 
 
 def by_total(force: FilmForce, place: Array) -> Array:
-    """(c,) derivative of a film's force by omega_J + omega_S: that of the motion of its gap, as if its journal moved
-    across. A law that follows the speed itself makes Newton's method a little slower, and the rest no other one."""
+    """(c,) derivative of a film's force by omega_J + omega_S, from the motion of its gap, as if its journal moved
+    across. With a law that follows the speed itself Newton's method is a little slower, with the same result."""
     return np.asarray(0.5 * force.by_velocity @ across(place))
 
 
 def _drag_slopes(system: System, places: Array, films: Sequence[FilmForce]) -> Array:
     """(films, c) derivatives of the drags by the coordinates of the journals, the oil remaining as it is."""
-    found = np.zeros_like(places)
+    slopes = np.zeros_like(places)
     for k, unit in enumerate(np.eye(places.shape[1])):
         ahead = np.tile(unit, (len(places), 1))
         reach = np.abs(system.films.ends(ahead)).reshape(len(places), -1).max(axis=1)
         step = NUDGE / reach[:, None] * ahead
-        found[:, k] = (drags(system, places + step, films) - drags(system, places - step, films)) / (2.0 * step[:, k])
-    return found
+        slopes[:, k] = (drags(system, places + step, films) - drags(system, places - step, films)) / (2.0 * step[:, k])
+    return slopes
 
 
 def ring_torques(
@@ -170,8 +171,8 @@ def pin_angles(system: System, omega: float, places: Array, films: tuple[FilmFor
 
 
 def memoryless(film: FilmForce, place: Array | None = None) -> tuple[Array, Array]:
-    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) those (c + 1, c + 1)
-    of a film beside rings, see LinearFilm.turning."""
+    """Stiffness and damping (c, c) of a film without memory, or with its journal at `place` (c,) (c + 1, c + 1) as of a
+    film next to rings, see LinearFilm.turning."""
     stiffness, damping = -film.by_displacement, -film.by_velocity
     if place is None:
         return stiffness, damping
@@ -214,17 +215,17 @@ def rubbed_rings(system: System, bodies: Array, places: Array) -> RubbedRings:
         total, slip = system.turning[i, SUM], system.turning[i, SLIP]
         shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
         motion = np.concatenate([place[:2], np.zeros(2), shares @ bodies])
-        (found,) = system.rubbing(i).slopes(motion[None])
+        (by_motion,) = system.rubbing(i).slopes(motion[None])
         own, both = slice(c * i, c * i + 2), slice(F_X, F_Y + 1)
-        forces[i, :2] = found[both, BY_SLIP:] @ shares[:, 1:]
+        forces[i, :2] = by_motion[both, BY_SLIP:] @ shares[:, 1:]
         summits = none_of(c)
-        summits.force[:2] = found[both, VALUE]
-        summits.by_displacement[:2, :2] = found[both, BY_X:BY_V_X]
-        summits.by_velocity[:2, :2] = found[both, BY_V_X:BY_SLIP]
+        summits.force[:2] = by_motion[both, VALUE]
+        summits.by_displacement[:2, :2] = by_motion[both, BY_X:BY_V_X]
+        summits.by_velocity[:2, :2] = by_motion[both, BY_V_X:BY_SLIP]
         alone.append(summits)
         for side, ring in enumerate(system.bodies[i].tolist()):
             if ring >= 0:
-                torque = found[ON_JOURNAL + side]
+                torque = by_motion[ON_JOURNAL + side]
                 torques[ring, own] += torque[BY_X:BY_V_X]
                 by_rate[ring, own] += torque[BY_V_X:BY_SLIP]
                 by_speed[ring] += torque[BY_SLIP:] @ shares[:, 1:]

@@ -1,10 +1,8 @@
-"""The films of static results: resting positions, coefficients, stability and response all have the same ones.
+"""The films of static results: static equilibria, coefficients, stability and response all have the same ones.
 
 Gaps made of rectangles, and bearing models, have the film of a run, clipped along more lines: it has no cells, and is
-cheap. All others are solved on CELLS, more than those of a run, which has to solve them many times, and with the edge
-of the cavity within cells. With the films come the same ones on other meshes, whose coefficients tell the error of
-theirs.
-"""
+cheap. All others are solved on CELLS, more than in a run, which has to solve them many times, and with the edge of the
+cavity within cells. The same films on other meshes give the error of the coefficients. """
 
 from __future__ import annotations
 
@@ -104,8 +102,8 @@ class StaticFilms:
 
     @cached_property
     def fields(self) -> tuple[FieldFilms | None, ...]:
-        """The films on CELLS and on fewer, for the fields of pressure and flow; None for bearing models, which have
-        none."""
+        """The films on CELLS and on fewer cells, for the fields of pressure and flow; None for bearing models, which
+        have none."""
         if not self.own.plan.form.solved:
             return (None,) * len(film_places(self.case))
         if uneven := self.system.films.fields:
@@ -121,12 +119,12 @@ class StaticFilms:
 
 
 def static_films(case: Case, load: float | None = None, top_Hz: float | None = None) -> StaticFilms:
-    """The films of a case. load: along -y on a single film in N, default that of the rotor or of [motion]; top_Hz:
-    largest rotor speed, default that of the run. Raises InputError."""
+    """The films of a case. load: along -y on a single film in N, by default from the rotor or [motion]; top_Hz: largest
+    rotor speed, by default of the run. Raises InputError."""
     plan = _plan(case)
     own = make_system(case, plan, _rotor(case, load), top_Hz)
 
-    def others() -> tuple[MeshFilms, ...]:  # with the same rotor: that of a turbocharger takes as long as its films
+    def others() -> tuple[MeshFilms, ...]:  # with the same rotor: a turbocharger's takes as long as its films
         plans = other_plans(plan)
         return tuple(MeshFilms(each, make_system(case, each, own.rotor, top_Hz), share) for each, share in plans)
 

@@ -32,17 +32,16 @@ from frbcli.scene.gate.rule import STILL
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 
-ON_CELLS = replace(SEARCH, untaken=SEARCH.step)
+ON_CELLS = replace(SEARCH, negligible=SEARCH.step)
 SCOUT = replace(SEARCH, step=1e-6)  # of a coarse mesh: the step after it is a hundredth of that at most
-# Of other meshes, whose differences are told to one or two digits, from 3e-5 on: slopes of films on cells lack what the
-# law follows, those of others are exact, and a step leaves its square over the gap.
-NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, untaken=1e-6)
+# Of other meshes, whose differences are shown to one or two digits, from 3e-5 on: slopes of finite-volume films lack
+# what the law follows, slopes of others are exact, and a step leaves its square over the gap.
+NEARLY, NEARLY_ON_CELLS = replace(SEARCH, step=1e-4), replace(SEARCH, step=1e-5, negligible=1e-6)
 NEARLY_CARRIED = LEAST  # share of the load that may be left over on other meshes than cells
 # Differences of coefficients between meshes of cells scatter, and may be so much less than is to be expected. Where all
-# meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, that of the
-# narrow gap.
+# meshes agree by chance, they may still be off by so much of the square of a cell's length over 1 - e, the narrow gap.
 SCATTER, NARROW = 1.25, 0.15
-CLOSE = 1e-6  # of the speed: machines that are closer do not tell how their places change
+CLOSE = 1e-6  # of the speed: closer machines do not show how their places change
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,7 @@ class MachineAtRest:
 
     @cached_property
     def oscillator(self) -> Oscillator:
-        """The machine without its films, which keep their oil."""
+        """The machine without its films, which are mass-conserving."""
         return oscillator(self.system, self.omega, self.at_rest, self.dynamic)
 
     @cached_property
@@ -80,7 +79,7 @@ class MachineAtRest:
 
     @property
     def modes_on_finer_films(self) -> list[tuple[complex, Complex]]:
-        """Those of the finer of two meshes, in place of the extrapolation from both."""
+        """Modes of the finer of two meshes, instead of the extrapolation from both."""
         return followed(self.oscillator, [film.fine for film in self.dynamic], self.modes)
 
     def foreseen(self, omega: float) -> Array:
@@ -148,25 +147,25 @@ class StaticMachines:
         others: list[tuple[FilmsAtRest, float]] | None = None
         # what fronts of oil leave differs from speed to speed: only what the memory of the oil needs follows them
         follows = near is not None and not (remembers and (with_error or self._heat))
-        beside = near.at_rest.position if near is not None and follows and static.on_cells else None
+        neighbour = near.at_rest.position if near is not None and follows and static.on_cells else None
         if not follows and static.on_cells:  # a coarse mesh also brings the journals near to where they rest
             coarse = static.others if with_error else static.others[:1]
             start, others = _on_others(coarse, omega, start, NEARLY_ON_CELLS, held, settled)
-        position = resting_position(static.system, omega, start, self._search, held, beside)
-        found = films_at_rest(static.system, omega, position, settled)
+        position = resting_position(static.system, omega, start, self._search, held, neighbour)
+        at_rest = films_at_rest(static.system, omega, position, settled)
         if with_error and others is None:
             search = NEARLY_ON_CELLS if static.on_cells else _nearly(static.system, held)
             _, others = _on_others(static.others, omega, position.displacements, search, held, settled, near)
         counted = others if with_error and others else []
-        films = tuple(_resting_film(static, omega, i, found, counted) for i in range(len(found.forces)))
-        dynamic = _dynamic(static.system, omega, found) if self._memory else ()
+        films = tuple(_resting_film(static, omega, i, at_rest, counted) for i in range(len(at_rest.forces)))
+        dynamic = _dynamic(static.system, omega, at_rest) if self._memory else ()
         changes = _by_omega(near, omega, position.displacements)
-        return MachineAtRest(static, omega, films, found, warm, tuple(counted), dynamic, changes)
+        return MachineAtRest(static, omega, films, at_rest, warm, tuple(counted), dynamic, changes)
 
 
 def _nearly(system: System, held: HeldRotor) -> Search:
     """How closely rest is sought on another mesh than cells. LEAST of the load moves a journal by less than LEAST of
-    its clearance, the least error that is stated of its place: to solve the films once more would tell nothing. Moments
+    its clearance, the least error that is stated of its place: solving the films once more would add nothing. Moments
     on films that see tilts have another scale."""
     if system.films.coordinates > 2:
         return NEARLY
@@ -174,7 +173,7 @@ def _nearly(system: System, held: HeldRotor) -> Search:
 
 
 def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) -> Array | float:
-    """See MachineAtRest; that of the machine near it where both are too close to each other to tell."""
+    """Derivative by speed, see MachineAtRest; reuses the neighbour's if the speeds nearly coincide."""
     if near is None:
         return 0.0
     if abs(omega - near.omega) < CLOSE * omega:
@@ -183,12 +182,12 @@ def _by_omega(near: MachineAtRest | None, omega: float, displacements: Array) ->
 
 
 def _resting_film(
-    static: StaticFilms, omega: float, i: int, found: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
+    static: StaticFilms, omega: float, i: int, at_rest: FilmsAtRest, others: Sequence[tuple[FilmsAtRest, float]]
 ) -> RestingFilm:
     """Film i of a machine at rest at omega rad/s, with its errors from the other meshes, NaN without any."""
     system, plan = static.system, static.own.plan
-    force, clearance = found.forces[i], system.clearances[i]
-    at = found.position.journals[i]
+    force, clearance = at_rest.forces[i], system.clearances[i]
+    at = at_rest.position.journals[i]
     place, tilt = at[:2] / clearance, at[2:] if len(at) > 2 else None
     forces = [(other.forces[i], share) for other, share in others]
     places = [(other.position.journals[i][:2] / clearance, share) for other, share in others]
@@ -198,18 +197,18 @@ def _resting_film(
     return resting_film(system.names[i], force, place, error, place_error(place, places), tilt=tilt)
 
 
-def _dynamic(system: System, omega: float, found: FilmsAtRest) -> tuple[DynamicFilm, ...]:
+def _dynamic(system: System, omega: float, at_rest: FilmsAtRest) -> tuple[DynamicFilm, ...]:
     """The films of a machine at rest at omega rad/s with the memory of their oil. Raises NotConverged."""
-    places, totals, turns = found.position.journals, found.totals.tolist(), system.ring_count > 0
+    places, totals, turns = at_rest.position.journals, at_rest.totals.tolist(), system.ring_count > 0
 
     def film(i: int, keeps: bool) -> DynamicFilm:
         if keeps:
             own = dynamic_film(partial(system.films.linear, i), places[i], totals[i], omega, turns)
         if system.asperities is None:
-            return own if keeps else constant_film(found.forces[i], places[i], turns)
-        slip = float(found.slips[i])
+            return own if keeps else constant_film(at_rest.forces[i], places[i], turns)
+        slip = float(at_rest.slips[i])
         summits = system.rubbing(i).force(places[i], np.zeros(2), slip, 0.5 * (totals[i] - slip))
-        own = own if keeps else constant_film(found.forces[i].plus(summits, -1.0), places[i], turns)
+        own = own if keeps else constant_film(at_rest.forces[i].plus(summits, -1.0), places[i], turns)
         return own.on(summits)
 
     return tuple(film(i, keeps) for i, keeps in enumerate(system.remembering))
@@ -222,16 +221,16 @@ def _on_others(
     """The displacements on the last of several meshes, each sought from those on the one before, or where the machine
     `near` has the same meshes, from `start` as far off and with the films as there; and the films of all; meshes on
     which no position is found are left out."""
-    found, same = [], near is not None and len(near.others) == len(meshes)
+    others, same = [], near is not None and len(near.others) == len(meshes)
     for number, mesh in enumerate(meshes):
-        beside, begun = None, start
+        neighbour, begun = None, start
         if near is not None and same and start is not None:
-            beside = near.others[number][0].position
-            begun = start + beside.displacements - near.at_rest.position.displacements
+            neighbour = near.others[number][0].position
+            begun = start + neighbour.displacements - near.at_rest.position.displacements
         try:
-            position = resting_position(mesh.system, omega, begun, search, held, beside)
-            found.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
+            position = resting_position(mesh.system, omega, begun, search, held, neighbour)
+            others.append((films_at_rest(mesh.system, omega, position, settled), mesh.share))
             start = start if same else position.displacements
         except NotConverged:
             continue
-    return start, found
+    return start, others

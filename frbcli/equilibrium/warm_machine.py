@@ -1,4 +1,4 @@
-"""The machine at a constant speed with its heat: temperatures, resting position and ring speeds together."""
+"""The machine at a constant speed with its heat: temperatures, static equilibrium and ring speeds together."""
 
 from __future__ import annotations
 
@@ -19,8 +19,8 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 
-CLOSE_ON_CELLS = replace(SEARCH, untaken=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
-APART = 1e-4  # of the speed: machines that are closer do not tell how their temperatures change
+CLOSE_ON_CELLS = replace(SEARCH, negligible=1e-8)  # temperatures settle to 1e-6 K, 1e-8 of a viscosity
+APART = 1e-4  # of the speed: closer machines do not show how their temperatures change
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class FilmTemperature:
 
 @dataclass(frozen=True)
 class RingTemperature:
-    """One ring: inner and outer temperature K; its speed over that of the rotor."""
+    """One ring: inner and outer temperature K; its speed over the rotor's."""
 
     ring: str
     inner: float
@@ -103,10 +103,10 @@ def warm_machine(case: Case, speed_Hz: float | None = None) -> WarmMachine:
     return WarmMachines(case, plan, make_system(case, plan)).at(2.0 * math.pi * top)
 
 
-def film_temperatures(found: SteadyHeat, names: Sequence[str]) -> tuple[FilmTemperature, ...]:
+def film_temperatures(balance: SteadyHeat, names: Sequence[str]) -> tuple[FilmTemperature, ...]:
     """The films of these names, "" for a film that is alone, in a balance of heat."""
-    heat = found.films
-    rows = zip(found.temperatures, found.viscosities, found.clearances, heat.power, heat.flow, strict=False)
+    heat = balance.films
+    rows = zip(balance.temperatures, balance.viscosities, balance.clearances, heat.power, heat.flow, strict=False)
     return tuple(FilmTemperature(name or "film", *map(float, row)) for name, row in zip(names, rows, strict=True))
 
 
@@ -132,22 +132,22 @@ class WarmMachines:
             nonlocal system, resting
             system = warm_system(self._case, self._plan, self._system, viscosities, clearances)
             start = None if resting is None else resting.displacements
-            beside = None if system.remembers else resting  # what fronts of oil leave is not that of another speed
-            resting = resting_position(system, omega, start, search, beside=beside)
+            neighbour = None if system.remembers else resting  # what fronts of oil leave differs at another speed
+            resting = resting_position(system, omega, start, search, neighbour=neighbour)
             bodies = np.concatenate([[omega], resting.ring_speeds])
             power, flow = _film_heat(system, resting.journals, bodies)
             if self._concentric:
                 flow = self._heat.concentric * clearances**3 / viscosities
             return FilmHeat(power, flow, bodies)
 
-        found = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
+        steady = steady_heat(self._heat.model, system.names, solve, begin, speeds, slope)
         assert resting is not None
-        return self._machine(system, resting, found, near)
+        return self._machine(system, resting, steady, near)
 
     def _machine(
-        self, system: System, resting: RestingPosition, found: SteadyHeat, near: WarmMachine | None
+        self, system: System, resting: RestingPosition, steady: SteadyHeat, near: WarmMachine | None
     ) -> WarmMachine:
-        t, films = found.temperatures, found.films
+        t, films = steady.temperatures, steady.films
         by_omega = np.zeros_like(t) if near is None else near.by_omega
         if near is not None and abs(change := float(films.speeds[0]) - near.omega) > APART * near.omega:
             by_omega = (t - near.steady.temperatures) / change
@@ -160,7 +160,7 @@ class WarmMachines:
             )
             for ring in self._heat.rings
         )
-        return WarmMachine(system, resting, found, film_temperatures(found, system.names), rings, by_omega)
+        return WarmMachine(system, resting, steady, film_temperatures(steady, system.names), rings, by_omega)
 
 
 def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, Array]:
@@ -172,11 +172,11 @@ def _film_heat(system: System, journals: Array, bodies: Array) -> tuple[Array, A
     F . e'. Between rough surfaces the friction of the summits makes heat in the same film.
     """
     speeds = list(zip(journals, (system.turning[:, :2] @ bodies).tolist(), system.drags, strict=True))
-    found = [
+    rows = [
         system.films.power_and_flow(i, system.felt(i, place), total, slip, drag)
         for i, (place, (total, slip), drag) in enumerate(speeds)
     ]
-    power, flow = np.array(found).T
+    power, flow = np.array(rows).T
     if system.asperities is not None:
         power = power + [system.rubbing(i).power(place, *turns) for i, (place, turns, _) in enumerate(speeds)]
     return power, flow

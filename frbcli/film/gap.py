@@ -15,7 +15,7 @@ from frbcli.arrays import Array
 Displacement = tuple[float, float] | tuple[Array, Array]  # x, y over the clearance; along the axis if it tilts
 Edge = str  # "oil-bath" | "free-to-air" | "groove" | "symmetry"
 OPEN_ENDS = ("oil-bath", "free-to-air")
-CLOSED = 1e-7  # share of the flow of an open end that stands for none: the limit of tight seals
+CLOSED = 1e-7  # share of the flow of an open end that counts as none: the limit of tight seals
 NO_BATH = -1.0
 ON_EDGE = 1e-9  # rad by which an angle may miss the edge of a lobe, or two edges each other
 SAMPLES = 3601
@@ -28,8 +28,7 @@ LARGEST_ECCENTRICITY = 0.9999  # end of the tables
 class AxialGroove:
     """A groove over the whole width: phi of its middle, opening angle, both rad; gauge pressure in the middle, Pa.
 
-    The pressure falls to ambient at the ends of the bearing as (6.2) has it.
-    """
+    The pressure falls to ambient at the ends of the bearing by (6.2). """
 
     position: float
     opening: float
@@ -64,7 +63,7 @@ class ShellProfile(ABC):
         """What it is, as `3 lobes`."""
 
     @abstractmethod
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         """Its value and reason in a plan, of a film with a clearance in m."""
 
     @property
@@ -102,7 +101,7 @@ class LobedShell(ShellProfile):
     def words(self) -> str:
         return f"{self.count} lobes"
 
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         machined = 1e6 * clearance / (1.0 - self.preload)
         reason = f"clearance {1e6 * clearance:.4g} um where they are narrowest, {machined:.4g} um of their bores"
         return f"{self.words}, preload {self.preload:g}", reason
@@ -149,7 +148,7 @@ class TabledShell(ShellProfile):
     def words(self) -> str:
         return f"a profile of {len(self.angles)} points"
 
-    def told(self, clearance: float) -> tuple[str, str]:
+    def plan_entry(self, clearance: float) -> tuple[str, str]:
         least, most = (1e6 * clearance * (1.0 + f(self.depths)) for f in (min, max))
         return self.words, f"gaps of {least:.4g} to {most:.4g} um around the centred journal"
 
@@ -177,11 +176,10 @@ class Section:
 
     width: b of the section; copies: how many equal ones make the bearing; near, far: its edges at z = 0 and z = 1;
     far_pressure: in the groove at the far edge; bearing_width: the whole B, for (6.2); sealed: share of the flow of an
-    open end that the ends let out, 1 without seals; largest_flow: m^3/s that its openings give at the most;
-    flow_roughness: of both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share
-    of its square exceeds that of the shell, -1 to 1; bath: height of the oil at free
-    ends over the middle of the shell, over its radius, -1 without any.
-    """
+    open end that the ends let out, 1 without seals; largest_flow: of a flow-limited supply, m^3/s; flow_roughness: of
+    both surfaces in m, which the flow follows, 0 of smooth ones; shear: by which the journal's share of its square
+    exceeds the shell's, -1 to 1; bath: height of the oil at free ends over the middle of the shell, over its radius, -1
+    without any. """
 
     radius: float
     width: float

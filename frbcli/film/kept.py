@@ -1,4 +1,4 @@
-"""Arrays that take long to make, kept on disk beside the compiled kernels, so that later processes need not make them.
+"""Arrays that take long to make, kept on disk next to the compiled kernels, so that later processes need not make them.
 
 An array is found by all that it follows from: the sources of the function that makes it, its arguments, the libraries.
 """
@@ -43,16 +43,16 @@ def kept_beside(kernel: Callable[..., object]) -> Callable[[Callable[Arguments, 
         @lru_cache(maxsize=MOST_HELD)
         @wraps(make)
         def kept(*given: Arguments.args, **named: Arguments.kwargs) -> Array:
-            content = repr((_told(given), _told(tuple(named.items()))))
+            content = repr((_exact(given), _exact(tuple(named.items()))))
             made_by = f"{make.__qualname__} {sources_digest(source)} {np.__version__} {numba.__version__}"
             name = hashlib.sha256(f"{made_by} {content}".encode()).hexdigest()[:NAME]
             folder = folder_of(kernel)
             if folder is None:
                 return make(*given, **named)
             file = folder / f"{make.__name__}-{name}{SUFFIX}"
-            found = _read(file)
-            if found is not None:
-                return found
+            values = _read(file)
+            if values is not None:
+                return values
             array = make(*given, **named)
             with suppress(OSError):
                 _write(file, array)
@@ -63,12 +63,12 @@ def kept_beside(kernel: Callable[..., object]) -> Callable[[Callable[Arguments, 
     return decorated
 
 
-def _told(value: object) -> object:
+def _exact(value: object) -> object:
     """A value with its exact digits, as its `repr` shows it. Raises TypeError for one whose `repr` may be less."""
     if isinstance(value, tuple):
-        return tuple(map(_told, value))
+        return tuple(map(_exact, value))
     if is_dataclass(value) and not isinstance(value, type):
-        return (type(value).__qualname__, *(_told(getattr(value, field.name)) for field in fields(value)))
+        return (type(value).__qualname__, *(_exact(getattr(value, field.name)) for field in fields(value)))
     if isinstance(value, np.generic):
         return value.item()
     if value is None or isinstance(value, bool | int | float | str):

@@ -1,8 +1,7 @@
 """A bearing in operation: strains of its parts, its warm gap, Reynolds and Sommerfeld number.
 
-Strains are those of a surface's radius, its displacement over it, in the plane stress state of table A.2. Temperatures
-are differences to those at which the parts were measured, in K.
-"""
+Strains are the displacement of a surface over its radius, in the plane stress state of table A.2. Temperatures are
+differences to the temperatures at which the parts were measured, in K. """
 
 from __future__ import annotations
 
@@ -11,7 +10,7 @@ import math
 from frbcli.materials.solids import Solid
 
 LAMINAR_BELOW = 2300.0  # (3.3)
-RING_SPEED = 0.3  # of the rotor's, as table A.1 has it: what a floating ring reaches at most
+RING_SPEED = 0.3  # of the rotor's, by table A.1: what a floating ring reaches at most
 
 
 def reynolds_number(density: float, omega: float, radius: float, clearance: float, viscosity: float) -> float:

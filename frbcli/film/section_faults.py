@@ -28,7 +28,7 @@ def runs_dry(section: Section) -> bool:
 
 def starves(section: Section) -> bool:
     """Whether a film that conserves its oil has no inflow: its ends are free to air, and nothing supplies it but a
-    groove along the edge z = 1 with a pressure that is not above that of the cavities."""
+    groove along the edge z = 1 with a pressure that is not above the cavity pressure."""
     if "oil-bath" in (section.near, section.far) or section.grooves or section.holes or section.bath > NO_BATH:
         return False
     return section.far != "groove" or section.ambient_pressure + section.far_pressure <= section.cavitation_pressure

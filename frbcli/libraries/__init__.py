@@ -31,7 +31,7 @@ def without_settings_here(act: "Callable[..., Returned]", *given: object) -> "Re
 
 
 class _Finder:
-    """Finds numba's reader of settings as others do, and has it run without those of the current folder."""
+    """Finds numba's reader of settings as other finders do, and runs it without the settings of the current folder."""
 
     def find_spec(
         self, name: str, path: "Sequence[str] | None" = None, target: "ModuleType | None" = None
@@ -40,11 +40,11 @@ class _Finder:
         if name != READER:
             return None
         others = [finder for finder in sys.meta_path if finder is not self]
-        found = next(filter(None, (finder.find_spec(name, path, target) for finder in others)), None)
-        if found is not None and found.loader is not None:
-            run = found.loader.exec_module
-            setattr(found.loader, "exec_module", lambda module: without_settings_here(run, module))  # noqa: B010
-        return found
+        spec = next(filter(None, (finder.find_spec(name, path, target) for finder in others)), None)
+        if spec is not None and spec.loader is not None:
+            run = spec.loader.exec_module
+            setattr(spec.loader, "exec_module", lambda module: without_settings_here(run, module))  # noqa: B010
+        return spec
 
 
 def guard_numba() -> None:

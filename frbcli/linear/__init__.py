@@ -1,1 +1,1 @@
-"""Resting positions, stability, natural modes."""
+"""Static equilibria, stability, natural modes."""

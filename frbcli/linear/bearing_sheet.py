@@ -1,11 +1,10 @@
-"""The sheet of a bearing: resting position, coefficients, power loss, flow and largest pressure of every film.
+"""The sheet of a bearing: static equilibrium, coefficients, power loss, flow and largest pressure of every film.
 
 Over the rotor speed each film rests under its static load, which comes from the rotor of the case or is given; over the
-eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Positions, loads and coefficients are
-those of static_films.py, as in all static results; torques, flows and pressures are solved on finite volumes in the
+eccentricity (Sommerfeld's chart) the load is the one that the film carries there. Positions, loads and coefficients
+follow from static_films.py, as in all static results; torques, flows and pressures are solved on finite volumes in the
 same places, for every gap and every cavitation model. With heat every speed has the viscosities and clearances at which
-the heat of the machine balances with the films of a run.
-"""
+the heat of the machine balances with the films of a run. """
 
 from __future__ import annotations
 
@@ -22,7 +21,6 @@ from frbcli.equilibrium.ring_speed import ring_speeds
 from frbcli.equilibrium.static_films import StaticFilms, static_films
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import NotConverged, input_error
-from frbcli.film.bearing_model.table import label_of
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
 from frbcli.html import Tabular
@@ -45,8 +43,8 @@ UNRESOLVED = 0.1  # error of coefficients from which on the gap that an elastic 
 
 @dataclass(frozen=True, repr=False)
 class BearingSheet(Tabular):
-    """States of the films of a case over "speed" or "eccentricity", film by film within each of them, without those of
-    dampers; laws: the cavitation model of each film, in the order of the films."""
+    """States of the films of a case over "speed" or "eccentricity", film by film within each of them, without dampers;
+    laws: the cavitation model of each film, in the order of the films."""
 
     case: Case
     over: str
@@ -57,8 +55,7 @@ class BearingSheet(Tabular):
     @property
     def labels(self) -> tuple[str, ...]:
         """The model of each film in words."""
-        model = self.case.film.bearing_model
-        return tuple(label_of(model) if model else law_named(law).label for law in self.laws)
+        return tuple(law_named(law).label for law in self.laws)
 
     @property
     def columns(self) -> tuple[Column, ...]:
@@ -98,7 +95,7 @@ def bearing_sheet(
         Rotor speeds in Hz, above 0; by default a range up to the highest of the case, or the speed of its kinematic
         test.
     load : float, optional
-        Load in N along -y on a single film; by default that of the rotor or of [motion].
+        Load in N along -y on a single film; by default from the rotor or [motion].
     observe : callable, optional
         Called with each speed's number and their number.
 
@@ -111,7 +108,7 @@ def bearing_sheet(
     Raises
     ------
     InputError
-        If the case has no film, no load or no speed, or heat and a load that is not that of its rotor.
+        If the case has no film, no load or no speed, or heat and a load that does not come from its rotor.
 
     Examples
     --------
@@ -125,17 +122,17 @@ def bearing_sheet(
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
     machines = StaticMachines(case, load, speeds[-1])
     near: MachineAtRest | None = None
-    found: list[list[FilmState]] = []
+    rows: list[list[FilmState]] = []
     for number, speed in enumerate(reversed(speeds)):  # from near the centre, where a fast journal rests, outwards
         try:
             with advised(case):
                 near = machines.at(2.0 * math.pi * speed, near)
-                found.append(_states(near))
+                rows.append(_states(near))
         except NotConverged as error:
-            found.append([no_state(place.name, speed, str(error)) for place in bearing_films(case)])
+            rows.append([no_state(place.name, speed, str(error)) for place in bearing_films(case)])
         if observe is not None:
             observe(number + 1, len(speeds))
-    points = tuple(point for states in reversed(found) for point in states)
+    points = tuple(point for states in reversed(rows) for point in states)
     return _sheet(case, SPEED, points)
 
 
@@ -201,7 +198,7 @@ def sommerfeld_chart(
 
 
 def _states(machine: MachineAtRest) -> list[FilmState]:
-    """The states of the films of a machine but those of dampers, which do not turn."""
+    """The states of the films of a machine except dampers, which do not turn."""
     volumes = machine.static.fields[: len(bearing_films(machine.static.case))]
     bodies = np.concatenate([[machine.omega], machine.at_rest.position.ring_speeds])
     warm = (math.nan,) * len(volumes) if machine.warm is None else [film.temperature for film in machine.warm.films]

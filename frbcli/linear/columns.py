@@ -92,7 +92,7 @@ SHEET = (
            more="what flows back into a groove is not part of it"),
     Column("temperature_rise", "K", "temperature rise of that oil if it took all of the power",
            shown=(Shown("rise", ".3g", table=FILMS),), more="with `oil.density` and `oil.heat_capacity`; if the case "
-           "gives none, 2000 J/(kg K), or with heat that of the oil at 80 degC"),
+           "gives none, 2000 J/(kg K), or with heat the oil's at 80 degC"),
     Column("force_error_relative", "", "relative error of the force, from other meshes", attrgetter("force_error"),
            key="error.force_relative"),
     Column("largest_error", "", "largest relative error of force, h, p, loss and flow",
@@ -106,7 +106,7 @@ SHEET = (
     ERROR,
     PLACE_ERROR,
     Column("film_thickness_min_error", "m", "expected error of the smallest film thickness",
-           attrgetter("film_thickness_error"), more="that of the displacement", key="error.film_thickness_min_m"),
+           attrgetter("film_thickness_error"), more="equals the displacement error", key="error.film_thickness_min_m"),
     Column("p_max_error", "Pa", "expected error of the largest pressure", more="by the mesh, and by the displacement",
            key="error.p_max_Pa"),
     Column("power_error", "W", "expected error of the power", more="likewise", key="error.power_W"),
@@ -129,7 +129,7 @@ MIXED_FRICTION = (
     Column("contact_power", "W", "part of the power that is friction of asperities", _mixed("power"),
            shown=(Shown("contact", ".3g", table=MIXED),)),
     Column("asperity_share_error", "", "expected error of the share of the load", _mixed("share_error"),
-           more="by that of the displacement", key="error.asperity_share"),
+           more="by the error of the displacement", key="error.asperity_share"),
 )  # fmt: skip
 
 
@@ -203,25 +203,25 @@ REDUCTION = (
            lambda modes: None if modes.error is None else modes.error.missing_flexibility),
 )
 
-_SPEEDS = replace(SPEED, value=lambda found: found.speeds_Hz[:, None])
+_SPEEDS = replace(SPEED, value=lambda sweep: sweep.speeds_Hz[:, None])
 
 # Of a Response, over speeds and points
 RESPONSE_POINTS = (
     _SPEEDS,
     Column("point", "", "point", attrgetter("points"), key="node"),
     Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
-    Column("amplitude_error", "m", "expected error", lambda found: found.amplitude_error, key="error.amplitude_m"),
+    Column("amplitude_error", "m", "expected error", lambda sweep: sweep.amplitude_error, key="error.amplitude_m"),
     Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
            shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
-    Column("x", "m", "amplitude along this axis", lambda found: _size(found.motion[:, :, 0])),
-    Column("y", "m", "amplitude along this axis", lambda found: _size(found.motion[:, :, 1])),
-    Column("forward", "m", "amplitude of this part", lambda found: abs(found.forward)),
-    Column("backward", "m", "amplitude of this part", lambda found: abs(found.backward)),
-    replace(GROWTH, value=lambda found: found.growth[:, None]),
+    Column("x", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 0])),
+    Column("y", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 1])),
+    Column("forward", "m", "amplitude of this part", lambda sweep: abs(sweep.forward)),
+    Column("backward", "m", "amplitude of this part", lambda sweep: abs(sweep.backward)),
+    replace(GROWTH, value=lambda sweep: sweep.growth[:, None]),
     Column("eccentricity_max", "", "largest eccentricity of a journal on its orbit",
-           lambda found: found.eccentricity_max.max(axis=1, initial=0.0)[:, None],
+           lambda sweep: sweep.eccentricity_max.max(axis=1, initial=0.0)[:, None],
            shown=(Shown("eps", ".3g", table=RESPONSE),)),
-    Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda found: np.array(found.validity)[:, None]),
+    Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", lambda sweep: np.array(sweep.validity)[:, None]),
 )  # fmt: skip
 
 # Of a CriticalSpeed
@@ -250,8 +250,8 @@ _NAMES = replace(NAME, value=attrgetter("films"))
 RESPONSE_FORCES = (
     _SPEEDS,
     replace(NAME, value=attrgetter("bearings")),
-    Column("force_x", "N", "amplitude of the force on the journal", lambda found: _size(found.forces[:, :, 0])),
-    Column("force_y", "N", "amplitude of the force on the journal", lambda found: _size(found.forces[:, :, 1])),
+    Column("force_x", "N", "amplitude of the force on the journal", lambda sweep: _size(sweep.forces[:, :, 0])),
+    Column("force_y", "N", "amplitude of the force on the journal", lambda sweep: _size(sweep.forces[:, :, 1])),
 )
 RESPONSE_FILMS = (
     _SPEEDS,

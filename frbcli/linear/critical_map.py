@@ -37,7 +37,7 @@ SHOWN = 4  # slowest critical speeds of each direction
 
 
 def _nth(direction: str, number: int) -> Callable[[Any], Array]:
-    return lambda found: np.asarray(getattr(found, direction)[:, number])
+    return lambda criticals: np.asarray(getattr(criticals, direction)[:, number])
 
 
 # Of a CriticalMap, over the stiffness
@@ -114,7 +114,7 @@ def critical_map(
     forward, backward = (np.array([_criticals(plane, k, sign) for k in given]) for sign in (-1.0, 1.0))
     known = [(point.speed_Hz, direct_springs(case, point.films)) for point in resting if point.rests and point.films]
     films = [(speed, springs) for speed, springs in known if not all(map(math.isnan, springs))]
-    speeds, springs = np.array([speed for speed, _ in films]), np.array([found for _, found in films])
+    speeds, springs = np.array([speed for speed, _ in films]), np.array([each for _, each in films])
     return CriticalMap(case, given, forward, backward, speeds, springs.reshape(len(speeds), len(case.bearings)))
 
 
@@ -145,5 +145,5 @@ def _criticals(plane: tuple[Array, Array, Array, Array], stiffness: float, sign:
     largest = (max(n - SHOWN, 0), n - 1)  # of 1 / omega^2: the slowest
     k = own + stiffness * springs
     inverse = eigh(mass + sign * gyroscopic, k, eigvals_only=True, subset_by_index=largest)[::-1]
-    found = 1.0 / (2.0 * math.pi * np.sqrt(inverse[inverse > 0.0]))
-    return np.asarray(np.append(found, np.full(SHOWN, np.nan))[:SHOWN], dtype=np.float64)
+    speeds = 1.0 / (2.0 * math.pi * np.sqrt(inverse[inverse > 0.0]))
+    return np.asarray(np.append(speeds, np.full(SHOWN, np.nan))[:SHOWN], dtype=np.float64)

@@ -7,9 +7,8 @@ say where the response is evaluated, so that no peak falls between two speeds, a
 
 What runs are compared with (linear_critical_speeds) are modes of the rotor in half-Sommerfeld films, full wherever they
 carry: a mass-conserving film has no eight coefficients, and the stiffness of a starved film changes with time. A
-bearing model is linearised itself. Films on cells are on the coarsest mesh of static results, whose critical speeds
-differ by less than 1e-4 from those on the finest.
-"""
+bearing model is linearised itself. Finite-volume films are on the coarsest mesh of static results, whose critical
+speeds differ by less than 1e-4 from those on the finest. """
 
 from __future__ import annotations
 
@@ -45,7 +44,7 @@ CLOSE = 1e-4  # relative, of the speed of a peak
 SLENDER = 1e-6  # half width of a peak over its speed, below which an eigenvalue may have it from round-off alone
 UNDAMPED = 1e-10  # half width of a peak over its speed, below which it has no height
 SETTLINGS = 8  # steps that bring a pole to the coefficients at its own speed
-PLACES = 200  # speeds at which the response is evaluated, beside those around its poles
+PLACES = 200  # speeds at which the response is evaluated, in addition to speeds around its poles
 WIDTHS = np.concatenate([-(2.0 ** np.arange(5.0, -4.0, -1.0)), [0.0], 2.0 ** np.arange(-3.0, 6.0)])  # around a pole
 STEPS = np.arange(1, 400) / 16.0  # the same, in search of the width of a peak
 REACH = 3.0  # half widths: a bump that is further from a pole is not its peak
@@ -101,23 +100,23 @@ class SpeedModel:
     and is a cubic spline over the speeds at which they are solved."""
 
     def __init__(
-        self, rotor: LinearRotor, omegas: Sequence[float], beside: Sequence[Array], load: Load, places: Array
+        self, rotor: LinearRotor, omegas: Sequence[float], changes: Sequence[Array], load: Load, places: Array
     ) -> None:
-        """rotor: the machine without its films; omegas: ascending, in rad/s, at which they are solved; beside: what
+        """rotor: the machine without its films; omegas: ascending, in rad/s, at which they are solved; changes: what
         they add to its stiffness and its damping there, (2, n, n) each, none without films; load: by the speed in rad/s
         frequency in rad/s, and (n,) complex amplitudes in N; places: (p, 2, n) x and y of the points."""
         from scipy.interpolate import make_interp_spline  # runs, which need critical speeds alone, need not wait
 
         self._rotor, self._load, self._places, self.omegas = rotor, load, places, np.asarray(omegas, dtype=np.float64)
-        degree = min(3, len(beside) - 1)
-        self._beside = make_interp_spline(self.omegas, np.array(beside), k=degree) if degree >= 0 else None
+        degree = min(3, len(changes) - 1)
+        self._changes = make_interp_spline(self.omegas, np.array(changes), k=degree) if degree >= 0 else None
 
     def matrices(self, omega: float) -> tuple[Array, Array, Array]:
         """(n, n) mass, damping with the gyroscopic term, and stiffness at a speed in rad/s."""
         here = self._rotor.at(omega)
         stiffness, damping = here.stiffness, here.damping + omega * here.gyroscopic
-        if self._beside is not None:
-            more = self._beside(omega)
+        if self._changes is not None:
+            more = self._changes(omega)
             stiffness, damping = stiffness + more[0], damping + more[1]
         return here.mass, damping, stiffness
 
@@ -157,17 +156,17 @@ class SpeedModel:
         low, high = float(self.omegas[0]), float(self.omegas[-1])
         if self.frequency(low) == self.frequency(high):
             return np.zeros(0, dtype=complex)  # a load of a frequency of its own: no mode crosses it but by its change
-        if self._beside is None and self._rotor.over_speed is None:
-            found = self._poles_near(0.5 * (low + high), 0.5 * (high - low))
+        if self._changes is None and self._rotor.over_speed is None:
+            roots = self._poles_near(0.5 * (low + high), 0.5 * (high - low))
         else:
             edges = self.omegas if len(self.omegas) < 4 else self.omegas[::2]
             edges = np.unique(np.append(edges, high))
             middles, halves = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
             spans = zip(middles.tolist(), halves.tolist(), strict=True)
-            found = np.array([self._settled(pole) for span in spans for pole in self._poles_near(*span)])
-        found = found[np.argsort(found.real, kind="stable")]
-        apart = np.append(True, np.abs(np.diff(found)) > ALIKE * np.abs(found[1:])) if len(found) else found == 0.0
-        return np.asarray(found[apart], dtype=complex)
+            roots = np.array([self._settled(pole) for span in spans for pole in self._poles_near(*span)])
+        roots = roots[np.argsort(roots.real, kind="stable")]
+        apart = np.append(True, np.abs(np.diff(roots)) > ALIKE * np.abs(roots[1:])) if len(roots) else roots == 0.0
+        return np.asarray(roots[apart], dtype=complex)
 
     def _poles_near(self, middle: float, half: float, reach: float = 1.0 + ALIKE) -> Complex:
         """The poles within `half` of a speed, both in rad/s, of the quadratic through the matrices there: they are
@@ -175,9 +174,9 @@ class SpeedModel:
         below, here, above = (self.dynamic(middle + share * half) for share in (-1.0, 0.0, 1.0))
         n, linear, square = len(here), 0.5 * (above - below), 0.5 * (above + below) - here
         companion = np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(square, np.hstack([here, linear]))]])
-        found = np.linalg.eigvals(companion)
-        found = middle + half * found[np.abs(found.real) <= reach]
-        return np.asarray(found[(np.abs(found.imag) < DAMPED * np.abs(found)) & (found.real > 0.0)])
+        roots = np.linalg.eigvals(companion)
+        roots = middle + half * roots[np.abs(roots.real) <= reach]
+        return np.asarray(roots[(np.abs(roots.imag) < DAMPED * np.abs(roots)) & (roots.real > 0.0)])
 
     def half_width(self, pole: complex) -> float:
         """Half of the width of a peak in rad/s, of a slender one by the work of the damping on the undamped motion:
@@ -219,10 +218,10 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
     low, high = float(model.omegas[0]), float(model.omegas[-1])
     poles = model.poles() if high > low else np.zeros(0, dtype=complex)
     undamped = np.array([model.half_width(pole) <= UNDAMPED * pole.real for pole in poles.tolist()], dtype=bool)
-    found = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
+    near_axis = [peak for pole in poles[undamped] if low <= pole.real <= high and (peak := _unbounded(model, pole))]
     around = poles[~undamped, None].real + np.abs(poles[~undamped, None].imag) * WIDTHS
-    beside = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))
-    grid = np.unique(np.concatenate([np.linspace(low, high, PLACES), model.omegas, around.ravel(), beside.ravel()]))
+    close = poles[undamped, None].real * (1.0 + CLOSE * np.array([-1.0, 1.0]))
+    grid = np.unique(np.concatenate([np.linspace(low, high, PLACES), model.omegas, around.ravel(), close.ravel()]))
     grid = grid[(grid >= low) & (grid <= high)]
     sizes = model.amplitudes(grid)
     clear = (np.abs(grid[:, None] - poles[undamped].real) > 10.0 * CLOSE * grid[:, None]).all(axis=1)
@@ -238,7 +237,7 @@ def peaks(model: SpeedModel) -> list[ResponsePeak]:
             known = bounded[pole].amplitude if pole in bounded else 0.0
             if distance[pole] <= REACH * abs(poles[pole].imag) and size[i] > known:
                 bounded[pole] = _refined(model, point, complex(poles[pole]), grid[i - 1 : i + 2].tolist())
-    return sorted([*found, *bounded.values()], key=lambda peak: peak.omega)
+    return sorted([*near_axis, *bounded.values()], key=lambda peak: peak.omega)
 
 
 def _unbounded(model: SpeedModel, pole: complex) -> ResponsePeak | None:
@@ -259,8 +258,8 @@ def _refined(model: SpeedModel, point: int, pole: complex, bracket: Sequence[flo
         return -float(model.amplitudes(np.array([omega]))[0, point])
 
     low, _, high = bracket
-    found = minimize_scalar(off, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * (high - low)})
-    return ResponsePeak(point, float(found.x), -float(found.fun), pole)
+    minimum = minimize_scalar(off, bounds=(low, high), method="bounded", options={"xatol": 1e-6 * (high - low)})
+    return ResponsePeak(point, float(minimum.x), -float(minimum.fun), pole)
 
 
 def moved(model: SpeedModel, peak: ResponsePeak) -> float:
@@ -269,8 +268,8 @@ def moved(model: SpeedModel, peak: ResponsePeak) -> float:
         return math.nan
     aside = max(REACH * abs(peak.pole.imag), 1e2 * CLOSE * peak.omega)
     low, high = max(peak.omega - aside, model.omegas[0]), min(peak.omega + aside, model.omegas[-1])
-    found = _refined(model, peak.point, peak.pole, (low, peak.omega, high)).omega
-    return math.nan if min(found - low, high - found) < 1e-3 * (high - low) else found
+    omega = _refined(model, peak.point, peak.pole, (low, peak.omega, high)).omega
+    return math.nan if min(omega - low, high - omega) < 1e-3 * (high - low) else omega
 
 
 def amplification_factor(model: SpeedModel, peak: ResponsePeak) -> float | None:
@@ -307,7 +306,7 @@ def separation_margin(speed: float, operating: tuple[float, float] | None) -> fl
 
 def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
     """Critical speeds of a case in Hz, ascending, up to its highest speed and a little above; None where they are not
-    known: for floating rings, whose films whirl from low speeds on, and where no resting position is found."""
+    known: for floating rings, whose films whirl from low speeds on, and where no static equilibrium is found."""
     if rings(case):
         return None
     top = ABOVE * max(abs(case.speed.start), abs(case.speed.end))
@@ -317,8 +316,8 @@ def linear_critical_speeds(case: Case) -> tuple[float, ...] | None:
         return None
     sweep = np.geomspace(top, LOWEST * top, SPEEDS).tolist() if top > 0.0 else []
     points = list(_modes(machines, sweep))
-    found = (_crossings(below, above) for above, below in itertools.pairwise(points))
-    return tuple(sorted(itertools.chain(*found))) if len(points) > 1 else None
+    crossings = (_crossings(below, above) for above, below in itertools.pairwise(points))
+    return tuple(sorted(itertools.chain(*crossings))) if len(points) > 1 else None
 
 
 def _modes(machines: StaticMachines, speeds_Hz: Sequence[float]) -> Iterator[tuple[float, Array]]:

@@ -84,7 +84,7 @@ class DampedModes(Tabular):
 
 
 def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
-    """Compute the damped modes of a case about its resting position at a rotor speed.
+    """Compute the damped modes of a case about its static equilibrium at a rotor speed.
 
     Parameters
     ----------
@@ -103,7 +103,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
     InputError
         As `stability` does.
     NotConverged
-        Where there is no resting position.
+        Where there is no static equilibrium.
 
     Examples
     --------
@@ -130,7 +130,7 @@ def damped_modes(case: Case, speed_Hz: float) -> DampedModes:
             unit = size * there / abs(there)  # its displacement is real: eigenvectors have any phase
             own = motion / unit
             shapes.append(DampedMode(value, whirl_direction(own), own, shape / unit, point.error_of(value)))
-    keys = [ranks(np.array(told)) for told in zip(*((m.frequency_Hz, m.damping_ratio) for m in shapes), strict=True)]
+    keys = [ranks(np.array(each)) for each in zip(*((m.frequency_Hz, m.damping_ratio) for m in shapes), strict=True)]
     shapes = [shapes[i] for i in np.lexsort(keys)] if shapes else []
     names = tuple(name for name, _ in rotor.points)
     error = max((film.error for film in point.films), default=math.nan)

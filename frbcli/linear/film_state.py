@@ -48,7 +48,7 @@ class MixedFriction:
 
     @classmethod
     def of(cls, system: System, i: int, at_rest: RestingFilm, slip: float, shell: float) -> MixedFriction | None:
-        """That of film i at rest, slip and speed of the shell in rad/s; None between smooth surfaces."""
+        """Mixed friction of film i at rest; slip and speed of the shell in rad/s; None between smooth surfaces."""
         if system.asperities is None:
             return None
         own, out = (cls._at(system, i, each, slip, shell) for each in (at_rest, _further_out(at_rest)))
@@ -59,16 +59,15 @@ class MixedFriction:
         rough, c = system.asperities, system.clearances[i]
         assert rough is not None
         (e_x, e_y), load = (c * at_rest.displacement).tolist(), np.array(at_rest.load)
-        found = rub(rough, i, c, e_x, e_y, 0.0, 0.0, slip, shell)
+        rubbed = rub(rough, i, c, e_x, e_y, 0.0, 0.0, slip, shell)
         size = float(load @ load)
-        share = 0.0 - float(load @ found[:2]) / size if size > 0.0 else math.nan
-        return cls(share, found.torque, found.power, c * (1.0 - at_rest.eccentricity) / rough.roughness)
+        share = 0.0 - float(load @ rubbed[:2]) / size if size > 0.0 else math.nan
+        return cls(share, rubbed.torque, rubbed.power, c * (1.0 - at_rest.eccentricity) / rough.roughness)
 
 
 @dataclass(frozen=True)
 class FilmState:
-    """One film in its resting position, SI units: the fields are those of SHEET in columns.py,
-    which tells what they are.
+    """One film in its static equilibrium, SI units: the fields are described by SHEET in columns.py.
 
     error, place_error: of stiffness and damping, and of the displacement, see RestingFilm; film_thickness_error,
     p_max_error, power_error, side_flow_error: expected ones by the mesh; problem: why there is no state, then the
@@ -128,8 +127,8 @@ class FilmState:
 
 
 def heat_capacity(case: Case) -> float:
-    """The specific heat capacity in J/(kg K) of the temperature rise: given, or with heat that of the oil at 80 degC,
-    else HEAT_CAPACITY."""
+    """The specific heat capacity in J/(kg K) of the temperature rise: given, or with heat the oil's at 80 degC, else
+    HEAT_CAPACITY."""
     if case.heat is not None:
         return case.oil.heat_capacity_at(USUAL_TEMPERATURE)
     return case.oil.heat_capacity or HEAT_CAPACITY
@@ -169,11 +168,11 @@ class Fields:
     def of(
         cls, volume: FieldFilm, places: Sequence[Array], speeds: tuple[float, float], factor: CavitationFactor
     ) -> tuple[Fields, ...]:
-        """Those of a steady film at each of several places d, see FieldFilm. speeds: of journal and shell in rad/s;
+        """Fields of a steady film at each of several places d, see FieldFilm. speeds: of journal and shell in rad/s;
         factor: see loads. Raises NotConverged."""
         journal, shell = speeds
         solvers: dict[VolumeFilm, FilmSolver] = {}
-        found = []
+        fields = []
         for d in places:
             p_max, torques, flow = -math.inf, np.zeros(2), 0.0
             for film, motion in volume.parts(d, journal + shell):
@@ -186,8 +185,8 @@ class Fields:
                 torques += (its.torque.journal, its.torque.shell)
                 flow += volume.outflow(solver, motion, solution)
             on_journal, on_shell = torques.tolist()
-            found.append(cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow))
-        return tuple(found)
+            fields.append(cls(p_max, on_journal, -on_journal * journal + on_shell * shell, flow))
+        return tuple(fields)
 
 
 def _further_out(at_rest: RestingFilm) -> RestingFilm:
@@ -198,7 +197,7 @@ def _further_out(at_rest: RestingFilm) -> RestingFilm:
 
 
 def _field_errors(
-    film: FieldFilms, found: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
+    film: FieldFilms, central: Fields, at_rest: RestingFilm, speeds: tuple[float, float], factor: CavitationFactor
 ) -> Fields:
     """Expected errors by the mesh: of the fields in this place, and by the error of the place, as if it were further
     out; NaN if the film is not solved on fewer cells."""
@@ -206,11 +205,11 @@ def _field_errors(
     try:
         both = Fields.of(film.coarser, [at_rest.seen(place) for place in (d, out)], speeds, factor)
     except NotConverged:
-        return Fields(*(math.nan,) * len(astuple(found)))
+        return Fields(*(math.nan,) * len(astuple(central)))
     return Fields(
         *(
             max(film.share * abs(coarse - own) + abs(moved - coarse), LEAST * abs(own))
-            for own, coarse, moved in zip(*map(astuple, (found, *both)), strict=True)
+            for own, coarse, moved in zip(*map(astuple, (central, *both)), strict=True)
         )
     )
 
@@ -266,9 +265,9 @@ def _with_fields(
     """A state with torque, loss, flow and pressure. at_rest: as the film feels it, in a gap that surfaces which touch
     keep; speeds: of journal and shell, rad/s. Raises NotConverged."""
     radius, factor = volume.own.section.radius, case.film.cavitation_factor
-    (found,) = Fields.of(volume.own, [at_rest.seen(at_rest.displacement)], speeds, factor)
-    errors = _field_errors(volume, found, at_rest, speeds, factor)
-    torque, power, flow, power_error = found.torque, found.power, found.side_flow, errors.power
+    (central,) = Fields.of(volume.own, [at_rest.seen(at_rest.displacement)], speeds, factor)
+    errors = _field_errors(volume, central, at_rest, speeds, factor)
+    torque, power, flow, power_error = central.torque, central.power, central.side_flow, errors.power
     if state.mixed is not None:
         torque, power = torque + state.mixed.torque, power + state.mixed.power
         power_error += state.mixed.power_error
@@ -283,7 +282,7 @@ def _with_fields(
         friction_variable=friction * radius / state.clearance,
         power=power,
         side_flow=flow,
-        p_max=found.p_max,
+        p_max=central.p_max,
         temperature_rise=power / (case.oil.density * heat_capacity(case) * flow) if flow > 0.0 else math.nan,
         p_max_error=errors.p_max,
         power_error=power_error,

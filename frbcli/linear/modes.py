@@ -35,7 +35,7 @@ SPEEDS = 25  # of the default sweep
 SHOWN = 4  # slowest modes of each direction
 NO_STIFFNESS = 1e-9  # direct over largest stiffness of a film that is round-off
 TINY = 1e-300  # N/m
-RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion is that of a rigid body
+RIGID_SHARE = 0.5  # of the kinetic energy, from which on a motion counts as rigid-body motion
 
 
 @dataclass(frozen=True)
@@ -175,8 +175,8 @@ def film_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
     """Isotropic stiffness in N/m of each bearing of a case out of its films at rest: the mean of both directions, in
     series where a ring floats between two films. Cross stiffness is left out: it excites a whirl and carries no load.
     Empty where a bearing has none, see direct_springs, and without films."""
-    found = direct_springs(case, films)
-    return () if any(map(math.isnan, found)) else found
+    springs = direct_springs(case, films)
+    return () if any(map(math.isnan, springs)) else springs
 
 
 def direct_springs(case: Case, films: Sequence[RestingFilm]) -> tuple[float, ...]:
@@ -197,16 +197,16 @@ def own_reduction(case: Case, points: Sequence[StabilityPoint]) -> Reduction | N
         return None
     free, known = shaft.free(), [point for point in points if point.rests and len(point.films) >= len(case.films)]
     top = 2.0 * math.pi * max([point.speed_Hz for point in points], default=0.0)
-    found: list[Reduction] = []
+    reductions: list[Reduction] = []
     for point in {id(each): each for each in (*known[:1], *known[len(known) // 2 :][:1], *known[-1:])}.values():
         sizes = bearing_springs(case, [max(float(np.linalg.norm(film.stiffness, 2)), TINY) for film in point.films])
         springs = np.concatenate([sizes, element_springs(case, 2.0 * math.pi * point.speed_Hz)])
         each = free.reduced_on(springs[: len(free.journals)], top)
         if not math.isnan(each.frequency):
-            found.append(each)
-    if not found:
+            reductions.append(each)
+    if not reductions:
         return shaft.reduction
-    frequency, amplitude = max(each.frequency for each in found), max(each.amplitude for each in found)
+    frequency, amplitude = max(each.frequency for each in reductions), max(each.amplitude for each in reductions)
     own = "the stiffness of its own bearings"
     return replace(shaft.reduction, frequency=frequency, amplitude=amplitude, bearings=own)
 
@@ -239,7 +239,7 @@ def _check_own(case: Case) -> None:
         keyed = zip(case.bearing_keys, case.placed_bearings, strict=True)
         key, kind = next((key, bearing.kind) for key, bearing in keyed if bearing in resting)
         what = "films" if case.bearings else "balls"
-        problem = f"has {what}, whose stiffness follows from the resting position."
+        problem = f"has {what}, whose stiffness follows from the static equilibrium."
         raise InputError(case.name or "case", (Fault(f"{key}.kind", kind, None, problem, remedy),))
     for element in GivenCoefficients.of(case):
         k = element.linear.stiffness
@@ -249,17 +249,17 @@ def _check_own(case: Case) -> None:
 
 
 def _at_speed(modes: FreeModes, springs: Array, stiffness: Array, omega: float) -> ModesAtSpeed:
-    found = whirl_modes(modes, springs, stiffness, omega)
+    whirls = whirl_modes(modes, springs, stiffness, omega)
     shown: list[Mode] = []
     for sign, direction in ((1, "forward"), (-1, "backward")):
-        for index in np.flatnonzero(found.frequencies * sign > 0)[:SHOWN]:
-            coordinates = found.coordinates[:, index]
+        for index in np.flatnonzero(whirls.frequencies * sign > 0)[:SHOWN]:
+            coordinates = whirls.coordinates[:, index]
             shape = modes.shapes @ coordinates
-            frequency = abs(float(found.frequencies[index])) / (2 * math.pi)
+            frequency = abs(float(whirls.frequencies[index])) / (2 * math.pi)
             kind = _kind(modes.frequencies, coordinates, shape)
             shown.append(Mode(frequency, direction, kind, shape / shape[first_largest(shape)]))
     frequencies = ranks(np.array([mode.frequency_Hz for mode in shown]))  # forward before backward where both are equal
-    still = 2 * len(modes.frequencies) - len(found.frequencies)
+    still = 2 * len(modes.frequencies) - len(whirls.frequencies)
     ordered = tuple(shown[i] for i in np.argsort(frequencies, kind="stable"))
     return ModesAtSpeed(omega / (2 * math.pi), ordered, still)
 

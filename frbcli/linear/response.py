@@ -1,4 +1,5 @@
-"""Linear response to the unbalance, or to another load: the motion of a rotor in its films about the resting position.
+"""Linear response to the unbalance, or to another load: the motion of a rotor in its films about the static
+equilibrium.
 
 At each rotor speed Omega the films are the eight coefficients of stability.py, of films that keep oil those at the
 frequency Omega, and the motion q = Re(Q exp(i alpha))
@@ -11,8 +12,7 @@ Loads of the case that turn or swing once in a revolution join the unbalance, an
 harmonic load has the frequency of that load, and its phase counts from there.
 
 The motion is in proportion to the unbalance, whatever the gap: where a journal moves over more than DOUBTFUL of the gap
-that its resting position leaves, the coefficients are doubtful, and no journal moves beyond its clearance.
-"""
+that its static equilibrium leaves, the coefficients are doubtful, and no journal moves beyond its clearance. """
 
 from __future__ import annotations
 
@@ -76,13 +76,13 @@ SOUND, DOUBTFUL_MOTION, BEYOND_GAP = "linear", "doubtful", "beyond-gap"
 class Response(Tabular):
     """The motion at n speeds.
 
-    speeds_Hz: (n,), ascending, those at which the rotor rests; points: the p points of a run; motion: (n, p, 2) complex
-    amplitudes of x and y in m; films: the names of the f films; elements: those of the e elements; forces: (n, f + e,
-    2) those of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least damped whirl:
-    where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the resting positions; in_films:
-    (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances: (n, f) m, warm with
-    heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN where it is not known.
-    excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
+    speeds_Hz: (n,), ascending, with a static equilibrium; points: the p points of a run; motion: (n, p, 2) complex
+    amplitudes of x and y in m; films: the names of the f films; elements: the names of the e elements; forces: (n, f +
+    e, 2) complex amplitudes of the forces of both on the shaft in N, of one bearing; growth: (n,) in 1/s of the least
+    damped whirl: where it is positive, the motion is not seen; critical_speeds: the peaks; resting: the static
+    equilibria; in_films: (n, f, 2) complex amplitudes of the journals in their films, over the clearance; clearances:
+    (n, f) m, warm with heat; amplitude_error: (n, p) m, expected one of the amplitude by the mesh of the films, NaN
+    where it is not known. excitation: UNBALANCE, with all loads of order 1, or the name of the one load that excites.
     """
 
     case: Case
@@ -124,7 +124,7 @@ class Response(Tabular):
 
     @property
     def gap_share(self) -> Array:
-        """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its resting position
+        """(n, f) larger semi-axis of the orbit of each journal in its film over the gap that its static equilibrium
         leaves, 1 - eccentricity; of one that rests on an elastic shell, over the depth by which it presses it in."""
         left = np.where(self._pressed, self._eccentricity - self.case.contact.eccentricity, 1.0 - self._eccentricity)
         return np.asarray(larger_semi_axis(self.in_films) / left)
@@ -132,8 +132,8 @@ class Response(Tabular):
     @property
     def _eccentricity(self) -> Array:
         """(n, f) at rest."""
-        found = np.array([[film.eccentricity for film in point.films] for point in self.resting])
-        return found.reshape(self.clearances.shape)
+        ratios = np.array([[film.eccentricity for film in point.films] for point in self.resting])
+        return ratios.reshape(self.clearances.shape)
 
     @property
     def _pressed(self) -> Truths:
@@ -143,7 +143,7 @@ class Response(Tabular):
 
     @property
     def eccentricity_max(self) -> Array:
-        """(n, f) largest eccentricity of each journal on its orbit about its resting position; from 1 on, which no
+        """(n, f) largest eccentricity of each journal on its orbit about its static equilibrium; from 1 on, which no
         journal can have, the orbit leaves the gap."""
         turn = np.exp(2j * np.pi * np.arange(ORBIT_PLACES) / ORBIT_PLACES)
         rest = np.array([[film.displacement for film in point.films] for point in self.resting])
@@ -217,7 +217,7 @@ def response(
         Lowest and highest speed of operation in Hz, from which critical speeds have a separation margin. Both are
         among the default speeds where these reach so far.
     after_loss : bool
-        Take the unbalance after all losses of the case, in place of that before.
+        Take the unbalance after all losses of the case, instead of that before.
 
     Returns
     -------
@@ -249,7 +249,7 @@ def response(
     system, points = stability_points(case, asked, observe, frequency, machines)
     resting = [point for point in points if point.rests]
     if not resting:
-        problem = f"has no resting position at any of {len(asked)} speeds; at the first: {points[0].problem}"
+        problem = f"has no static equilibrium at any of {len(asked)} speeds; at the first: {points[0].problem}"
         raise input_error(case.name or "case", "speed", "", problem, "Choose other speeds.")
 
     def solved(speeds: Sequence[float]) -> list[StabilityPoint]:
@@ -262,7 +262,7 @@ def response(
 
 
 def _default_speeds(case: Case, operating_Hz: tuple[float, float] | None) -> tuple[float, ...]:
-    """Those of the range of the case, with the ends of the range of operation that lie in it."""
+    """Speeds over the range of the case, including the ends of the range of operation that lie in it."""
     swept = default_speeds(case, SPEEDS)
     if not swept or operating_Hz is None:
         return swept
@@ -278,8 +278,8 @@ def _response(
 ) -> Response:
     """The motion at the points of a machine that rest."""
     rotors = [point.rotor for point in resting if point.rotor is not None]
-    found = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
-    motions, forces, journals = zip(*found, strict=True)
+    solved = (_at(case, rotor, point, excitation) for rotor, point in zip(rotors, resting, strict=True))
+    motions, forces, journals = zip(*solved, strict=True)
     clearances = np.array([(point.warm.system if point.warm else system).clearances for point in resting])
     motion = np.array(motions)
     return Response(
@@ -353,25 +353,25 @@ def critical_speeds_of(
     operating_Hz: tuple[float, float] | None,
     solved: Callable[[Sequence[float]], list[StabilityPoint]],
 ) -> tuple[tuple[CriticalSpeed, ...], list[StabilityPoint]]:
-    """The peaks of the response between points at ascending speeds, and those points with what was solved beside them.
+    """The peaks of the response between points at ascending speeds, and the points including additional solved ones.
 
     solved: the points that rest at speeds in Hz. Films are solved at their peaks until these stay where they are;
     without films the points of a curve around each peak are."""
     known, rounds = list(points), ROUNDS if points[0].films else 0
     model = _model(known, excitation)
-    found = peaks(model)
+    maxima = peaks(model)
     for _ in range(rounds):
-        far = [peak.omega for peak in found if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
+        far = [peak.omega for peak in maxima if np.min(np.abs(model.omegas - peak.omega)) > CLOSE * peak.omega]
         more = solved([omega / TURN for omega in far]) if far else []
         if not more:
             break
         known = sorted([*known, *more], key=attrgetter("speed_Hz"))
         model = _model(known, excitation)
-        found = peaks(model)
+        maxima = peaks(model)
     others = [(_model(known, excitation, number), share) for number, share in _shares(known)]
-    critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in found)
+    critical = tuple(_critical(model, others, peak, known[0], operating_Hz) for peak in maxima)
     if not points[0].films:
-        bounded = [peak for peak in found if math.isfinite(peak.amplitude)]
+        bounded = [peak for peak in maxima if math.isfinite(peak.amplitude)]
         curve = np.unique([peak.omega + abs(peak.pole.imag) * WIDTHS for peak in bounded])
         inside = curve[(curve > model.omegas[0]) & (curve < model.omegas[-1])] / TURN
         known = sorted([*known, *(solved(inside.tolist()) if len(inside) else [])], key=attrgetter("speed_Hz"))
@@ -381,16 +381,16 @@ def critical_speeds_of(
 def _model(points: Sequence[StabilityPoint], excitation: str, other: int | None = None) -> SpeedModel:
     """The response between points, on their own films or on another mesh, by its number."""
     rotors = [point.rotor for point in points if point.rotor is not None]
-    base, beside = rotors[0], []
+    base, changes = rotors[0], []
     for point, rotor in zip(points, rotors, strict=True) if points[0].films else ():
         omega = TURN * point.speed_Hz
         coefficients = coefficients_of(point.films) if other is None else point.others[other][:2]
         _, damping, stiffness = linearised(rotor, omega, *coefficients)
         here = base.at(omega)
-        beside.append(np.array([stiffness - here.stiffness, damping - here.damping - omega * here.gyroscopic]))
+        changes.append(np.array([stiffness - here.stiffness, damping - here.damping - omega * here.gyroscopic]))
     omegas = [TURN * point.speed_Hz for point in points]
     places = np.array([place for _, place in base.points])
-    return SpeedModel(base, omegas, beside, lambda omega: excited(base, omega, excitation), places)
+    return SpeedModel(base, omegas, changes, lambda omega: excited(base, omega, excitation), places)
 
 
 def _shares(points: Sequence[StabilityPoint]) -> list[tuple[int, float]]:
@@ -452,15 +452,15 @@ def _on_others(
     share of the difference that is the error; none where a mesh is missing at a speed."""
     if len({len(point.others) for point in points}) > 1:
         return []
-    found = []
+    results = []
     for number in range(len(points[0].others)):
         motion = []
         for rotor, point in zip(rotors, points, strict=True):
             omega = 2.0 * math.pi * point.speed_Hz
             q = forced_motion(rotor, omega, excited(rotor, omega, excitation), *point.others[number][:2])
             motion.append([place @ q for _, place in rotor.points])
-        found.append((np.array(motion), points[0].others[number][2]))
-    return found
+        results.append((np.array(motion), points[0].others[number][2]))
+    return results
 
 
 def _amplitude_error(motion: Complex, others: Sequence[tuple[Complex, float]]) -> Array:

@@ -1,11 +1,10 @@
-"""Linear stability: resting positions, coefficients of the films, and eigenvalues.
+"""Linear stability: static equilibria, coefficients of the films, and eigenvalues.
 
-In its resting position films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
+In its static equilibrium films and shaft carry the static load of the rotor. Linearised there, each film is a stiffness
 K = -dF/dD and a damping D = -dF/dD' per bearing, and the rotor has 2 n eigenvalues: a positive real part is a motion
 that grows. Films that keep oil are linearised together with it (dynamic_films.py); K and D are then those at the
-frequency of the least damped whirl. The threshold is the lowest speed at which one of the oscillating motions, a
-whirl, begins to grow.
-"""
+frequency of the least damped whirl. The threshold is the lowest speed at which one of the oscillating motions, a whirl,
+begins to grow. """
 
 from __future__ import annotations
 
@@ -53,7 +52,7 @@ class Stability(Tabular):
     note: str
 
     def table(self) -> Table:
-        """One row per point: speed, resting position and coefficients of each film, critical eigenvalue."""
+        """One row per point: speed, static equilibrium and coefficients of each film, critical eigenvalue."""
         films = max((point.films for point in self.points), key=len, default=())
         names = [film.name for film in films]
         axial = named(AXIAL, "collar", attrgetter("axial")) if self.case.axial is not None else ()
@@ -66,24 +65,24 @@ def stability(
     observe: Callable[[int, int], None] | None = None,
     threshold: bool = False,
 ) -> Stability:
-    """Compute resting positions, linear coefficients, eigenvalues, and the threshold of stability.
+    """Compute static equilibria, linear coefficients, eigenvalues, and the threshold of stability.
 
     Parameters
     ----------
     case : Case
         The machine, see `load_case`.
     speeds_Hz : sequence of float, optional
-        Rotor speeds in Hz, above 0, of the points; by default those of the sweep in which the threshold is sought,
+        Rotor speeds in Hz, above 0, of the points; by default the sweep in which the threshold is sought,
         which is the speed range of the case.
     observe : callable, optional
         Called with each speed's number and their number.
     threshold : bool
-        Whether the threshold is sought beside given speeds, too; without speeds it always is.
+        Whether the threshold is sought with given speeds, too; without speeds it always is.
 
     Returns
     -------
     Stability
-        Points and threshold; a speed without a resting position gives a point that says so.
+        Points and threshold; a speed without a static equilibrium gives a point that says so.
 
     Raises
     ------
@@ -115,8 +114,8 @@ def threshold_alone(case: Case) -> Stability:
 
 
 def _scouted(case: Case, machines: StaticMachines, speeds_Hz: Sequence[float]) -> tuple[StabilityPoint, ...]:
-    """Points at some of speeds_Hz on the coarsest mesh, of which those that decide where the threshold lies are
-    replaced by those of `machines`: at every SCOUTED-th speed, and at all where growth may pass zero between these.
+    """Points at some of speeds_Hz on the coarsest mesh, of which the ones that decide where the threshold lies are
+    replaced by points of `machines`: at every SCOUTED-th speed, and at all where growth may pass zero between these.
 
     () where this decides nothing: films are not on cells or keep oil, whose eigenvalues scatter from mesh to mesh,
     there is no rest at some speed, or the meshes differ in whether a deciding point is stable.
@@ -161,9 +160,9 @@ def _stability(
     check_machine(case, speeds)
     machines = StaticMachines(case, memory=True)
     sweep = _sweep(case, machines, speeds, observe)
-    found = {point.speed_Hz: point for point in sweep}
+    by_speed = {point.speed_Hz: point for point in sweep}
     threshold, note = find_threshold(case, machines, sweep) if with_threshold else (None, NOT_SOUGHT)
-    return Stability(case, tuple(found[speed] for speed in asked), sweep, threshold, note)
+    return Stability(case, tuple(by_speed[speed] for speed in asked), sweep, threshold, note)
 
 
 def stability_points(
@@ -175,10 +174,9 @@ def stability_points(
 ) -> tuple[System, tuple[StabilityPoint, ...]]:
     """The machine, and its points at speeds_Hz, ascending.
 
-    observe: called with each speed's number and their number; frequency: that of the motion in
-    rad/s, by the speed of the rotor in rad/s, see point_at_rest; machines: those of the case, where they are made
-    already. Raises InputError if the case cannot be modelled, a speed is not positive, or a film cannot be linearised.
-    """
+    observe: called with each speed's number and their number; frequency: of the motion in rad/s, by the speed of the
+    rotor in rad/s, see point_at_rest; machines: of the case, where they are made already. Raises InputError if the case
+    cannot be modelled, a speed is not positive, or a film cannot be linearised. """
     check_machine(case, speeds_Hz)
     machines = machines or StaticMachines(case, memory=True)
     return machines.system, _sweep(case, machines, speeds_Hz, observe, frequency)
@@ -224,16 +222,16 @@ def _none_rests(
     """The points at descending speeds, ascending, if there is no rest at the fastest one nor at others between it and
     the slowest, TRIED in all; () if there is rest at one of them. To seek in vain takes long, and is not done at all
     speeds."""
-    found = {fastest.speed_Hz: fastest}
+    by_speed = {fastest.speed_Hz: fastest}
     for i in np.linspace(0, len(speeds) - 1, TRIED).round().astype(int)[:0:-1].tolist():
         point, _ = seek(speeds[i])
         if point.rests:
             return ()
-        found[point.speed_Hz] = point
+        by_speed[point.speed_Hz] = point
     span = unit.span(speeds[-1], speeds[0])
     why = f"Sought at {TRIED} speeds from {span} only, since there is none at these."
     reason = f"{fastest.problem} {why}"
-    left = (found.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
+    left = (by_speed.get(speed, StabilityPoint(speed, (), np.zeros(0, dtype=complex), reason)) for speed in speeds)
     slowest, *others = tuple(left)[::-1]
     return replace(slowest, problem=f"{slowest.problem} {why}"), *others
 

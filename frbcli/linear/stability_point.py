@@ -24,7 +24,7 @@ from frbcli.rotor.loads import fastest_first, ranks
 if TYPE_CHECKING:  # films on pads take long to import
     from frbcli.linear.thrust.axial import AxialState
 
-HARDLY_KNOWN = 0.25  # error of coefficients of films that keep oil, relative, above which they are not told
+HARDLY_KNOWN = 0.25  # error of coefficients of films that keep oil, relative, above which they are not shown
 UNKNOWN_WHIRL = 0.5  # over the rotor's speed: frequency of coefficients where no motion oscillates
 DIVERGENT = 1e-9  # real part over the largest absolute value from which a motion grows without oscillating
 
@@ -41,15 +41,14 @@ class StabilityPoint:
     """The rotor at one speed.
 
     films: one per bearing of the case, of a floating ring the inner before the outer one; eigenvalues: (2 n,) in 1/s,
-    on films that keep oil those that grow or decay slowly, see dynamic_films.modes; ascending in |imaginary part|, then
-    in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of the rings that turn;
-    their speeds follow the motion and are states of their own; 0 against a pin. warm: the machine with its heat, of a
-    case that has it; its temperatures stand. errors: (2 n,) expected ones of the eigenvalues in 1/s, by the mesh of the
-    films, empty where they were not asked for; others: stiffness and damping (films, c, c) on other meshes, with the
-    share of the difference that is the error; axial: the collar under an axial load, None without one; rotor: the
-    machine without its films, as small motions see it, None without rest. All others are empty where no resting
-    position was found; problem then says why, and is empty otherwise.
-    """
+    on mass-conserving films only eigenvalues that grow or decay slowly, see dynamic_films.modes; ascending in
+    |imaginary part|, then in the real part, of a pair the one with positive imaginary part first. ring_speeds_Hz: of
+    the rings that turn; their speeds follow the motion and are states of their own; 0 against a pin. warm: the machine
+    with its heat, of a case with [thermal]; its temperatures are frozen. errors: (2 n,) expected ones of the
+    eigenvalues in 1/s, by the mesh of the films, empty where they were not asked for; others: stiffness and damping
+    (films, c, c) on other meshes, with the share of the difference that is the error; axial: the collar under an axial
+    load, None without one; rotor: the machine without its films, as small motions see it, None without rest. All others
+    are empty where no static equilibrium was found; problem then says why, and is empty otherwise. """
 
     speed_Hz: float
     films: tuple[RestingFilm, ...]
@@ -74,7 +73,7 @@ class StabilityPoint:
 
     @property
     def rests(self) -> bool:
-        """Whether a resting position was found."""
+        """Whether a static equilibrium was found."""
         return not self.problem
 
     @property
@@ -88,8 +87,8 @@ class StabilityPoint:
         decay, the slowest first."""
         size = np.abs(self.eigenvalues)
         divergent = (self.eigenvalues.imag >= 0.0) & (self.eigenvalues.real > DIVERGENT * size.max(initial=0.0))
-        told: Complex = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
-        return told[fastest_first(told)]
+        shown: Complex = self.eigenvalues[hopf.oscillating(self.eigenvalues) | divergent]
+        return shown[fastest_first(shown)]
 
     @property
     def modes_with_errors(self) -> list[Eigenvalue]:
@@ -120,7 +119,7 @@ class StabilityPoint:
 
     @property
     def growth(self) -> float:
-        """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a resting position."""
+        """Real part of the critical eigenvalue, 1/s: positive where a whirl grows; NaN without a static equilibrium."""
         return self.critical.real
 
     def growth_of(self, number: int) -> float:
@@ -177,7 +176,7 @@ def other_eigenvalues(machine: MachineAtRest) -> list[tuple[Complex, float]]:
 
 def point_at_rest(machine: MachineAtRest, speed: float, frequency: float | None = None) -> StabilityPoint:
     """The point at a speed in Hz of a machine that rests. frequency: in rad/s, of the coefficients of films that keep
-    oil; by default that of the least damped whirl."""
+    oil; by default of the least damped whirl."""
     rings = tuple((machine.at_rest.position.ring_speeds / (2 * math.pi)).tolist())
     others: tuple[tuple[Array, Array, float], ...]
     if machine.dynamic:
@@ -226,14 +225,14 @@ def _check_known(films: Sequence[RestingFilm]) -> None:
     if error > HARDLY_KNOWN:
         which = f"The film {name}" if name else "The film"
         raise NotConverged(
-            f"{which} has no linear coefficients on these cells: those of two meshes differ by {100.0 * error:.2g} %. "
+            f"{which} has no linear coefficients on these cells: two meshes differ by {100.0 * error:.2g} %. "
             "Its fronts of oil cross cells at the least motion. Give it more supply pressure."
         )
 
 
-def _both(found: Sequence[tuple[complex, Complex]]) -> Complex:
+def _both(pairs: Sequence[tuple[complex, Complex]]) -> Complex:
     """The eigenvalues of modes, both of each pair, in the order of `eigenvalues`."""
-    values = np.array([value for value, _ in found]).astype(complex)
+    values = np.array([value for value, _ in pairs]).astype(complex)
     return _ordered(np.concatenate([values, values[hopf.oscillating(values)].conj()]))
 
 

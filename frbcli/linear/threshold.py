@@ -50,7 +50,7 @@ def find_threshold(
     becomes stable once more."""
     resting = [point for point in sweep if point.rests]
     if not resting:
-        return None, "No threshold: there is no resting position in the whole range of speeds."
+        return None, "No threshold: there is no static equilibrium in the whole range of speeds."
     slowest, fastest = resting[0], resting[-1]
     unit = case.speed_unit
     lowest, highest = unit.words(slowest.speed_Hz), unit.words(fastest.speed_Hz)
@@ -63,7 +63,7 @@ def find_threshold(
         return None, f"{STABLE}: a threshold, if there is one, lies above {highest}."
     if above == 0:
         unstable = f"{UNSTABLE}: a threshold, if there is one, lies below"
-        beyond = "" if slowest is sweep[0] else " Below it there is no resting position."
+        beyond = "" if slowest is sweep[0] else " Below it there is no static equilibrium."
         return None, f"{unstable} {lowest}.{beyond}{_stable_again(resting, unit)}"
     near = resting[max(above - 2, 0) : above + 2]
     guess = interpolated_root([point.speed_Hz for point in near], [point.growth for point in near])
@@ -72,8 +72,8 @@ def find_threshold(
 
 
 def deciding(points: Sequence[StabilityPoint]) -> tuple[int, ...]:
-    """Numbers of the points, with a resting position each, that decide where the threshold lies: the first one at which
-    a motion grows, after the one below it; where none grows, the one that is nearest to it."""
+    """Numbers of the points, with a static equilibrium each, that decide where the threshold lies: the first one at
+    which a motion grows, after the one below it; where none grows, the one that is nearest to it."""
     growing = next((number for number, point in enumerate(points) if point.growth > 0.0), None)
     if growing is None:
         return (int(np.argmax([point.growth for point in points])),)
@@ -92,11 +92,11 @@ def interpolated_root(speeds: Sequence[float], growth: Sequence[float]) -> float
 
 def _one_speed(point: StabilityPoint, speed: str, tried: int) -> str:
     """Why a single speed has no threshold."""
-    found = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
+    state = "a motion grows" if point.growth > 0.0 else "every motion decays" if point.growth < 0.0 else UNDAMPED
     if tried > 1:
-        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {found}."
+        return f"No threshold: the journals rest at one of {tried} speeds only, {speed}, where {state}."
     return (
-        f"No threshold is sought: there is one speed only, {speed}, where {found}. "
+        f"No threshold is sought: there is one speed only, {speed}, where {state}. "
         "Widen the range of speed.from and speed.to."
     )
 
@@ -122,11 +122,11 @@ def _crossing(
     try:
         with advised(case):
             scatters = machines.system.remembers
-            found = hopf.located(point, low, high, 0, NEAR if scatters else THRESHOLD_TOLERANCE, guess)
-            near = next((each for each in known if each.omega == 2 * math.pi * found.speed_Hz), None)
+            bracket = hopf.located(point, low, high, 0, NEAR if scatters else THRESHOLD_TOLERANCE, guess)
+            near = next((each for each in known if each.omega == 2 * math.pi * bracket.speed_Hz), None)
             if scatters:
-                return _fitted(machines, found, near), ""
-            return threshold_at(machines, found.speed_Hz, near=near), ""
+                return _fitted(machines, bracket, near), ""
+            return threshold_at(machines, bracket.speed_Hz, near=near), ""
     except NotConverged as error:
         between = case.speed_unit.span(low.speed_Hz, high.speed_Hz, "and")
         return None, f"A threshold lies between {between}, but was not found: {error}"
@@ -145,7 +145,7 @@ class _Zero:
 
     @classmethod
     def of(cls, speeds: Array, values: Complex) -> _Zero:
-        """That of eigenvalues (N,) in 1/s at speeds (N,)."""
+        """The zero of the growth of eigenvalues (N,) in 1/s at speeds (N,)."""
         middle = float(speeds.mean())
         line = np.stack([np.ones(len(speeds)), speeds - middle], axis=1)
         here, slope = np.linalg.lstsq(line.astype(complex), values)[0].tolist()

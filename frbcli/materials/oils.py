@@ -2,7 +2,7 @@
 
 An oil of a grade varies: SAE J300 leaves 12.5 to 16.3 mm^2/s at 100 degC to a grade 40, ISO 3448 10 % either way at 40
 degC. The figures here are typical ones; a data sheet of the oil in use is better, as Vogel's coefficients in the case.
-docs/heat.md tells which figures were compared with a source and which are a choice.
+docs/heat.md states which figures were compared with a source and which are a choice.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Pictures on axes of one's own: every function takes `ax`, draws on it and returns it; without it on a new figure.
+"""Pictures on given axes: every function takes `ax`, draws on it and returns it; without `ax` it makes a new figure.
 
     figure, (left, right) = pyplot.subplots(1, 2)
     frbcli.draw_orbit(run, ax=left)
@@ -37,9 +37,9 @@ def eccentricity(
     run : Run
         A run, see `read_run`, `runup` and `measured_run`.
     ax : matplotlib.axes.Axes, optional
-        Axes to draw on; without it those of a new figure, `ax.figure`.
+        Axes to draw on; by default new ones, in the figure `ax.figure`.
     from_time, to_time : float, optional
-        Begin and end in s; by default those of the run.
+        Begin and end in s; by default of the whole run.
     over : {"time", "speed"}
         The axis.
 
@@ -242,12 +242,12 @@ def film_signal(run: Run, kind: str, ax: Axes | None = None, part: int = 0, over
     return ax
 
 
-def campbell(found: Stability, ax: Axes | None = None) -> Axes:
+def campbell(analysis: Stability, ax: Axes | None = None) -> Axes:
     """Draw damped eigenfrequencies in Hz over the rotor speed; filled dots grow.
 
     Parameters
     ----------
-    found : Stability
+    analysis : Stability
         See `stability`.
     ax : as of `draw_eccentricity`
 
@@ -263,18 +263,18 @@ def campbell(found: Stability, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_campbell(frbcli.stability(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_frequencies(ax, [point for point in found.sweep if point.rests])
+    draw_frequencies(ax, [point for point in analysis.sweep if point.rests])
     ax.set_xlabel("rotor speed in Hz")
     legend_beside(ax)
     return ax
 
 
-def response(found: Response, ax: Axes | None = None) -> Axes:
+def response(motion: Response, ax: Axes | None = None) -> Axes:
     """Draw the amplitudes of all points over the rotor speed, dotted where a whirl grows.
 
     Parameters
     ----------
-    found : Response
+    motion : Response
         See `response`.
     ax : as of `draw_eccentricity`
 
@@ -290,7 +290,7 @@ def response(found: Response, ax: Axes | None = None) -> Axes:
     >>> ax = frbcli.draw_response(frbcli.response(case))  # doctest: +SKIP
     """
     ax = _axes(ax)
-    draw_amplitude(ax, found)
+    draw_amplitude(ax, motion)
     legend_beside(ax)
     return ax
 
@@ -325,7 +325,7 @@ def bearing(sheet: BearingSheet, quantity: str = "stiffness", ax: Axes | None = 
 
 
 def _axes(ax: Axes | None) -> Axes:
-    """The given axes, or those of a new figure."""
+    """The given axes, or axes of a new figure."""
     if ax is not None:
         return ax
     with styled():

@@ -69,11 +69,11 @@ def draw_curves(
     """
     several = len(runs) > 1 or len(signals) > 1
     colour = 0
-    for number, (run, told) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):
+    for number, (run, source) in enumerate(zip(runs, labels(runs) if len(runs) > 1 else [""], strict=True)):
         shown = cut(run, *span)
         for name, columns in signals:
             for way, place, drawn in _ways(run, over, shown, columns[number]):
-                label = ", ".join(word for word in (told, name, way) if word)
+                label = ", ".join(word for word in (source, name, way) if word)
                 alpha = OVERLAID if several or way else 1.0
                 axes.plot(place, drawn, color=COLOURS[colour % len(COLOURS)], label=label, alpha=alpha)
                 colour += 1

@@ -64,8 +64,8 @@ def picture(result: object) -> Picture:
     Examples
     --------
     >>> import frbcli
-    >>> found = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
-    >>> figure = frbcli.picture(found)
+    >>> analysis = frbcli.stability(frbcli.load_case("jeffcott", ["film.theory=short"]))
+    >>> figure = frbcli.picture(analysis)
     >>> len(figure.axes)
     2
     """
@@ -75,8 +75,8 @@ def picture(result: object) -> Picture:
         problem, remedy = "has no picture.", f"There are pictures of: {', '.join(PICTURES)}."
         raise input_error("picture", type(result).__name__, "", problem, remedy)
     module, _, name = place.partition(":")
-    found: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
-    return found
+    figure: Picture = getattr(import_module(f"frbcli.plot.{module}"), name)(result)
+    return figure
 
 
 SECONDS = 60.0  # of a minute
@@ -107,7 +107,7 @@ def fit(
     panels = [axes for axes in figure.axes if axes.get_label() != COLOURS]
     if rpm:
         for axes in panels:
-            for axis in (axes.xaxis, axes.yaxis):
+            for axis in (axes.xaxis, axes.yaxis, *(child.xaxis for child in axes.child_axes)):
                 _per_minute(axis)
     if x_limits is not None:
         for axes in _along(panels):
@@ -123,14 +123,14 @@ def fit(
 
 
 def _along(panels: list[Axes]) -> Iterable[Axes]:
-    """Panels over time, speed or frequency; if there are none, the first one and those named as it is."""
+    """Panels over time, speed or frequency; if there are none, all with the label of the first panel."""
     named = [axes for axes in panels if any(word in axes.get_xlabel() for word in ALONG)]
     return named or [axes for axes in panels if axes.get_xlabel() == panels[0].get_xlabel()]
 
 
 def _per_minute(axis: Axis) -> None:
     name = axis.get_label_text()
-    if SPEED in name and axis.get_scale() == "linear":
+    if SPEED in name and axis.get_scale() != "log":
         axis.set_label_text(name.replace(SPEED, PER_MINUTE))
         axis.set_major_locator(_PerMinute(7, steps=[1, 2, 2.5, 5, 10]))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{SECONDS * value:.6g}"))

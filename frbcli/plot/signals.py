@@ -11,9 +11,7 @@ from typing import Any
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.revolutions import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
-from frbcli.case.film_tables import THEORIES
 from frbcli.case.reading.toml import TomlFault, parse
-from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import MOST_MARKED, plain
@@ -38,7 +36,7 @@ def motion(run: Run, node: str) -> tuple[Signal, Signal]:
 
 
 def bearing_of(run: Run, node: str) -> str:
-    """The bearing that a point belongs to: of a disk that of the same name, or else the first one."""
+    """The bearing that a point belongs to: for a disk the bearing of the same name, or else the first one."""
     bearings = list(points(run.signals, "journal"))
     name = located(run, node)[1]
     return name if name in bearings or not bearings else bearings[0]
@@ -70,7 +68,7 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, 
 
 def clearance(run: Run, bearing: str = "") -> float:
     """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o; of a machine without
-    films the length that stands for it. Raises RunFileError where the run does not say."""
+    films the length that replaces it. Raises RunFileError where the run does not state it."""
     known = [length for name, length in run.references.items() if name.startswith(("clearance_m", "length_m"))]
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
@@ -80,13 +78,13 @@ def clearance(run: Run, bearing: str = "") -> float:
 
 def shell(run: Run, bearing: str = "") -> float | None:
     """The clearance of a bearing in m, None of one without a film, where no shell is drawn."""
-    told = any(True for _ in films(run.signals))  # a measured run may not say where it has films
-    room = in_film(run, bearing) if told else "length_m" not in run.references
+    has_films = any(True for _ in films(run.signals))  # a measured run may not say where it has films
+    room = in_film(run, bearing) if has_films else "length_m" not in run.references
     return clearance(run, bearing) if room else None
 
 
 def case_tables(run: Run) -> dict[str, Any]:
-    """The tables of the case that a run was made of. Raises RunFileError if its text cannot be that of a case."""
+    """The tables of the case that a run was made of. Raises RunFileError if its text is not a case."""
     try:
         return parse(run.case_text)
     except TomlFault as error:
@@ -102,8 +100,6 @@ def model(run: Run) -> str:
     cavitation = next(iter(cavitation), "") if isinstance(cavitation, dict) else cavitation
     if not isinstance(cavitation, str) or not _MODEL.fullmatch(cavitation):
         cavitation = ""
-    if isinstance(theory, str) and theory not in THEORIES and _MODEL.fullmatch(theory):
-        return bearing_label(theory)
     words = [label_of(cavitation)]
     given = film.get("cavitation")
     own = (given if isinstance(given, dict) else film).get(cavitation)  # the law's numbers are a table of its name
@@ -138,15 +134,15 @@ def events(run: Run) -> list[dict[str, Any]]:
 
 
 def uncertain_times(run: Run) -> list[tuple[float, float]]:
-    """Time in s of each event with an uncertainty, and how much earlier or later it may be, from its uncertainty in the
-    rotor speed; none of those at a constant speed."""
-    found = []
+    """Time in s of each event with an uncertainty in the rotor speed, and how much earlier or later it may be; events
+    at a constant speed are left out."""
+    uncertain = []
     for event in run.events[:MOST_MARKED]:
         uncertainty, t = event.get("speed_uncertainty_Hz"), event["t_s"]
         before, after = (speed_at(run, time) for time in (t - RAMP_s, t + RAMP_s))
         if uncertainty and after != before:
-            found.append((t, min(uncertainty * 2.0 * RAMP_s / abs(after - before), ends(run)[1])))
-    return found
+            uncertain.append((t, min(uncertainty * 2.0 * RAMP_s / abs(after - before), ends(run)[1])))
+    return uncertain
 
 
 def is_searchable(run: Run) -> bool:

@@ -48,7 +48,7 @@ POINTS = 72.0  # of an inch
 BAND = 0.25  # opacity of a band of uncertainty
 MOST_MARKED = 50  # events in a picture, the first ones
 MOST_NAMED = 40  # curves in a legend
-BESIDE_ROW_pt, MOST_OF_PANEL = 12.0, 1.6  # of a legend beside a panel: a row, and its height over the panel's
+LEGEND_ROW_pt, MOST_OF_PANEL = 12.0, 1.6  # of a legend next to a panel: a row, and its height over the panel's
 
 STYLE: Any = {
     "font.size": 9.0,
@@ -113,7 +113,7 @@ DIRECTION = re.compile(r"\b(force|stiffness|damping|spring|misalignment)\.([01])
 
 def name_of_key(key: str, unit: str = "") -> str:
     """A key of the case file in words, for an axis, with its unit: oil viscosity in mPa s, force 0 force x in N."""
-    key = DIRECTION.sub(lambda found: f"{found[1]}.{'xy'[int(found[2])]}", key)
+    key = DIRECTION.sub(lambda match: f"{match[1]}.{'xy'[int(match[2])]}", key)
     words = " ".join(word for word in re.split(r"[._]", key) if word)
     return plain(f"{words} in {in_words(unit)}" if unit else words)
 
@@ -124,7 +124,7 @@ def in_words(quantity: str) -> str:
 
 
 def plain_numbers(axis: Axis) -> None:
-    """Numbers on a logarithmic axis as they are, 1, 2, 5, 10, 20, in place of powers of ten with factors."""
+    """Numbers on a logarithmic axis as they are, 1, 2, 5, 10, 20, instead of powers of ten with factors."""
     axis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.set_minor_formatter(NullFormatter())
@@ -167,9 +167,9 @@ def panel_width_pt(figure: Figure) -> float:
     """The width that panels above each other will have: what their ticks, labels and legends leave of the figure's, but
     for ticks that a layout changes. A layout, to find it, would take a tenth of the time of a picture."""
     panels = [axes for axes in figure.axes if axes.get_subplotspec() is not None]
-    beside = [(axes.get_window_extent(), axes.get_tightbbox(for_layout_only=True)) for axes in panels]
-    left = max(inner.x0 - outer.x0 for inner, outer in beside if outer is not None)
-    right = max(outer.x1 - inner.x1 for inner, outer in beside if outer is not None)
+    extents = [(axes.get_window_extent(), axes.get_tightbbox(for_layout_only=True)) for axes in panels]
+    left = max(inner.x0 - outer.x0 for inner, outer in extents if outer is not None)
+    right = max(outer.x1 - inner.x1 for inner, outer in extents if outer is not None)
     layout = figure.get_layout_engine()
     pad = layout.get()["w_pad"] if isinstance(layout, ConstrainedLayoutEngine) else 0.0
     return float(POINTS * (figure.get_figwidth() - (left + right) / figure.dpi - 2.0 * pad))
@@ -218,17 +218,17 @@ def legend_above(axes: Axes) -> None:
 
 
 def legend_beside(axes: Axes) -> None:
-    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than fit beside it:
-    a taller legend would leave the other panels no height."""
+    """A legend to the right of a panel, where it hides no curve; none for one curve, or for more than fit there: a
+    taller legend would leave the other panels no height."""
     figure = axes.get_figure(root=True)
     height_pt = axes.get_window_extent().height * POINTS / (figure.dpi if figure else POINTS)
-    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_OF_PANEL * height_pt / BESIDE_ROW_pt:
+    if 1 < len(axes.get_legend_handles_labels()[0]) <= MOST_OF_PANEL * height_pt / LEGEND_ROW_pt:
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), fontsize="small")
 
 
 def check_picture(path: Path, force: bool = False) -> None:
-    """Raises InputError if a picture cannot have this name or this place; called before the work. force: also in place
-    of a file that frb did not write."""
+    """Raises InputError if a picture cannot have this name or this place; called before the work. force: also replace
+    a file that frb did not write."""
     if path.suffix.lower() not in FORMATS:
         raise refused(path, "is not a picture format of frb.", f"End it with {', '.join(FORMATS)}.")
     require_places([(path, PICTURES[path.suffix.lower()])], force=force)

@@ -32,7 +32,7 @@ from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, narrowed, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
-from frbcli.results.columns import event_name, told_amplitude, told_frequency
+from frbcli.results.columns import amplitude_text, event_name, frequency_text
 from frbcli.results.files.kinds import MARK, PAGE
 from frbcli.results.files.write import require_places, write
 from frbcli.results.records import SPEED
@@ -47,7 +47,7 @@ MOST_EVENTS = 60  # of the table and the picture
 CHOSEN = 4  # moments of orbits and spectra, where none are asked for
 SPEEDS_NOTE = "Orbits of the last revolutions before a moment, and the spectrum about it."
 NARROW_COLUMNS = 2  # of the legends of narrow pictures
-NARROW = 4.9  # inches: the width of one of two pictures beside each other
+NARROW = 4.9  # inches: the width of one of two pictures side by side
 COURSES = {
     "pin": "Angle of the rings with a pin, and its torque on them.",
     "oil-content": "Oil fraction of the films.",
@@ -86,7 +86,7 @@ def write_report(
     both_units : bool
         Rotor speeds in Hz and in rpm; without it in rpm where the case gives them so, else in Hz.
     force : bool
-        Also in place of a file that frb did not write.
+        Also replace a file that frb did not write.
 
     Returns
     -------
@@ -113,20 +113,20 @@ def write_report(
 def report(
     run: Run, speeds_Hz: Sequence[float] = (), signal: str = "journal", author: str = "", both_units: bool = False
 ) -> str:
-    """The page as HTML. speeds_Hz: of the orbits and spectra, by default those of the events and the last one; signal:
-    of waterfall, orbits and spectra, as in `frb waterfall`; author and both_units: see write_report.
+    """The page as HTML. speeds_Hz: of orbits and spectra, by default at the events and the last one; signal: of
+    waterfall, orbits and spectra, as in `frb waterfall`; author and both_units: see write_report.
 
     Raises RunFileError for a run without samples, InputError for a speed that the run does not reach.
     """
     end = ends(run)[1]
-    found = with_whirl_names(events(run)[:MOST_EVENTS])
+    shown = with_whirl_names(events(run)[:MOST_EVENTS])
     unit = replace(given_speed_unit(run.case_text), both=both_units)
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
     if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area
         room = clearance(run, bearing_of(run, signal))
-        waterfall = page_waterfall(levels(run, signal, spectra), room, found, unit)
-    times = _moments(run, speeds_Hz, found, end)
+        waterfall = page_waterfall(levels(run, signal, spectra), room, shown, unit)
+    times = _moments(run, speeds_Hz, shown, end)
     title, words = heading([run])
     environment = Environment(
         loader=PackageLoader("frbcli.report", "."), autoescape=True, undefined=StrictUndefined, trim_blocks=True
@@ -139,9 +139,9 @@ def report(
         made=printable(", ".join(word for word in (_today(), f"frb {__version__}", author) if word)),
         style=style,
         script=script,
-        cards=_cards(run, found, unit),
-        events=[_event(number, event, unit) for number, event in enumerate(found, start=1)],
-        certainty=about_certainty(found, run.cost, unit),
+        cards=_cards(run, shown, unit),
+        events=[_event(number, event, unit) for number, event in enumerate(shown, start=1)],
+        certainty=about_certainty(shown, run.cost, unit),
         speed_unit=unit.head,
         waterfall=None if waterfall is None else Waterfall(Markup(waterfall.svg), Markup(waterfall.data)),
         waterfall_note="" if spectra is None else _note(run, signal, reading(spectra)),
@@ -163,26 +163,26 @@ def _machine(run: Run) -> dict[str, Any]:
     }  # fmt: skip
     try:
         case = load_case_text(run.case_text, name=run.case_name)
-        told, plan, (sketch, note) = findings(case), make_plan(case), rotor_sketch(case)
+        static, plan, (sketch, note) = findings(case), make_plan(case), rotor_sketch(case)
     except FrbError as error:
         return nothing | {"problem": f"The case of this run is not read by this version: {printable(str(error))}"}
     return nothing | {
         "sketch": Markup(sketch),
         "sketch_note": note,
         "films": [(name.replace("_", " "), Markup(drawing)) for name, drawing in film_sketches(case)],
-        "mass": _mass(told),
-        "loads": [_load(each) for each in told.films],
+        "mass": _mass(static),
+        "loads": [_load(each) for each in static.films],
         "values": [_value(each) for each in values(case)],
         "plan": [(each.choice, each.value, each.reason) for each in plan.decisions],
     }
 
 
-def _mass(found: Findings) -> str:
-    if found.mass is None:
+def _mass(static: Findings) -> str:
+    if static.mass is None:
         return ""
-    natural = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
-    told = f"; natural frequencies {found.supported}: {natural} Hz" if natural else ""
-    return f"Rotor of {found.mass:.4g} kg{told}."
+    natural = ", ".join(f"{frequency:.1f}" for frequency in static.frequencies_Hz)
+    suffix = f"; natural frequencies {static.supported}: {natural} Hz" if natural else ""
+    return f"Rotor of {static.mass:.4g} kg{suffix}."
 
 
 def _load(film: Any) -> tuple[str, ...]:
@@ -199,12 +199,12 @@ def _today() -> str:
     return datetime.datetime.now(tz=datetime.UTC).astimezone().date().isoformat()
 
 
-def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedUnit) -> list[tuple[str, str]]:
+def _cards(run: Run, shown: Sequence[dict[str, Any]], unit: SpeedUnit) -> list[tuple[str, str]]:
     """The figures that are asked for first."""
     fastest = max(float(np.max(np.abs(run[SPEED]))), 0.0)
     cards = [(unit.words(fastest, 1), "highest speed")]
     for kind, words in (("critical-speed", "critical speed"), ("onset", "onset of whirl")):
-        first = next((event for event in found if event["kind"] == kind), None)
+        first = next((event for event in shown if event["kind"] == kind), None)
         if first is None:
             cards.append(("none", words))
             continue
@@ -224,18 +224,18 @@ def _cards(run: Run, found: Sequence[dict[str, Any]], unit: SpeedUnit) -> list[t
 
 
 def _event(number: int, event: dict[str, Any], unit: SpeedUnit) -> tuple[str, ...]:
-    def told(key: str, form: str) -> str:
+    def cell(key: str, form: str) -> str:
         return "-" if event[key] is None else format(event[key], form)
 
     speed = unit.cell(event["speed_Hz"], event.get("speed_uncertainty_Hz"))
-    return (str(number), event_name(event), told("t_s", ".3f"), speed, told_frequency(event),
-            told("frequency_ratio", ".3f"), told_amplitude(event))  # fmt: skip
+    return (str(number), event_name(event), cell("t_s", ".3f"), speed, frequency_text(event),
+            cell("frequency_ratio", ".3f"), amplitude_text(event))  # fmt: skip
 
 
 def _note(run: Run, signal: str, words: str) -> str:
     label = level_label(run, signal).replace("C$_i$ + C$_o$", "Cᵢ + Cₒ")
     point = signal.replace("_", " ")
-    return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers are those of the events."
+    return f"{label[:1].upper()}{label[1:]}, x of the {point}; {words}. Numbers refer to the events."
 
 
 def _courses(run: Run) -> list[ShownRun]:
@@ -244,11 +244,11 @@ def _courses(run: Run) -> list[ShownRun]:
     if any(True for _ in films(run.signals)):
         figures = [(eccentricity_figure([run]), "Eccentricity.")]
     if any(name.startswith("ring_speed") for name in run.signals):
-        figures.append((ring_speed_figure([run]), "Speed of the rings over that of the rotor."))
-    films_told = {kind: f"{name[:1].upper()}{name[1:].replace('_', ' ')}." for kind, (name, *_) in FILM_SIGNALS.items()}
+        figures.append((ring_speed_figure([run]), "Speed of the rings over the rotor speed."))
+    captions = {kind: f"{name[:1].upper()}{name[1:].replace('_', ' ')}." for kind, (name, *_) in FILM_SIGNALS.items()}
     if any(name.startswith("temperature") for name in run.signals):
-        del films_told[POWER]  # it stands with the heat
-    for what, words in (COURSES | films_told).items():
+        del captions[POWER]  # it is drawn with the heat
+    for what, words in (COURSES | captions).items():
         if SUBJECTS[what].panels[0].signals(run):
             figures.append((quantity_figure([run], what), words))
     for figure, _ in figures:
@@ -262,7 +262,7 @@ def _shown(figure: Picture, caption: str) -> ShownRun:
     return ShownRun(f"data:image/svg+xml;base64,{data}", caption)
 
 
-def _moments(run: Run, speeds_Hz: Sequence[float], found: Sequence[dict[str, Any]], end: float) -> list[float]:
+def _moments(run: Run, speeds_Hz: Sequence[float], marked: Sequence[dict[str, Any]], end: float) -> list[float]:
     """Times in s of orbits and spectra."""
     if speeds_Hz:
         times = times_of_speeds(run, speeds_Hz)
@@ -271,7 +271,7 @@ def _moments(run: Run, speeds_Hz: Sequence[float], found: Sequence[dict[str, Any
             raise _refuse("a speed is asked for that the run does not reach.", f"It turns with up to {fastest:.4g} Hz.")
         return times
     kinds = dict[str, float]()
-    for event in found:
+    for event in marked:
         kinds.setdefault(event["kind"], event["t_s"])
     return sorted({*list(kinds.values())[: CHOSEN - 1], end})
 

@@ -61,20 +61,20 @@ class _SketchScale:
 def rotor_sketch(case: Case) -> tuple[str, str]:
     """(drawing along the axis, a sentence about what is not to scale, and one about arrows)."""
     if case.shaft:
-        told = "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
-        return _of_sections(case), told + _arrows_told(case)
+        scales = "Shaft and bearings to scale; disks as solid cylinders of their mass and inertias."
+        return _of_sections(case), scales + _arrow_note(case)
     if not case.rotor.symmetric:
         return "", "The shaft of this rotor is in a file of its own and is not drawn."
-    told = "Bearings to scale; shaft and disk have no dimensions in this model."
+    scales = "Bearings to scale; shaft and disk have no dimensions in this model."
     if not case.bearings:
-        told = "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
-    return _symmetric(case), told + _arrows_told(case)
+        scales = "Nothing is to scale: shaft, disk and bearings have no dimensions in this model."
+    return _symmetric(case), scales + _arrow_note(case)
 
 
-def _arrows_told(case: Case) -> str:
+def _arrow_note(case: Case) -> str:
     """A sentence about the arrows of elements, "" without any."""
-    told = ", ".join(dict.fromkeys(" ".join(each.arrow) for each in elements_of(case) if each.arrow))
-    return f" Arrows show places, not directions: {told}, numbered as in the case." if told else ""
+    arrows = ", ".join(dict.fromkeys(" ".join(each.arrow) for each in elements_of(case) if each.arrow))
+    return f" Arrows show places, not directions: {arrows}, numbered as in the case." if arrows else ""
 
 
 def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
@@ -88,8 +88,8 @@ def film_sketches(case: Case) -> tuple[tuple[str, str], ...]:
 
 @dataclass(frozen=True)
 class _Bearing:
-    """A bearing: its films from the journal outwards, with that of its damper, none of given coefficients; symbols of
-    what stands between it and the ground."""
+    """A bearing: its films from the journal outwards, including its damper's film, none for given coefficients; symbols
+    of what connects it to the ground."""
 
     name: str
     position: float
@@ -146,8 +146,8 @@ def _shell(film: FilmGeometry, at: float, scale: _SketchScale) -> Iterator[str]:
 def _supply(film: FilmGeometry, at: float, outer: float, scale: _SketchScale) -> Iterator[str]:
     """Where oil enters: through the body outside of the film, or out of a recess in it."""
     start, inner = at - 0.5 * film.width, 0.5 * film.diameter
-    found = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
-    for axial, half, through in found:
+    outlines = {(each.axial, each.half_width, each.through): None for each in film.supply.outlines(inner, film.width)}
+    for axial, half, through in outlines:
         low, high = max(start + axial - half, start), min(start + axial + half, start + film.width)
         yield scale.box(low, high, inner, outer if through else inner + RECESS * (outer - inner), "oil")
 
@@ -279,7 +279,7 @@ def _forces(
 
 
 def _place(case: Case, number: int) -> float:
-    """The place of an element of a symmetric rotor, from the middle of a journal outwards over half its width: beside
+    """The place of an element of a symmetric rotor, from the middle of a journal outwards over half its width: next to
     the film, or spread over the journal."""
     if case.bearings:
         return 1.25 + 0.5 * number
@@ -366,7 +366,7 @@ def _around(film: FilmGeometry, name: str, turns: bool) -> str:
     parts = [curve(outer, "shell", closed=True), curve(inner, "film", closed=True)]
     for opening in film.supply.outlines(0.5 * film.diameter, film.width):
         start, end = opening.position - opening.half_angle, opening.position + opening.half_angle
-        if opening.half_angle >= math.pi:  # all around: nothing is left to draw it beside
+        if opening.half_angle >= math.pi:  # all around: no bore wall is left to draw
             continue
         arc = [start + (end - start) * i / 40.0 for i in range(41)]
         rim = [place(phi, radius * (1.0 + SHOWN * _gap(film, phi))) for phi in arc]

@@ -14,9 +14,9 @@ SHELL, FLAT = 22.0, 5.0  # width and height of a shell without dimensions
 
 
 def element(tag: str, content: str = "", **attributes: object) -> str:
-    """One element; underscores in the names of attributes stand for hyphens, `kind` for class; numbers are rounded."""
-    told = "".join(f' {_name(name)}="{escape(_text(value))}"' for name, value in attributes.items())
-    return f"<{tag}{told}>{content}</{tag}>" if content else f"<{tag}{told}/>"
+    """One element; underscores in attribute names become hyphens, `kind` becomes class; numbers are rounded."""
+    written = "".join(f' {_name(name)}="{escape(_text(value))}"' for name, value in attributes.items())
+    return f"<{tag}{written}>{content}</{tag}>" if content else f"<{tag}{written}/>"
 
 
 def text(x: float, y: float, words: str, kind: str = "label", anchor: str = "middle") -> str:
@@ -64,7 +64,7 @@ def stack(
     symbols: Sequence[str], x: float, middle: float, radius: float, housing: float | None = None
 ) -> Iterator[str]:
     """Symbols at x, above and below the axis at `middle`, from a radius outwards to the ground, with the bodies between
-    them; housing: distance from the axis of what they are fixed to in place of the ground."""
+    them; housing: distance from the axis of the body that they are fixed to, if not to the ground."""
     for sign in (-1.0, 1.0):
         for number, symbol in enumerate(symbols, start=1):
             start = middle + sign * (radius + (number - 1) * (HIGH + FLAT))

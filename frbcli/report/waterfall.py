@@ -33,33 +33,33 @@ class Waterfall:
 
 
 def page_waterfall(
-    found: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedUnit = HERTZ
+    spectra: Levels, clearance: float, events: Sequence[dict[str, Any]], unit: SpeedUnit = HERTZ
 ) -> Waterfall:
     """The waterfall of the levels of a run over the clearance in m; events: of the run, numbered from 1 on; unit: of
     the rotor speeds above it."""
-    return Waterfall(_picture(found, events, unit), _numbers(found, clearance))
+    return Waterfall(_picture(spectra, events, unit), _numbers(spectra, clearance))
 
 
-def _numbers(found: Levels, clearance: float) -> str:
+def _numbers(spectra: Levels, clearance: float) -> str:
     """Times and speeds per column, frequencies per row and levels as bytes, row by row."""
     return json.dumps(
         {
             "box": [LEFT, TOP, WIDTH - LEFT - RIGHT, HEIGHT - TOP - BOTTOM],
-            "times": [round(float(value), 5) for value in found.time_s],
-            "speeds": [round(float(value), 4) for value in found.speed_Hz],
-            "frequencies": [round(float(value), 4) for value in found.frequency_Hz],
+            "times": [round(float(value), 5) for value in spectra.time_s],
+            "speeds": [round(float(value), 4) for value in spectra.speed_Hz],
+            "frequencies": [round(float(value), 4) for value in spectra.frequency_Hz],
             "lowest": LOWEST_dB,
             "step": STEP_dB,
             "clearance": clearance,
-            "levels": base64.b64encode(found.level.tobytes()).decode(),
+            "levels": base64.b64encode(spectra.level.tobytes()).decode(),
         }
     )
 
 
-def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedUnit) -> str:
+def _picture(spectra: Levels, events: Sequence[dict[str, Any]], unit: SpeedUnit) -> str:
     right, bottom = WIDTH - RIGHT, HEIGHT - BOTTOM
-    begin, end = _edges(found.time_s)
-    top_Hz = _edges(found.frequency_Hz)[1]
+    begin, end = _edges(spectra.time_s)
+    top_Hz = _edges(spectra.frequency_Hz)[1]
 
     def across(t: float) -> float:
         return LEFT + (right - LEFT) * (t - begin) / (end - begin)
@@ -67,25 +67,25 @@ def _picture(found: Levels, events: Sequence[dict[str, Any]], unit: SpeedUnit) -
     def up(f: float) -> float:
         return bottom - (bottom - TOP) * f / top_Hz
 
-    picture = base64.b64encode(found.image).decode()
+    picture = base64.b64encode(spectra.image).decode()
     parts = [
         element(
             "image", x=LEFT, y=TOP, width=right - LEFT, height=bottom - TOP, preserveAspectRatio="none",
             href=f"data:image/png;base64,{picture}",
         )
     ]  # fmt: skip
-    for name, frequency in found.lines:
-        shown = [(across(t), up(f)) for t, f in zip(found.time_s.tolist(), np.abs(frequency).tolist(), strict=True)]
+    for name, frequency in spectra.lines:
+        shown = [(across(t), up(f)) for t, f in zip(spectra.time_s.tolist(), np.abs(frequency).tolist(), strict=True)]
         inside = [point for point in shown if point[1] >= TOP][:: max(1, len(shown) // 200)]
         if len(inside) > 1:
             parts.append(curve(inside, "order"))
             x, y = inside[int(0.86 * len(inside))]
-            told = re.sub("_(.)", r'<tspan font-size="9" dy="3">\1</tspan><tspan dy="-3">&#8203;</tspan>', name)
-            parts.append(element("text", told, x=x - 4.0, y=y - 5.0, kind="ordername", text_anchor="end"))
+            label = re.sub("_(.)", r'<tspan font-size="9" dy="3">\1</tspan><tspan dy="-3">&#8203;</tspan>', name)
+            parts.append(element("text", label, x=x - 4.0, y=y - 5.0, kind="ordername", text_anchor="end"))
     for t in ticks(begin, end):
         parts.append(line(across(t), bottom, across(t), bottom + 4.0, "tick"))
         parts.append(text(across(t), bottom + 16.0, f"{t:g}"))
-        speed = float(np.interp(t, found.time_s, found.speed_Hz))
+        speed = float(np.interp(t, spectra.time_s, spectra.speed_Hz))
         parts.append(text(across(t), TOP - 8.0, unit.number(speed), "small"))
     for f in ticks(0.0, top_Hz):
         parts.append(line(LEFT - 4.0, up(f), LEFT, up(f), "tick"))
@@ -122,7 +122,7 @@ def _bar(bottom: float) -> list[str]:
 
 
 def _flags(events: Sequence[dict[str, Any]], across: Any, bottom: float, span: tuple[float, float]) -> list[str]:
-    """Numbered lines of the events; numbers that would meet stand in a higher row, and where all rows are taken the
+    """Numbered lines of the events; numbers that would meet move to a higher row, and where all rows are full the
     line has none."""
     lines, flags, free = list[str](), list[str](), [-1e9] * FLAG_ROWS
     for number, event in enumerate(events, start=1):

@@ -45,12 +45,12 @@ def uncertain_pair(event: Mapping[str, Any]) -> tuple[float, float | None]:
     return event["speed_Hz"], event.get("speed_uncertainty_Hz")
 
 
-def told_frequency(event: Mapping[str, Any]) -> str:
+def frequency_text(event: Mapping[str, Any]) -> str:
     """The frequency of an event with its uncertainty in brackets, Hz."""
     return with_uncertainty(event.get("frequency_Hz"), event.get("frequency_uncertainty_Hz"), 1)
 
 
-def told_amplitude(event: Mapping[str, Any]) -> str:
+def amplitude_text(event: Mapping[str, Any]) -> str:
     """The amplitude of an event over the clearance with its uncertainty in brackets."""
     return with_uncertainty(event.get("amplitude"), event.get("amplitude_uncertainty"), 3)
 
@@ -68,12 +68,12 @@ EVENTS = (
     Column("speed", "Hz", "rotor speed"),
     Column("speed", "", "", uncertain_pair, shown=(uncertain_speed(),), key="", flat=False),
     Column("frequency", "Hz", "of the motion"),
-    Column("frequency", "", "", told_frequency, shown=(Shown("frequency, Hz"),), key="", flat=False),
+    Column("frequency", "", "", frequency_text, shown=(Shown("frequency, Hz"),), key="", flat=False),
     Column("frequency_ratio", "", "frequency over the rotor speed", shown=(Shown("ratio", ".3f"),)),
     Column("point", "", "point whose motion shows it"),
     Column("amplitude", "", "amplitude over the clearance",
            more="largest one of an onset or a self-excited vibration, synchronous one of a critical speed"),
-    Column("amplitude", "", "", told_amplitude, shown=(Shown("ampl."),), key="", flat=False),
+    Column("amplitude", "", "", amplitude_text, shown=(Shown("ampl."),), key="", flat=False),
     Column("speed_uncertainty", "Hz", "uncertainty, with a second run"),
     Column("frequency_uncertainty", "Hz", "uncertainty, with a second run"),
     Column("amplitude_uncertainty", "", "uncertainty, with a second run"),
@@ -97,7 +97,7 @@ FRICTION_SIGNAL = Column("friction_torque", "N m", "braking torque of all films 
 MACHINE_SIGNALS = (
     Column("time", "s", "time"), Column("speed", "Hz", "rotor speed"), *AXIAL_SIGNALS, *DRIVE_SIGNALS, FRICTION_SIGNAL
 )  # fmt: skip
-# Those of one of several films, bearings or disks have its name behind the quantity: eccentricity_inner, disk_left_x_m
+# For one of several films, bearings or disks the name follows the quantity: eccentricity_inner, disk_left_x_m
 PART_SIGNALS = (
     Column("eccentricity", "", "of a journal"),
     Column("end_eccentricity", "", "larger one of both ends of a tilting film"),

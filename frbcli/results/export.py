@@ -29,8 +29,8 @@ COLUMNS = {f"{letter}{axes}": f"{name}_{axes}_{unit}"
 
 
 def export_run(run: Run, path: str | Path, table_format: str, force: bool = False) -> Path:
-    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also in place of a
-    file that frb did not write.
+    """Write the signals of a run, one column each, to `path` as "csv", "parquet" or "mat"; force: also replace a file
+    that frb did not write.
 
     Raises InputError for an unknown format, a file that cannot be written, a run in its place, or if Parquet is asked
     for without its library.
@@ -119,8 +119,8 @@ def _refuse(key: str, problem: str, remedy: str) -> InputError:
 
 
 def ross_files(path: Path, films: Sequence[str]) -> dict[str, Path]:
-    """The file of each film: `path` for one alone; for several its name with that of the film, since ROSS loads one
-    bearing from a file and passes over any other."""
+    """The file of each film: `path` for one alone; for several its name with the film's name added, since ROSS loads
+    one bearing from a file and passes over any other."""
     if len(films) == 1:
         return {films[0]: path}
     return {film: path.with_name(f"{path.stem}-{film}{path.suffix}") for film in films}
@@ -132,11 +132,11 @@ def write_ross(table: pd.DataFrame, path: Path, force: bool = False) -> None:
     table: the rows of the film in BearingSheet.to_pandas over speed; states that were not found are left out. Raises
     InputError if the file cannot be written.
     """
-    found = table[table["status"] == "resting"].sort_values("speed_Hz")
+    resting = table[table["status"] == "resting"].sort_values("speed_Hz")
     name = table["film"].iloc[0] or "bearing"
     lines = [f"# {MARK}", f'["BearingElement_{name}"]', "n = 0", f'tag = "{name}"']
-    lines += [f"{name} = {_numbers(found[column])}" for name, column in COLUMNS.items()]
-    lines.append(f"frequency = {_numbers(2.0 * math.pi * found['speed_Hz'])}")
+    lines += [f"{name} = {_numbers(resting[column])}" for name, column in COLUMNS.items()]
+    lines.append(f"frequency = {_numbers(2.0 * math.pi * resting['speed_Hz'])}")
     write(path, ROSS, "\n".join(lines) + "\n", force)
 
 

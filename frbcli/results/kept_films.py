@@ -25,7 +25,7 @@ REMEDY = 'Run the case again with --set \'output.films={from="0.1 s", to="0.2 s"
 class KeptFilm:
     """One film at n moments. times: (n,) s; angles: (n,) of its grid, rad; places: (n, 2) displacement of the journal
     over the clearance; edges: (m + 1,) boundaries of its cells in rad, in its grid; oil: (n, m, k) oil fractions; gas:
-    (n, m, k) volume of the free gas at the pressure of saturation over that of the oil, None of oil without gas."""
+    (n, m, k) volume of the free gas at saturation pressure over the oil's volume, None of oil without gas."""
 
     name: str
     times: Array
@@ -62,8 +62,8 @@ def kept_film(run: Run, films: Sequence[str], name: str | None = None) -> KeptFi
     if MOMENTS not in arrays:
         raise refuse(run.path, "has not kept the oil of its films.", REMEDY)
     if name is not None and name not in films:
-        told = ", ".join(films) if any(films) else "Its only film has no name: leave --film out."
-        raise refuse(run.path, f'has no film "{name}".', did_you_mean(name, [film for film in films if film], told))
+        choices = ", ".join(films) if any(films) else "Its only film has no name: leave --film out."
+        raise refuse(run.path, f'has no film "{name}".', did_you_mean(name, [film for film in films if film], choices))
     film, count = 0 if name is None else films.index(name), len(films)
     moments, oil, gas, edges = (np.asarray(arrays.get(part, np.zeros(0))) for part in (MOMENTS, OIL, GAS, EDGES))
     n = len(moments)

@@ -44,7 +44,7 @@ _NAME = "(_[A-Za-z0-9_-]{1,60})?"  # of a film, a bearing or a wheel, behind the
 
 
 def _forms(signals: Iterable[Column], part: str) -> dict[re.Pattern[str], str]:
-    """The forms of the names of signals with their units; part: that of the name of a part."""
+    """The forms of the names of signals with their units; part: the form of the name of a part."""
     names = {s: (s.quantity + part, "[xy]" * len(s.shape), s.unit_name) for s in signals}
     return {re.compile("_".join(filter(None, words))): signal.unit for signal, words in names.items()}
 
@@ -175,7 +175,7 @@ def _is_label(value: Any) -> bool:
 
 
 def _is_number(value: Any) -> bool:
-    """Whether a value can stand in a cost or an error. NaN and infinities are unknown; counts fit a processor."""
+    """Whether a cost or an error can have this value. NaN and infinities are unknown; counts fit a processor."""
     return isinstance(value, float) or (
         isinstance(value, int) and not isinstance(value, bool) and value.bit_length() < LONGEST_COUNT
     )

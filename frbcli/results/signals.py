@@ -102,8 +102,8 @@ class StoredArrays(Mapping[str, NDArray[Any]]):
 
 
 def _stamp(file: Any) -> tuple[int, ...]:
-    found = os.fstat(file.fileno())
-    return found.st_size, found.st_dev, found.st_ino, found.st_mtime_ns
+    status = os.fstat(file.fileno())
+    return status.st_size, status.st_dev, status.st_ino, status.st_mtime_ns
 
 
 PIECE = 262_144  # samples of a signal that are held at a time

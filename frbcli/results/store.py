@@ -1,6 +1,6 @@
 """Runs in HDF5, written as they go. Knows no physics.
 
-At each checkpoint the whole file is written anew beside the old one and takes its place in one step, so that a run
+At each checkpoint the whole file is written anew next to the old one and replaces it in one step, so that a run
 that is killed at any moment leaves a file that opens and holds everything up to its last checkpoint.
 """
 
@@ -120,11 +120,11 @@ class Run:
 
     def __repr__(self) -> str:
         """File, end and events: a few lines, however long it is."""
-        told = [f"{event['kind']} at {event['speed_Hz']:.4g} Hz" for event in self.events[:MOST_NAMED]]
+        named = [f"{event['kind']} at {event['speed_Hz']:.4g} Hz" for event in self.events[:MOST_NAMED]]
         more = [f"{len(self.events) - MOST_NAMED} more"] if len(self.events) > MOST_NAMED else []
         return (
             f"Run {self.path}: {self.title}\n{self.command}, {self.status} at {self.t_end_s:.4g} s; "
-            f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*told, *more]) or 'none'}"
+            f"{len(self.signals)} signals of {len(self)} samples\nevents: {', '.join([*named, *more]) or 'none'}"
             + "".join(f"\n{remark}" for remark in self.remarks)
         )
 
@@ -331,7 +331,7 @@ def _read(path: Path, file: h5py.File, place: RunPlace) -> Run:
     state, samples = _checkpoint(file, place)
     rest = parts.rest([*columns.values(), *({} if state is None else state).values()], place.size - USER_BLOCK)
     if not 0 <= rest <= LARGEST_REST:
-        raise parts.WrongPart("the sizes of its parts do not add up to that of the file")
+        raise parts.WrongPart("the sizes of its parts do not add up to the size of the file")
     if sum(array.bytes for array in ({} if state is None else state).values()) > LARGEST_STATE:
         raise parts.WrongPart("its checkpoint is too large")
     texts: dict[str, Any] = {name: parts.text(file, name) for name in TEXTS}

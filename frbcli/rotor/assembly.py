@@ -31,7 +31,7 @@ HELD = 1e-10  # over the length of a port: where it rests
 @dataclass(frozen=True)
 class Link:
     """Where an element acts: from the node `inside` to the node `outside`, or the ground. count: of equal elements that
-    one stands for, 2 in a symmetric rotor; sees: those of the COORDINATES of a node that it acts on."""
+    one represents, 2 in a symmetric rotor; sees: the COORDINATES of a node that it acts on."""
 
     inside: str
     outside: str = GROUND
@@ -118,14 +118,14 @@ def _internal_dampings(bodies: Sequence[Body], size: int) -> Iterator[LinearPart
 def _nodes(bodies: Sequence[Body], size: int) -> dict[str, Array]:
     """Names and maps of all nodes of a machine with n degrees of freedom, a row for each of the COORDINATES: nodes of
     bodies that do not tilt have none there."""
-    found: dict[str, Array] = {}
+    nodes: dict[str, Array] = {}
     first = 0
     for body in bodies:
         for name, place in body.nodes:
-            found[name] = np.zeros((len(COORDINATES), size))
-            found[name][: len(place), first : first + body.size] = place
+            nodes[name] = np.zeros((len(COORDINATES), size))
+            nodes[name][: len(place), first : first + body.size] = place
         first += body.size
-    return found
+    return nodes
 
 
 def _bordered(matrix: Array, other: Array) -> Array:
@@ -151,8 +151,8 @@ class HeldRotor:
 
     def places(self, unknowns: Array, films: int) -> Array:
         """(films, c) coordinates of the journals."""
-        found = unknowns if self.journals is None else self.journals @ unknowns
-        return np.asarray(found.reshape(films, -1))
+        coordinates = unknowns if self.journals is None else self.journals @ unknowns
+        return np.asarray(coordinates.reshape(films, -1))
 
 
 def whole_rotor(rotor: LinearRotor, omega: float = 0.0) -> HeldRotor:
@@ -202,8 +202,8 @@ def _held_at_ports(rotor: LinearRotor, omega: float) -> HeldRotor:
 
 
 def preset(rotor: LinearRotor, films: Sequence[int]) -> LinearRotor:
-    """The rotor with the springs beside these films set so that they carry its static load with the shells in their
-    centres, as far as the other films let the shells feel it. Raises NotConverged as held_rotor."""
+    """The rotor with the springs parallel to these films set so that they carry its static load with the shells in
+    their centres, as far as the other films let the shells feel it. Raises NotConverged as held_rotor."""
     if not films:
         return rotor
     places = rotor.journals[:, : len(PLANE)]

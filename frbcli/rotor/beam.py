@@ -125,8 +125,8 @@ def element_matrices(
     shearing = np.stack([-one / size, -0.5 * one, one / size, -0.5 * one]) * phi / (1 + phi) + 0 * s
 
     def integral(left: Array, right: Array, density: Array) -> Array:
-        found = np.einsum("iep,jep,ep->eij", left, right, 0.5 * weights * (density * length)[:, None])
-        return np.asarray(found, dtype=np.float64)
+        matrices = np.einsum("iep,jep,ep->eij", left, right, 0.5 * weights * (density * length)[:, None])
+        return np.asarray(matrices, dtype=np.float64)
 
     rotary = integral(psi, psi, line_inertia)
     mass = integral(v, v, line_mass) + rotary

@@ -23,10 +23,9 @@ class Body:
     records, with rows for the first c of the COORDINATES: the two of the PLANE, or all four of a node that tilts;
     inertia: (2, n) kg against accelerations of the ground in x and y, the mass matrix times a displacement of the whole
     body, None where that is not known. internal: (n / 2, n / 2) N s/m, damping of each plane that turns with the rotor,
-    of a body whose degrees of freedom are those of x and then those of y; None without any. bow: (n / 2,) complex N of
-    such a body, the forces that bend it to the shape that it has without any load, by the angle on the rotor of an
-    unbalance; None of a straight one.
-    """
+    of a body with the degrees of freedom of x first, then of y; None without any. bow: (n / 2,) complex N of such a
+    body, the forces that bend it to the shape that it has without any load, by the angle on the rotor of an unbalance;
+    None of a straight one. """
 
     mass: Array
     damping: Array

@@ -24,22 +24,18 @@ from frbcli.rotor.port import Port, Slope
 class LinearRotor:
     """A machine with n degrees of freedom: a rotor, its rings and whatever else moves. SI units.
 
-    mass, damping, gyroscopic, stiffness: (n, n); gyroscopic is multiplied by the rotor speed in rad/s.
-    static_load: (n,) N. unbalance_cos, unbalance_sin: (n,) kg m: the unbalance pulls (2.3) with
-    unbalance_cos (alpha'' cos alpha - alpha'^2 sin alpha) + unbalance_sin (alpha'' sin alpha + alpha'^2 cos alpha).
-    journals: (films, c, n): P, the first c of the COORDINATES of each film's journal relative to its shell: x and y,
-    and its tilts where films see them.
-    multiplicity: (films,) how many equal bearings one film stands for (2 in a symmetric rotor).
-    points: names and (2, n) maps of the points that a run records and whose error is controlled.
-    over_speed: what elements add to mass, damping and stiffness at a speed, None where nothing depends on it.
-    loads: what else acts on it, and changes with the angle of the rotor or with time.
-    cones: of bodies that turn by themselves and tilt, cartridges: each with the degree of freedom of its angle, and (2,
-    n) its slopes in x and y times the root of its polar inertia: its gyroscopic moments pull with -(C^T J C) q' times
-    its speed, J = [[0, 1], [-1, 0]].
-    ports: forces that are not linear; only `tangent` puts them into the matrices, and notes them as slopes.
-    turning: degrees of freedom of rings that turn while it moves in small: on their angles nothing depends, on their
-    speeds the films.
-    """
+    mass, damping, gyroscopic, stiffness: (n, n); gyroscopic is multiplied by the rotor speed in rad/s. static_load:
+    (n,) N. unbalance_cos, unbalance_sin: (n,) kg m: the unbalance pulls (2.3) with unbalance_cos (alpha'' cos alpha -
+    alpha'^2 sin alpha) + unbalance_sin (alpha'' sin alpha + alpha'^2 cos alpha). journals: (films, c, n): P, the first
+    c of the COORDINATES of each film's journal relative to its shell: x and y, and its tilts where films see them.
+    multiplicity: (films,) how many equal bearings one film represents (2 in a symmetric rotor). points: names and (2,
+    n) maps of the points that a run records and whose error is controlled. over_speed: what elements add to mass,
+    damping and stiffness at a speed, None where nothing depends on it. loads: what else acts on it, and changes with
+    the angle of the rotor or with time. cones: of bodies that turn by themselves and tilt, cartridges: each with the
+    degree of freedom of its angle, and (2, n) its slopes in x and y times the root of its polar inertia: its gyroscopic
+    moments pull with -(C^T J C) q' times its speed, J = [[0, 1], [-1, 0]]. ports: forces that are not linear; only
+    `tangent` puts them into the matrices, and notes them as slopes. turning: degrees of freedom of rings that turn
+    while it moves in small: on their angles nothing depends, on their speeds the films. """
 
     mass: Array
     damping: Array
@@ -89,11 +85,11 @@ class LinearRotor:
         )
 
     def precession(self, speeds: Array) -> Array:
-        """(n, n) what multiplies q' beside the damping by the cones, at speeds (n,) of the angles in rad/s."""
-        found = np.zeros_like(self.damping)
+        """(n, n) what multiplies q' in addition to the damping, by the cones, at speeds (n,) of the angles in rad/s."""
+        matrix = np.zeros_like(self.damping)
         for spin, cone in self.cones:
-            found += speeds[spin] * (np.outer(cone[0], cone[1]) - np.outer(cone[1], cone[0]))
-        return found
+            matrix += speeds[spin] * (np.outer(cone[0], cone[1]) - np.outer(cone[1], cone[0]))
+        return matrix
 
     def with_parts(self, parts: Sequence[LinearPart]) -> LinearRotor:
         """The rotor with linear parts on all of its degrees of freedom: constant ones join its matrices."""

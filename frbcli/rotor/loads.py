@@ -1,6 +1,6 @@
 """Loads of a rotor: weight, unbalance, over the order, over speed and time.
 
-Loads on a machine that change with the angle of its rotor or with time, beside those of the unbalance.
+Loads on a machine that change with the angle of its rotor or with time, in addition to the unbalance.
 
 A load is two columns of forces on all degrees of freedom, each times a factor that is a function of time and angle.
 
@@ -100,9 +100,9 @@ BOW = "bow"  # the name of its load
 
 
 def bow_load(bow: Complex) -> Harmonic:
-    """The load of the forces (n,) in N that bend a shaft to its bow in one plane: K (q - b) has the bow b, which turns
-    with the rotor, where its stiffness K has q. Degrees of freedom are those of x and then those of y; a bow of angle
-    0 points to where an unbalance of phase 0 does."""
+    """The load of the forces (n,) in N that bend a shaft to its bow in one plane: the bow b, which turns with the
+    rotor, replaces K q by K (q - b). Degrees of freedom of x come first, then of y; a bow of angle 0 points to where an
+    unbalance of phase 0 does."""
     turning = np.concatenate([1j * bow, bow])
     return Harmonic(BOW, np.array([turning.real, -turning.imag]), 1.0, 0.0)
 
@@ -156,9 +156,9 @@ def ranks(values: Array, size: float | None = None) -> NDArray[np.intp]:
         return np.zeros(0, dtype=np.intp)
     order = np.argsort(values, kind="stable")
     apart = np.diff(values[order]) > EQUAL * (float(np.max(np.abs(values))) if size is None else size)
-    found = np.empty(len(values), dtype=np.intp)
-    found[order] = np.concatenate([[0], np.cumsum(apart)])
-    return found
+    ranks_ = np.empty(len(values), dtype=np.intp)
+    ranks_[order] = np.concatenate([[0], np.cumsum(apart)])
+    return ranks_
 
 
 def fastest_first(eigenvalues: NDArray[np.complex128]) -> NDArray[np.intp]:
@@ -170,8 +170,8 @@ def fastest_first(eigenvalues: NDArray[np.complex128]) -> NDArray[np.intp]:
 
 
 def largest_first(multipliers: NDArray[np.complex128]) -> NDArray[np.intp]:
-    """(n,) order of multipliers by falling size; those of one size in ascending order of the angle, of a pair the one
-    with positive imaginary part first."""
+    """(n,) order of multipliers by falling size; of equal size in ascending order of the angle, of a pair the one with
+    positive imaginary part first."""
     by_angle = ranks(np.abs(np.angle(multipliers)), np.pi)
     return np.lexsort((-multipliers.imag, by_angle, ranks(-np.abs(multipliers))))
 
@@ -233,8 +233,8 @@ class LinearPart:
         return stiffness, damping, mass
 
     def seen_by(self, place: Array, count: float = 1.0) -> LinearPart:
-        """The part on all degrees of freedom of a machine. place: (c, n) the coordinates that it sees out of those of
-        the machine; count: of equal elements that it stands for."""
+        """The part on all degrees of freedom of a machine. place: (c, n) the coordinates that it sees out of the
+        machine's; count: of equal elements that it represents."""
         stiffness, damping, mass = (count * (place.T @ each @ place) for each in self._matrices)
         return LinearPart(self.speeds, stiffness, damping, mass)
 
@@ -253,9 +253,9 @@ def summed(parts: Sequence[LinearPart]) -> LinearPart | None:
     if not parts:
         return None
     speeds = np.unique(np.concatenate([part.speeds for part in parts]))
-    found = [[part.at(float(omega)) for omega in speeds] for part in parts]
+    evaluated = [[part.at(float(omega)) for omega in speeds] for part in parts]
     stiffness, damping, mass = (
-        np.sum([[matrices[i] for matrices in rows] for rows in found], axis=0) for i in range(3)
+        np.sum([[matrices[i] for matrices in rows] for rows in evaluated], axis=0) for i in range(3)
     )
     return LinearPart(speeds, stiffness, damping, mass)
 
@@ -294,7 +294,7 @@ class SpeedProfile:
         return self.rotation(t)[2]
 
     def with_stops(self, times: Iterable[float]) -> SpeedProfile:
-        """The same speeds with additional points at those of the times in s that lie within the profile."""
+        """The same speeds with additional points at the times in s that lie within the profile."""
         kinks = [t for t in times if self.times[0] < t < self.times[-1]]
         t = np.union1d(self.times, np.array(kinks))
         return speed_profile(t.tolist(), self.speed(t).tolist())

@@ -7,9 +7,10 @@ and for its derivatives alone: they know no kinds of forces.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, TypeVar
 
 import numpy as np
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from frbcli.rotor.linear import LinearRotor
 
 Rest = TypeVar("Rest")
+STEP, SLOW = 1e-4, 60.0  # of differences, over the length; rad/s of a vibration of a rotor that hardly turns
 ITERATIONS = 60  # of Newton's method; from half of them on its steps are halved
 D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
 F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
@@ -35,16 +37,19 @@ class PortForce(NamedTuple):
 
 
 class ForceLaw(ABC):
-    """How a force at a port follows the motion: a class for each kind. `force` is a plain function, compiled with the
-    plain functions of its module that it calls, which see floats, arrays and `math`."""
+    """How a force at a port follows the motion: a class for each kind, either with `force` or with `push`. Both are
+    plain functions, compiled with the plain functions of their module that they call, which see floats, arrays and
+    `math`."""
 
-    quantity: ClassVar[str] = ""  # with which the names of its signals begin, behind it that of the element
+    quantity: ClassVar[str] = ""  # with which the names of its signals begin, then the name of the element
     turns: ClassVar[bool] = False  # whether it depends on the angle of the rotor
+    units: ClassVar[Mapping[str, str]] = {}  # of its fields in a case, e.g. "N/m"; others are plain numbers
 
     @property
-    @abstractmethod
     def numbers(self) -> Array:
-        """(p,) its parameters, in SI, as `force` takes them."""
+        """(p,) its parameters, in SI, as `force` or `push` take them: by default the fields of the dataclass."""
+        assert is_dataclass(self)
+        return np.array([getattr(self, field.name) for field in fields(self)], dtype=np.float64)
 
     @property
     @abstractmethod
@@ -56,16 +61,61 @@ class ForceLaw(ABC):
         """(w,) what an evaluation may leave for the next one to begin with, at first. No result depends on it."""
         return np.zeros(0)
 
+    @property
+    def parameters(self) -> Array:
+        """(p or p + 1,) what the compiled function takes: its numbers, behind them for `push` its length."""
+        return self.numbers if self.has_derivatives() else np.append(self.numbers, self.length)
+
+    @classmethod
+    def has_derivatives(cls) -> bool:
+        """Whether the law is given by `force`."""
+        return cls.force is not ForceLaw.force
+
+    def plainly(self, motion: Array) -> Array:
+        """(ANSWER,) force and derivatives at a motion (MOTION,) in plain Python, NaN where it cannot be computed."""
+        answer = np.zeros(ANSWER)
+        try:
+            if self.has_derivatives():
+                self.force(self.numbers, self.memory.copy(), motion, answer)
+            else:
+                by_differences(self.push, self, self.length, motion.tolist(), answer)
+        except (ArithmeticError, ValueError):  # compiled, these are infinities and NaN
+            answer[:] = np.nan
+        return answer
+
     def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:  # noqa: ARG002
         """Further signals of a run, by their quantity: unit and values (k,), from what evaluations at k moments have
         left (k, w)."""
         return {}
 
     @staticmethod
-    @abstractmethod
     def force(numbers: Any, memory: Any, motion: Any, answer: Any) -> None:
         """Fill answer (ANSWER,) with force and derivatives at a motion (MOTION,), see D_X and F_X. numbers (p,), memory
         (w,): see the properties."""
+        raise NotImplementedError
+
+    @staticmethod
+    def push(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, law: Any) -> tuple[float, float]:  # noqa: ARG004
+        """The force alone, F_x and F_y in N on the first node, at a displacement in m, a velocity in m/s and the speed
+        of the rotor in rad/s. law: its fields. Its derivatives are central differences."""
+        return math.nan, math.nan
+
+
+def by_differences(push: Any, law: Any, length: float, motion: Any, answer: Any) -> None:
+    """Fill answer (ANSWER,) with the force `push` and its derivatives at a motion (MOTION,), see ForceLaw. A step is
+    STEP of the length, and of the velocity of a vibration of this size with the rotor."""
+    d_x, d_y, v_x, v_y, omega = motion[D_X], motion[D_Y], motion[V_X], motion[V_Y], motion[SPEED]
+    for i in range(ANSWER):
+        answer[i] = math.nan  # what is left where the function fails
+    f_x, f_y = push(d_x, d_y, v_x, v_y, omega, law)
+    for by in range(4):
+        step = STEP * length * (1.0 if by < 2 else max(abs(omega), SLOW))
+        a, b, c, d = step * (by == 0), step * (by == 1), step * (by == 2), step * (by == 3)
+        x_above, y_above = push(d_x + a, d_y + b, v_x + c, v_y + d, omega, law)
+        x_below, y_below = push(d_x - a, d_y - b, v_x - c, v_y - d, omega, law)
+        place = (XX if by < 2 else V_XX) + by % 2
+        answer[place], answer[place + 2] = (x_above - x_below) / (2.0 * step), (y_above - y_below) / (2.0 * step)
+    answer[F_X], answer[F_Y] = f_x, f_y
 
 
 class Slope(NamedTuple):
@@ -79,7 +129,7 @@ class Slope(NamedTuple):
 @dataclass(frozen=True)
 class Port:
     """A force of a machine. name: of its signal; place: (2, n) the displacement it sees; count: of equal elements that
-    it stands for."""
+    it represents."""
 
     name: str
     place: Array
@@ -95,8 +145,7 @@ class Port:
 
             answer = evaluate(self.law, motion)
         else:
-            answer = np.zeros(ANSWER)
-            self.law.force(self.law.numbers, self.law.memory.copy(), motion, answer)
+            answer = self.law.plainly(motion)
         return PortForce(answer[:XX], answer[XX:V_XX].reshape(2, 2), answer[V_XX:].reshape(2, 2))
 
     def along(self, q: Array, v: Array, omega: Array, angle: Array) -> tuple[Array, Array]:
@@ -109,29 +158,29 @@ class Port:
     def signals(self, q: Array, v: Array, omega: Array, angle: Array) -> dict[str, tuple[str, Array]]:
         """Units and values (k,) of its signals in a run, at displacements q and velocities v (k, n)."""
         forces, memories = self.along(q, v, omega, angle)
-        found = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
+        columns = {f"{self.name}_{axis}_N": ("N", forces[:, i]) for i, axis in enumerate("xy")}
         part = self.name.removeprefix(self.law.quantity)
         for quantity, (unit, values) in self.law.inside(memories).items():
-                found[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
-        return found
+                columns[f"{quantity}{part}{unit and f'_{unit}'}"] = unit, values
+        return columns
 
 
 def port_forces(rotor: LinearRotor, q: Array, v: Array, omega: float, angle: float = 0.0) -> Array:
     """(n,) N on all degrees of freedom by the ports of a machine, at displacements q and velocities v (n,)."""
-    found = np.zeros(rotor.size)
+    forces = np.zeros(rotor.size)
     for port in rotor.ports:
-        found += port.count * port.place.T @ port.at(q, v, omega, angle).force
-    return found
+        forces += port.count * port.place.T @ port.at(q, v, omega, angle).force
+    return forces
 
 
 def pushed(rotor: LinearRotor) -> Array:
     """(n,) displacements by which its static load pushes each port of a machine over its length."""
-    found = np.zeros(rotor.size)
+    pushes = np.zeros(rotor.size)
     for port in rotor.ports:
         along = port.place @ rotor.static_load
         if size := float(np.linalg.norm(along)):
-            found += port.law.length / size * np.linalg.pinv(port.place) @ along
-    return found
+            pushes += port.law.length / size * np.linalg.pinv(port.place) @ along
+    return pushes
 
 
 def settled(
@@ -152,16 +201,16 @@ def settled(
     for q in starts:
         for iteration in range(ITERATIONS):
             try:
-                there, found = rest(tangent(rotor, omega, q, compiled), q)
+                there, position = rest(tangent(rotor, omega, q, compiled), q)
             except NotConverged as error:
                 reason = reason or error
                 break
             moved = there - q
             if all(float(np.abs(port.place @ moved).max()) < step * port.law.length for port in rotor.ports):
-                return found
+                return position
             q = q + (moved if iteration < ITERATIONS // 2 else 0.5 * moved)  # to and fro over a corner
     name = rotor.ports[0].name.replace("_", " ")
-    raise reason or NotConverged(f"No resting position: the {name} does not settle. Start a run in the centre.")
+    raise reason or NotConverged(f"No static equilibrium: the {name} does not settle. Start a run in the centre.")
 
 
 def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -> LinearRotor:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import inspect
+from collections import namedtuple
 from functools import cache
 from pathlib import Path
 from types import FunctionType
@@ -13,16 +14,22 @@ import numpy as np
 from numba import types
 from numba.extending import intrinsic
 from numba.np.numpy_support import carray
+from numba.np.unsafe import ndarray
 
 from frbcli.arrays import Array
 from frbcli.compiled import address_of, c_function, call_of, compiled, jitted
-from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw
+from frbcli.rotor.own_laws import keys_of
+from frbcli.rotor.port import ANSWER, F_X, F_Y, MOTION, ForceLaw, by_differences
 
 _POINTER = types.CPointer(types.float64)  # type: ignore[no-untyped-call]
 _SIGNATURE = types.void(types.intp, types.intp, *[_POINTER] * 4)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _SHIPPED = "frbcli."
-force: Any = ForceLaw.force  # stands in the template below for that of one law
+_first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
+# In the templates below the function of one law, its fields and their number.
+force: Any = ForceLaw.force
+Fields: Any = None
+COUNT = 0
 
 
 @cache
@@ -30,16 +37,21 @@ def compiled_force(law: type[ForceLaw]) -> Any:
     """The C function of a law: of a shipped one kept on disk until its file changes."""
     shipped = law.__module__.startswith(_SHIPPED)
     file = inspect.getfile(law) if shipped else __file__
-    code = _force.__code__.replace(co_filename=file)
-    function = FunctionType(code, {**globals(), "force": jitted(law.force)})
+    template, body = (_force, law.force) if law.has_derivatives() else (_pushed, law.push)
+    code = template.__code__.replace(co_filename=file)
+    shared = {"force": jitted(body)}
+    if not law.has_derivatives():
+        names = tuple(keys_of(law))
+        shared |= {"by_differences": jitted(by_differences), "Fields": namedtuple("Fields", names), "COUNT": len(names)}
+    function = FunctionType(code, {**globals(), **shared})
     function.__module__ = law.__module__ if shipped else __name__
-    function.__qualname__ = f"{law.__qualname__}.{_force.__name__}"
+    function.__qualname__ = f"{law.__qualname__}.{template.__name__}"
     return c_function(function, _SIGNATURE, *((Path(file), Path(__file__)) if shipped else ()))
 
 
 def evaluate(law: ForceLaw, motion: Array) -> Array:
     """(ANSWER,) the force of a law at a motion (MOTION,), see port.py."""
-    answer, numbers, memory = np.zeros(ANSWER), law.numbers, law.memory.copy()
+    answer, numbers, memory = np.zeros(ANSWER), law.parameters, law.memory.copy()
     arrays = (each.ctypes.data_as(_DOUBLES) for each in (numbers, memory, np.ascontiguousarray(motion), answer))
     compiled_force(type(law)).ctypes(len(numbers), len(memory), *arrays)
     return answer
@@ -49,7 +61,7 @@ def evaluate_along(law: ForceLaw, motions: Array) -> tuple[Array, Array]:
     """(k, 2) N: the force of a law at motions (k, MOTION) that follow each other, and (k, w) what it has left."""
     address, memory = address_of(compiled_force(type(law))), law.memory.copy()
     forces, left = np.empty((len(motions), 2)), np.empty((len(motions), len(memory)))
-    _forces(address, law.numbers, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces, left)
+    _forces(address, law.parameters, memory, np.ascontiguousarray(motions), np.zeros(ANSWER), forces, left)
     return forces, left
 
 
@@ -75,5 +87,12 @@ def _forces(
 
 
 def _force(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
-    """A law, whose function stands for force."""
+    """A law, whose function replaces force."""
     force(carray(numbers, (parameters,)), carray(memory, (kept,)), carray(motion, (MOTION,)), carray(answer, (ANSWER,)))
+
+
+def _pushed(parameters, kept, numbers, memory, motion, answer):  # type: ignore[no-untyped-def]
+    """A law without derivatives, whose function stands for force: its fields, and behind them its length."""
+    given = carray(numbers, (COUNT + 1,))
+    law = Fields(*_first(given, COUNT))
+    by_differences(force, law, given[COUNT], carray(motion, (MOTION,)), carray(answer, (ANSWER,)))

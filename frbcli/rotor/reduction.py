@@ -104,7 +104,7 @@ class PointForces:
 
 def bending_forces(modes: FreeModes, positions: Sequence[float], offsets: Sequence[complex]) -> PointForces:
     """The forces that bend a free shaft to offsets (k,) in m at distinct positions (k,) in m: of all shapes through
-    these that of least energy, which is the shape of a shaft loaded there alone. modes: all of it."""
+    these the one of least energy, which is the shape of a shaft loaded there alone. modes: all of it."""
     at, count = np.stack([modes.at(place) for place in positions]), len(positions)
     bent = at[:, RIGID:] / modes.frequencies[RIGID:]
     flexibility, rigid = bent @ bent.T, at[:, :RIGID]
@@ -127,11 +127,11 @@ class Places:
     def of(self, modes: FreeModes) -> Array:
         """(p, n) displacements of modes at bearings and wheels, their slopes at collars, and the shares of the bow."""
         slopes = [modes.slope_at(collar) for collar in self.collars]
-        found = [*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes]
+        rows = [*(modes.at(place) for place in (*self.bearings, *self.wheels)), *slopes]
         if self.bow is not None:
             shares = self.bow.of(modes) / max(map(abs, self.bow.forces))
-            found += [shares.real, shares.imag]
-        return np.stack(found)
+            rows += [shares.real, shares.imag]
+        return np.stack(rows)
 
 
 @dataclass(frozen=True)
@@ -291,10 +291,10 @@ def reduction(modes: FreeModes, places: Places, top: float, target: float) -> Re
     """The smallest reduction with static modes whose changes are within a target, up to the speed `top` in rad/s."""
     exact = with_static_modes(modes, min(EXACT, len(modes.frequencies)), places)
     for count in COUNTS:
-        found = judged(with_static_modes(modes, min(count, len(modes.frequencies)), places), exact, places, top, count)
-        if max(found.frequency, found.amplitude) <= target:
+        model = judged(with_static_modes(modes, min(count, len(modes.frequencies)), places), exact, places, top, count)
+        if max(model.frequency, model.amplitude) <= target:
             break
-    return found
+    return model
 
 
 def judged(

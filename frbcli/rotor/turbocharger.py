@@ -62,10 +62,9 @@ def turbocharger_rotor(
 ) -> Body:
     """The rotor in the given modes, which are its degrees of freedom: n of the x-plane, then n of the y-plane.
 
-    journals: the places of all bearings, with a film or without one; collars: those of thrust bearings. modal_damping:
-    ratio to the critical damping of every elastic mode; external_damping: of each wheel against the ground, N s/m;
-    gravity in m/s^2. bow: the forces that bend a shaft to the shape that it has without load.
-    """
+    journals: the places of all bearings, with a film or without one; collars: of thrust bearings. modal_damping: ratio
+    to the critical damping of every elastic mode; external_damping: of each wheel against the ground, N s/m; gravity in
+    m/s^2. bow: the forces that bend a shaft to the shape that it has without load. """
     n = len(modes.frequencies)
     both, turned = np.eye(2), np.array([[0.0, 1.0], [-1.0, 0.0]])
     damping = modes.damping + np.diag(2 * modal_damping * modes.frequencies)

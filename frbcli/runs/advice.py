@@ -35,7 +35,7 @@ THIN = 0.99  # eccentricity above which the cause of a film without solution is 
 AT_ONCE = 1e-9  # s within which a run ends at a step of the clearance
 SHORTER = 10.0  # divisor of a macro step
 STIFFNESS = "1e9 N/m"  # suggested contact stiffness
-CLOSER = 1.5  # times the smallest gap that was reached, from which on the one that was expected is told
+CLOSER = 1.5  # expected smallest gap over the gap that was reached, from which on both are reported
 FINER, SMALLER = 4.0, 0.7  # divisor of the target; error of the cells, if that is worth it
 
 
@@ -107,30 +107,30 @@ def accuracy_advice(case: Case, run: Run) -> tuple[str, ...]:
     if gap_ratio(expected, reached) < CLOSER:
         return ()
     target = case.accuracy.target
-    told = (
+    sentence = (
         f"The eccentricity reached {reached:.2f} where the plan expected {expected:.2f}: the error of up to "
         f"{stated:.1e} may be above the target of {target:g}."
     )
     finer = target / FINER
     helps = choose_films(case, finer).error <= SMALLER * choose_films(case, target).error
-    return (f"{told} For less, accuracy.target = {finer:g}." if helps else told,)
+    return (f"{sentence} For less, accuracy.target = {finer:g}." if helps else sentence,)
 
 
 def forced_advice(case: Case) -> tuple[str, ...]:
     """A sentence on tables over time that shake a machine without distinct frequencies; may be none."""
     names = forcing(case)[1]
-    told = f"The motion that {' and '.join(names)} force is not told apart from whirl in the events"
-    return (f"{told}: the table changes with no distinct frequencies.",) if names else ()
+    sentence = f"The motion that {' and '.join(names)} force is not separated from whirl in the events"
+    return (f"{sentence}: the table changes with no distinct frequencies.",) if names else ()
 
 
 def _starved(case: Case) -> tuple[str, ...]:
     """A mass-conserving film without a pressurised supply has lost its load."""
-    told = []
+    sentences = []
     for film in unfed_films(case):
         if film.keeps:
             name = f"The film {film.name}" if film.name else "The film"
-            told.append(f"{name} starved: {film.cause}, so that more oil left than flowed in. {film.remedy}")
-    return tuple(told)
+            sentences.append(f"{name} starved: {film.cause}, so that more oil left than flowed in. {film.remedy}")
+    return tuple(sentences)
 
 
 def _overheated(case: Case, end: RunEnd) -> tuple[str, ...]:
@@ -202,12 +202,12 @@ def _stuck(case: Case, end: RunEnd) -> tuple[str, ...]:
     step = f"{SMALLEST_STEP:.0e} s" if end.step_s is None or end.step_s < SMALLEST_STEP else f"{end.step_s:.1e} s"
     touching = end.eccentricity >= case.contact.eccentricity
     place = "in contact with the shell" if touching else "not in contact"
-    told = (
+    sentence = (
         f"Rotor and films had no solution at {speed} with a step size below {step}: the "
         f"{end.journal} was {place}, at an eccentricity of {end.eccentricity:.4f}{_while(end)}."
     )
     remedies = (*_contact_remedies(case, end, touching), *_numerics(case), *film_remedies(case))
-    return (told, *_missing_oil(case), *_thin_film(case, end, touching), remedies_sentence(remedies))
+    return (sentence, *_missing_oil(case), *_thin_film(case, end, touching), remedies_sentence(remedies))
 
 
 def _while(end: RunEnd) -> str:
@@ -223,13 +223,13 @@ def _thin_film(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
 
 
 def _contact_remedies(case: Case, end: RunEnd, touching: bool) -> tuple[str, ...]:
-    """How a run ends in contact in place of being stuck in it or close to it."""
-    found = []
+    """How a run ends in contact instead of being stuck in it or close to it."""
+    remedies = []
     if not touching and end.eccentricity >= THIN:
-        found.append(f"contact.eccentricity = {THIN:g}, with which contact begins earlier")
+        remedies.append(f"contact.eccentricity = {THIN:g}, with which contact begins earlier")
     if case.contact.policy == "elastic":
-        found.append("contact.policy = stop, with which the run ends at its first contact")
-    return tuple(found)
+        remedies.append("contact.policy = stop, with which the run ends at its first contact")
+    return tuple(remedies)
 
 
 def _clearance(case: Case, film: str) -> float:

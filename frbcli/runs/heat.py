@@ -19,7 +19,7 @@ from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
-from frbcli.solve.heat import NARROWEST, NO_HEAT, TOLD, LumpedHeat, NoHeat, columns_of
+from frbcli.solve.heat import COLUMNS, NARROWEST, NO_HEAT, LumpedHeat, NoHeat, columns_of
 from frbcli.thermal.exchange import (
     BOOKS,
     CARRIED,
@@ -106,13 +106,13 @@ class RunHeat:
         """(rows,) m of each film in the rows that the loop has written; none without heat."""
         if self._loop is None:
             return []
-        return [self._rows[:rows, TOLD * film + 2].copy() for film in range(len(self._names))]
+        return [self._rows[:rows, COLUMNS * film + 2].copy() for film in range(len(self._names))]
 
     def numbers(self, rows: int) -> FilmNumbers | None:
         """The numbers of the films that heat has changed, in the rows that the loop has written; None without heat."""
         if self._loop is None or self._heat is None:
             return None
-        viscosities, clearances = (self._rows[:rows, each : TOLD * len(self._names) : TOLD] for each in (1, 2))
+        viscosities, clearances = (self._rows[:rows, each : COLUMNS * len(self._names) : COLUMNS] for each in (1, 2))
         made = self._loop.model.films
         thicker, narrower = viscosities / made[VISCOSITY], made[REFERENCE] / clearances
         return FilmNumbers(clearances.copy(), made[DRAG] * thicker * narrower, thicker * narrower**2)
@@ -154,10 +154,10 @@ class RunHeat:
 
     def balance(self) -> dict[str, float | None]:
         """The dissipated heat that is unaccounted for, relative; empty without heat."""
-        found = self.passed()
-        if not found:
+        energies = self.passed()
+        if not energies:
             return {}
-        whole, *parts = found.values()
+        whole, *parts = energies.values()
         return {"heat_balance_relative": abs(whole - sum(parts)) / abs(whole) if whole != 0.0 else None}
 
 
@@ -166,8 +166,8 @@ def heat_units(case: Case, system: System) -> dict[str, str]:
     if case.heat is None:
         return {}
     nodes = (node.replace(" ", "_") for node in heat_of(case, first).nodes[len(system.names) :])
-    told = {signal_of(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
-    return told | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
+    units = {signal_of(form, name): unit for name in system.names for form, unit in zip(QUANTITIES, UNITS, strict=True)}
+    return units | {signal_of(QUANTITIES[0], node): "K" for node in nodes}
 
 
 def hot_film(run: Run) -> str:

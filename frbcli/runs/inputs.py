@@ -27,7 +27,7 @@ class MachineInputs:
     """What changes over time in a run, in SI: temperatures of the supplies of films, and of nodes of the heat; absolute
     pressures of the supplies of films, each with the number of the film or node. ambient: Pa; largest: (films,) gauge
     pressures of all supplies, of those that change the largest one, 1 where nothing supplies; limited: films whose
-    supplies give a flow at the most, so that the pressure of their openings changes."""
+    supplies are flow-limited, so that the pressure of their openings changes."""
 
     supplies: tuple[tuple[int, OverTime], ...]
     walls: tuple[tuple[int, OverTime], ...]
@@ -40,10 +40,10 @@ class MachineInputs:
         """(k, films) shares of the largest gauge pressure at times (k,) in s; None where no pressure changes."""
         if not self.pressures:
             return None
-        found = np.ones((len(times), len(self.largest)))
+        ratio = np.ones((len(times), len(self.largest)))
         for film, table in self.pressures:
-            found[:, film] = (np.interp(times, table.time, table.x) - self.ambient) / self.largest[film]
-        return np.maximum(found, LEAST_SHARE)
+            ratio[:, film] = (np.interp(times, table.time, table.x) - self.ambient) / self.largest[film]
+        return np.maximum(ratio, LEAST_SHARE)
 
 
 def machine_inputs(case: Case) -> MachineInputs | None:
@@ -55,7 +55,7 @@ def machine_inputs(case: Case) -> MachineInputs | None:
     ambient, heat = case.oil.ambient_pressure, None if case.heat is None else heat_of(case)
     gauges = [supply.gauge(ambient) for supply in supplies]
     fed = (supply.over_time if gauge > 0.0 else None for supply, gauge in zip(supplies, gauges, strict=True))
-    found = MachineInputs(
+    inputs = MachineInputs(
         () if heat is None else _changing(enumerate(heat.supplies)),
         () if heat is None else _changing(heat.walls),
         _changing(enumerate(fed)),
@@ -63,13 +63,13 @@ def machine_inputs(case: Case) -> MachineInputs | None:
         np.array([gauge if gauge > 0.0 else 1.0 for gauge in gauges]),
         limited,
     )
-    return found if limited or found.supplies or found.walls or found.pressures else None
+    return inputs if limited or inputs.supplies or inputs.walls or inputs.pressures else None
 
 
 def films_change(case: Case) -> bool:
     """Whether clearances or scales of films change in a run: by heat, or with the pressure of their supplies."""
-    found = None if case.heat is not None else machine_inputs(case)
-    return case.heat is not None or (found is not None and bool(found.pressures))
+    inputs = None if case.heat is not None else machine_inputs(case)
+    return case.heat is not None or (inputs is not None and bool(inputs.pressures))
 
 
 def _changing(given: Iterable[tuple[int, float | OverTime | None]]) -> tuple[tuple[int, OverTime], ...]:
@@ -90,7 +90,7 @@ class RunInputs:
 
     @property
     def change_films(self) -> bool:
-        """Whether they change the films, beside the heat."""
+        """Whether they change the films in addition to the heat."""
         return self.machine is not None and bool(self.machine.limited or self.machine.pressures)
 
     def at_start(self, system: System) -> System:
@@ -111,8 +111,8 @@ class RunInputs:
         tables = [table for group in groups for _, table in group]
         places, count = [], 0
         for group in groups:
-            found = [(count + number, place) for number, (place, _) in enumerate(group)]
-            places.append(np.array(found, dtype=np.int64).reshape(-1, 2))
+            pairs = [(count + number, place) for number, (place, _) in enumerate(group)]
+            places.append(np.array(pairs, dtype=np.int64).reshape(-1, 2))
             count += len(group)
         films = len(self.names)
         return Inputs(
@@ -132,33 +132,33 @@ class RunInputs:
 
     def units(self) -> dict[str, str]:
         """The signals of inputs and their units."""
-        known = {name: unit for name, unit, _ in self._told()}
+        known = {name: unit for name, unit, _ in self._changing_signals()}
         return known | {name: PRESSURE[1] for _, name in self._limited()}
 
     def signals(self, system: System, times: Array, fillings: Array) -> dict[str, Array]:
         """The signals of inputs at times (k,) in s; fillings (k, films): see opening_pressures. The pressure of a
-        supply that gives a flow at the most is that in its openings."""
-        found = {name: np.interp(times, table.time, table.x) for name, _, table in self._told()}
+        flow-limited supply is the pressure in its openings."""
+        by_name = {name: np.interp(times, table.time, table.x) for name, _, table in self._changing_signals()}
         if self.machine is None:
-            return found
+            return by_name
         shares = self.machine.shares(times)
         for film, name in self._limited():
             supplies = self.machine.largest[film] * (np.ones(len(times)) if shares is None else shares[:, film])
             openings = opening_pressures(system.films.with_fields[film], fillings[:, film], supplies)
-            found[name] = self.machine.ambient + openings
-        return found
+            by_name[name] = self.machine.ambient + openings
+        return by_name
 
     @property
     def limited(self) -> bool:
-        """Whether a supply gives a flow at the most."""
+        """Whether a supply is flow-limited."""
         return self.machine is not None and bool(self.machine.limited)
 
     def _limited(self) -> Sequence[tuple[int, str]]:
-        """The films whose supplies give a flow at the most, and the names of their signals."""
+        """The films with flow-limited supplies, and the names of their signals."""
         films = () if self.machine is None else self.machine.limited
         return tuple((film, signal_of(PRESSURE[0], self.names[film])) for film in films)
 
-    def _told(self) -> Sequence[tuple[str, str, OverTime]]:
+    def _changing_signals(self) -> Sequence[tuple[str, str, OverTime]]:
         """Names, units and tables of the signals: of the films whose supplies change."""
         if self.machine is None:
             return ()

@@ -122,7 +122,7 @@ class March:
         self._q, self._v = np.empty((rows, system.rotor.size)), np.empty((rows, system.rotor.size))
         self._oil = np.zeros((rows, len(system.remembering)))
         self._output = LoopOutput(self._q, self._v, self._oil, self._heat.buffer(rows))
-        # Beside the motion, if the run records more of the films than follows from it: see solve/watched.py.
+        # In addition to the motion, if the run records more of the films than follows from it: see solve/watched.py.
         self._watches = self._inputs.limited or any(kind in OF_THE_STEPS for kind in recorded(case))
         self._watches |= brakes(system)
         notes = system.rotor.size + NOTES * len(system.names) if self._watches else 0
@@ -300,8 +300,8 @@ class March:
         """The checkpoint, from which the run continues with the same result."""
         clock = np.array([self._cpu_s, self._wall_s])
         noted = {"noted": self._noted} if self._watches and not np.isnan(self._noted).any() else {}
-        beside = {**noted, **self._wear.snapshot(), **self._heat.snapshot(), **self._kept.snapshot()}
-        return {**self._state._asdict(), **beside, "film_samples": self._samples, "clock": clock}
+        others = {**noted, **self._wear.snapshot(), **self._heat.snapshot(), **self._kept.snapshot()}
+        return {**self._state._asdict(), **others, "film_samples": self._samples, "clock": clock}
 
     def restore(self, checkpoint: Mapping[str, Array]) -> None:
         """Take up the state of a checkpoint. Raises WrongCheckpoint if it is not one of this run."""
@@ -322,7 +322,7 @@ class March:
         self._cpu_s, self._wall_s = (float(value) for value in clock)
 
     def check_samples(self, run: Run) -> None:
-        """Raise WrongCheckpoint unless the samples of a run are those before the state that was taken up of it."""
+        """Raise WrongCheckpoint unless the samples of a run lead up to the restored state."""
         is_free = self._system.rotation is not None
         check_samples(run, int(self._state.numbers[OUTPUTS]), self._profile, self._control.output_step, is_free)
 
@@ -344,7 +344,7 @@ class March:
             "simulated_ms_per_hour": 1e3 * self.time / wall * 3600.0,
             **self._system.films.oil_passed(self._state.flows),
             **self._heat.passed(),
-            **self._wear.told(),
+            **self._wear.deepest(),
             **(micro_cost(self._state, self._cpu_s) if self._apart else {}),
         }
 
@@ -363,12 +363,12 @@ class March:
         steps = summed(self._state.errors, until / self._profile.end)
         times: Array = self._sample_every * self._control.output_step * np.arange(len(self._samples), dtype=np.float64)
         passed = self._segments[: self._current + 1]
-        found = budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
+        errors = budget_of_segments(self.error_so_far(), passed, self._plan, until, steps, times, self._samples, fewer)
         if fewer is not None and len(passed) == 1:
-            found["error_grows_from_s"] = grows_from(
+            errors["error_grows_from_s"] = grows_from(
                 self._now, self._state.errors, fewer, times, self._samples, until, self._profile.end
             )
-        return found
+        return errors
 
     @property
     def film_error_s(self) -> float:

@@ -180,7 +180,7 @@ def _with_second_run(march: March, writer: RunWriter, run: Run, observe: Observe
 
 def _go(march: March, writer: RunWriter, observe: Observer | None, second_s: float) -> Run:
     """March to the end or to Ctrl-C; checkpoints are spaced so that writing takes a small share of the time. second_s:
-    expected CPU time of the second run, which is told with the cost."""
+    expected CPU time of the second run, which is reported with the cost."""
 
     def checkpoint(error: dict[str, float | None]) -> None:
         writer.checkpoint(march.snapshot(), march.cost(), error, march.time)
@@ -243,8 +243,8 @@ def _interrupted(march: March, writer: RunWriter) -> Run:
 
 def _critical_speeds(segments: Sequence[Segment]) -> tuple[float, ...] | None:
     """Critical speeds of the linearised machine in all segments of a run, Hz, those that differ in the unbalance alone
-    once; None if those of one are not known."""
+    once; None if they are not known for one segment."""
     apart = {id(segment.system.films): segment for segment in reversed(segments)}
-    found = [linear_critical_speeds(segment.case) for segment in reversed(apart.values())]
-    known = [speeds for speeds in found if speeds is not None]
-    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(found) else None
+    by_segment = [linear_critical_speeds(segment.case) for segment in reversed(apart.values())]
+    known = [speeds for speeds in by_segment if speeds is not None]
+    return tuple(sorted({speed for speeds in known for speed in speeds})) if len(known) == len(by_segment) else None

@@ -57,7 +57,7 @@ def rotor_data(
 ) -> RotorData:
     """The system, its speed or its drive, and its inputs over time as the time loop takes them."""
     rotor = system.rotor
-    # Displacements count over the clearance: that of the journal's own film, for other points that of the first.
+    # Displacements are over a clearance: the journal's own film, for other points the first film.
     table, stations = rotor.over_speed or no_part(rotor.size), system.films.stations
     observed = [points / system.length for _, points in rotor.points]
     if stations > 1:
@@ -124,10 +124,10 @@ def _factor(system: System) -> int:
 
 
 def first_state(start: Start, system: System, profile: SpeedProfile) -> State:
-    """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in the resting position,
+    """The state at the beginning of a run: at rest, in the centre, held at a displacement, or in static equilibrium,
     where rings turn already. A shaft with a bow is bent, and turns so.
 
-    Raises NotConverged if a resting position is asked for and there is none at the first speed.
+    Raises NotConverged if static equilibrium is asked for and there is none at the first speed.
     """
     rotor = system.rotor
     q, v = np.zeros(rotor.size), np.zeros(rotor.size)
@@ -226,12 +226,12 @@ def control_of(case: Case, plan: Plan, asperities: Asperities | None = None) -> 
 
 
 def in_turn(system: System, state: State, omega: float) -> State:
-    """The state of advance_in_turn from that of advance, at the beginning or after a clearance has changed.
+    """The state of advance_in_turn from the state of advance, at the beginning or after a clearance has changed.
 
     omega: speed of the rotor in rad/s.
 
-    The coupling variables (section 5.2.1) are constant before the start, except those of the journals, which
-    move with their initial velocity.
+    The coupling variables (section 5.2.1) are constant before the start, except for the journals, which move with their
+    initial velocity.
     """
     rotor, rings = system.rotor, list(system.spins)
     numbers = np.zeros(CO_NUMBERS)

@@ -27,7 +27,7 @@ def largest_eccentricity(system: System, state: State) -> float:
 
 
 def with_clearances(before: System, after: System, profile: SpeedProfile, state: State, apart: bool) -> State:
-    """The state of the machine `after` from that of the same machine with the clearances of `before`.
+    """The state of the machine `after` from the state of the same machine with the clearances of `before`.
 
     Journals must lie within their new clearances. apart: rotor and films are solved in turn.
     """
@@ -49,7 +49,7 @@ def with_clearances(before: System, after: System, profile: SpeedProfile, state:
 
 
 def with_unbalance(before: System, after: System, profile: SpeedProfile, state: State, apart: bool) -> State:
-    """The state of the machine `after` from that of the same machine with the unbalance of `before`; apart: see
+    """The state of the machine `after` from the state of the same machine with the unbalance of `before`; apart: see
     with_clearances."""
     state = State(*(part.copy() for part in state))
     alpha, omega, angle = profile.rotation(float(state.numbers[TIME]))

@@ -76,8 +76,8 @@ def clearance_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
     for place in film_places(case):
         steps = place.geometry.clearance_steps
         if steps:
-            told = [f"{1e6 * step.clearance:.4g} um from {step.time:g} s" for step in steps]
-            value = ", ".join([f"{1e6 * place.geometry.clearance:.4g} um", *told])
+            later = [f"{1e6 * step.clearance:.4g} um from {step.time:g} s" for step in steps]
+            value = ", ".join([f"{1e6 * place.geometry.clearance:.4g} um", *later])
             yield f"clearance {place.name}".rstrip(), value, "set in the case; rotor and oil keep their state"
 
 

@@ -109,7 +109,7 @@ def _problem(bearing: FloatingRingBearing) -> tuple[str, str]:
     if outer.supply.splits:
         if supply.axial_position == MIDDLE:
             return "", ""
-        problem = "asks for feed holes beside a central groove, which makes two different outer films."
+        problem = "asks for feed holes next to a central groove, which makes two different outer films."
         return problem, "Put the feed holes in the middle, or the groove at an end of the outer film."
     if bearing.ring.spin == "free" and not outer.supply.plain:
         problem = f"asks for {outer.supply.kind} in the housing, which the feed holes of a turning ring pass."

@@ -19,9 +19,9 @@ KEY = "film.coupling"
 @dataclass(frozen=True)
 class Coupling:
     """A coupling. reason: in words; iterates: whether rotor and films are solved until both hold, so that its error is
-    that of Newton's method; once: whether films are solved once in every stage and linearised there; in_turn: whether
-    rotor and films take steps of their own and exchange motion and force once per macro step; film_steps: of the films
-    in a step of the rotor; rules: what it is not made for."""
+    Newton's method's; once: whether films are solved once in every stage and linearised there; in_turn: whether rotor
+    and films take steps of their own and exchange motion and force once per macro step; film_steps: of the films in a
+    step of the rotor; rules: what it is not made for."""
 
     name: str
     reason: str
@@ -83,7 +83,7 @@ APART = Coupling(
     rules=(
         refusal(
             (RUN,), KEY, _where(_limited),
-            "exchanges motion and force alone, and the pressure of a supply that gives a flow at the most is told by "
+            "exchanges motion and force alone, and the pressure of a flow-limited supply is known only after "
             "each step of the films", "Write auto.",
         ),
         refusal(
@@ -115,8 +115,8 @@ def coupling_of(case: Case) -> Coupling:
 
 def plan_coupling(case: Case) -> tuple[str, str]:
     """The coupling of a case, one of COUPLINGS, and why it is chosen."""
-    found = coupling_of(case)
-    return found.name, found.reason if case.film.coupling == "auto" else f"set in the case; {found.reason}"
+    known = coupling_of(case)
+    return known.name, known.reason if case.film.coupling == "auto" else f"set in the case; {known.reason}"
 
 
 def _deciding(case: Case) -> str:

@@ -32,8 +32,8 @@ PUMPED = 0.3  # share of the pressure that the largest speed could build up: a g
 class FilmPlace:
     """One film: its geometry; the body inside and outside of it as it turns, a number of a ring, ROTOR or HOUSING,
     which a blocked ring and a shell count as; the body that its openings turn with; the name that results carry; the
-    feed holes of coupled channels that it has beside its own supply; misalignment: tilt of its shell about x and y in
-    rad."""
+    feed holes of coupled channels that it has in addition to its own supply; misalignment: tilt of its shell about x
+    and y in rad."""
 
     geometry: FilmGeometry
     inside: int
@@ -65,7 +65,7 @@ def film_places(case: Case) -> tuple[FilmPlace, ...]:
 
 
 def bearing_films(case: Case) -> tuple[FilmPlace, ...]:
-    """The films between surfaces that turn against each other: all but those of dampers."""
+    """The films between surfaces that turn against each other: all but films of dampers."""
     return film_places(case)[: sum(len(bearing.films) for bearing in case.bearings)]
 
 
@@ -107,17 +107,16 @@ def turning_cartridges(case: Case) -> tuple[str, ...]:
 
 
 def full_films(case: Case) -> Case:
-    """The case with half-Sommerfeld films, full wherever they carry; a bearing model is kept."""
-    if case.film.bearing_model:
-        return case
+    """The case with half-Sommerfeld films, full wherever they carry."""
     return altered(case, {"film": FilmModel(cavitation="half-sommerfeld", theory=case.film.theory)})
 
 
 def bearing_springs(case: Case, films: Iterable[float]) -> tuple[float, ...]:
-    """The stiffness of each bearing with a film out of that of its films, in their order: in series around a ring."""
+    """The stiffness of each bearing with a film, from the stiffness of its films in their order: in series around a
+    ring."""
     single = iter(films)
-    found = ([next(single) for _ in bearing.films] for bearing in case.bearings)
-    return tuple(own[0] if len(own) == 1 else 1.0 / sum(1.0 / each for each in own) for own in found)
+    groups = ([next(single) for _ in bearing.films] for bearing in case.bearings)
+    return tuple(own[0] if len(own) == 1 else 1.0 / sum(1.0 / each for each in own) for own in groups)
 
 
 def is_plain(film: FilmGeometry) -> bool:
@@ -159,8 +158,7 @@ def centrifugal_pressures(case: Case, sections: Sequence[Section]) -> tuple[floa
     """Fall of the pressure given in each film's channels over the square of its ring's speed, (4.27), scaled.
 
     Half of the difference between the two ends of a channel acts on the inner film (4.29); the pressure at the outer
-    end is that of the groove which they open to.
-    """
+    end is the pressure of the groove which they open to. """
     around = [bearing for bearing in case.bearings for _ in bearing.films]
     centrifugal = [0.0] * len(sections)
     for number, (place, bearing) in enumerate(zip(bearing_films(case), around, strict=True)):
@@ -173,13 +171,13 @@ def centrifugal_pressures(case: Case, sections: Sequence[Section]) -> tuple[floa
 def volume_film(
     case: Case, place: FilmPlace, cells: tuple[int, int], top_Hz: float | None = None, edged: bool = False
 ) -> VolumeFilm:
-    """A film on volumes for a run, equal cells (around, along). top_Hz: top rotor speed, default that of the run;
-    edged: see VolumeFilm."""
+    """A film on volumes for a run, equal cells (around, along). top_Hz: top rotor speed, by default the run's; edged:
+    see VolumeFilm."""
     geometry, cavitation = place.geometry, case.cavitation(place.geometry)
     section = film_section(case, geometry, place.feed_holes)
     law_class = law_named(cavitation)
-    # A pressure that is never below that of the air lets oil out only, as into a bath. The flow of (4.37) at no
-    # pressure, which the law would have to make up, keeps Newton's method from converging.
+    # A pressure that is never below ambient lets oil out only, as into a bath. The flow of (4.37) at no pressure, which
+    # the law would have to make up, keeps Newton's method from converging.
     only_out = law_class.holds_cavity and section.cavitation_pressure >= section.ambient_pressure
     if (law_class.closed or only_out) and geometry.ends == "free-to-air":
         section = ends_at_ambient(section)

@@ -27,11 +27,11 @@ def input_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
 def input_decisions(case: Case) -> Iterator[tuple[str, str, str]]:
     """What the plan says of inputs over time: choice, value, reason."""
     for each in inputs_of(case):
-        if each.key == AXIAL_LOAD:  # the line of the thrust bearing tells it
+        if each.key == AXIAL_LOAD:  # shown in the line of the thrust bearing
             continue
         x, time = each.values.x, each.values.time
         value = f"{each.key}: {display(min(x), each.unit)} to {display(max(x), each.unit)}"
-        span = f"{each.values.told}, {time[0]:g} to {time[-1]:g} s"
+        span = f"{each.values.origin}, {time[0]:g} to {time[-1]:g} s"
         yield "input", value, f"{span}; runs follow it, all other analyses have the largest value"
 
 

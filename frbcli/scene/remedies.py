@@ -20,7 +20,7 @@ NONE_KNOWN = "No setting is known to help: with another mesh or tolerance it is 
 
 @contextmanager
 def advised(case: Case) -> Iterator[None]:
-    """Raises NotConverged in place of FilmUnsolved, with the failure and the remedies for the case."""
+    """Raises NotConverged instead of FilmUnsolved, with the failure and the remedies for the case."""
     try:
         yield
     except FilmUnsolved as failure:

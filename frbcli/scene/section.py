@@ -18,8 +18,8 @@ ELEMENT = 2.0 * math.pi / 20.0  # L of (4.42) in rad: of the elements of figure 
 def film_section(case: Case, bearing: FilmGeometry, feed_holes: Bores | None = None) -> Section:
     """The part of the film that has to be solved: half of it where it is symmetric about the middle.
 
-    feed_holes: of the channels of a ring, which the film has beside its own supply; they are the last of its holes.
-    """
+    feed_holes: of the channels of a ring, which the film has in addition to its own supply; they are the last of its
+    holes. """
     radius, width, ambient = 0.5 * bearing.diameter, bearing.width, case.oil.ambient_pressure
     opened = bearing.supply.openings(radius, width, bearing.ends, ambient)
     copies, far, holes = opened.copies, opened.far, opened.holes

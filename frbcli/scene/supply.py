@@ -43,14 +43,14 @@ class UnfedFilm:
 
     @property
     def remark(self) -> str:
-        """The line beside a result, with the remedy."""
+        """The line next to a result, with the remedy."""
         film = f"film {self.name}" if self.name else "the film"
         return f"Note: {film} has no pressurised supply. {self.reason[0].upper()}{self.reason[1:]}. {self.remedy}"
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
     """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
-    found: list[UnfedFilm] = []
+    unfed: list[UnfedFilm] = []
     form = form_of(case)
     if not form.solved:
         return ()
@@ -60,8 +60,8 @@ def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
         if is_unfed(section, law_named(cavitation)):
             keeps = law_named(cavitation).keeps_oil and section.diffusion is None
             cause, remedy = _cause(film, case.oil), _remedy(film, case.oil, key, cavitation)
-            found.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
-    return tuple(found)
+            unfed.append(UnfedFilm(place.name, key, cavitation, keeps, cause, remedy))
+    return tuple(unfed)
 
 
 def _cause(film: FilmGeometry, oil: Oil) -> str:

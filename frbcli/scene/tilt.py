@@ -18,7 +18,7 @@ from frbcli.scene.keys import bearing_key
 
 Pair = tuple[float, float]
 NONE = (0.0, 0.0)
-AROUND = 36  # places of a whirl, between which those of lobed shells alone have less gap
+AROUND = 36  # places of a whirl, between which only lobed shells have less gap
 
 
 def tilt_of(case: Case) -> Pair:

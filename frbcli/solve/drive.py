@@ -1,7 +1,7 @@
 """A rotor whose speed is free, in a stage of the time loop. Compiled. Two kinds:
 
-- an empty tuple: the rotor turns as its speed profile says, and nothing is computed;
-- DrivenRotor: its rotation is one more degree of freedom, which a stage solves with those of its rings,
+- an empty tuple: the rotor turns as its speed profile says, and nothing is computed; - DrivenRotor: its rotation is one
+more degree of freedom, which a stage solves with the rings,
 
       J alpha = torque(omega, t) - load(omega) + friction of the films + reaction of the whirl.
 
@@ -55,7 +55,7 @@ class DrivenRotor(NamedTuple):
 
 
 def is_driven(drive: Any) -> bool:
-    """Whether a type in a compiled loop is that of a DrivenRotor."""
+    """Whether a type in a compiled loop belongs to a DrivenRotor."""
     return getattr(drive, "instance_class", None) is DrivenRotor
 
 
@@ -115,8 +115,8 @@ def stage_rotation(
     drive: Any, times: Array, speeds: Array, angles: Array, piece: int, t: float, s: int, g: float, at: Array,
     stage_a: Array,
 ) -> tuple[float, float, float]:  # fmt: skip
-    """Acceleration, speed and angle of the rotor in stage s at the time t in s: those of its profile, or as it would go
-    on by the acceleration of the stage before. at: as `predict` fills it."""
+    """Acceleration, speed and angle of the rotor in stage s at the time t in s: from its profile, or as it would go on
+    by the acceleration of the stage before. at: as `predict` fills it."""
     raise NotImplementedError
 
 

@@ -17,7 +17,7 @@ from numba.extending import overload
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
 from frbcli.solve.films.forces import drag_integral
-from frbcli.solve.films.kinds import CELLS, MODELS, kind_of
+from frbcli.solve.films.kinds import CELLS, kind_of
 from frbcli.solve.films.warm import keep_oil, leaving, oil_share, set_scale
 from frbcli.solve.stage.contact import feel, rubbing
 from frbcli.solve.stage.equations import FORCE, OMEGA, X_0, U
@@ -49,7 +49,7 @@ from frbcli.thermal.exchange import (
     write_clearances,
 )
 
-TOLD = 5  # columns of a film in the output: temperature, viscosity, clearance, power, flow; then all other nodes
+COLUMNS = 5  # columns of a film in the output: temperature, viscosity, clearance, power, flow; then all other nodes
 NARROWEST = 0.02  # of its reference: a clearance below this share has closed
 
 
@@ -77,13 +77,13 @@ NO_HEAT = NoHeat(np.zeros((0, 0)))
 
 
 def have_heat(heat: Any) -> bool:
-    """Whether a type that the compiler knows is that of a machine with heat."""
+    """Whether a type that the compiler knows belongs to a machine with heat."""
     return getattr(heat, "instance_class", None) is LumpedHeat
 
 
 def columns_of(heat: Any) -> int:
     """Columns of heat in the output of a run."""
-    return (TOLD - 1) * heat.now.shape[1] + heat.gain.shape[0] if isinstance(heat, LumpedHeat) else 0
+    return (COLUMNS - 1) * heat.now.shape[1] + heat.gain.shape[0] if isinstance(heat, LumpedHeat) else 0
 
 
 def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
@@ -93,7 +93,7 @@ def begin_heat(heat: Any, films: Any, rotor: RotorData, wet: Array) -> None:
         heat.now[CLEARANCE_BEFORE] = heat.now[CLEARANCE]
 
 
-class Taken(NamedTuple):
+class AcceptedStep(NamedTuple):
     """The step that was taken: its length, g of its stages, the cavitation factor of Couette's torque, where contact
     begins, and Control.rough."""
 
@@ -108,14 +108,14 @@ class Taken(NamedTuple):
 def warm_stage(
     heat: Any, films: Any, drag: Array, clearances: Array, wet: Array, bodies: Array, since: float
 ) -> None:  # fmt: skip
-    """Viscosities and clearances <- those of a stage `since` s after the start of a step, in which rotor and rings have
-    the speeds `bodies`."""
+    """Viscosities and clearances <- values of a stage `since` s after the start of a step, in which rotor and rings
+    have the speeds `bodies`."""
     raise NotImplementedError
 
 
 def carry_heat(
-    heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array, taken: Taken,
-    clearances: Array, drag: Array,
+    heat: Any, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Array,
+    accepted: AcceptedStep, clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """Temperatures, viscosities and clearances move on after an accepted step. Returns RUNNING or OVERHEATED. journal:
     the rows of stage/equations.py in the last stage; bodies: its speeds of rotor and rings."""
@@ -133,7 +133,7 @@ def write_heat(heat: Any, out_heat: Array, first: int, last: int, until_end: flo
 def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
         return lambda heat, films, drag, clearances, wet, bodies, since: None
-    if kind_of(films) in (CELLS, MODELS):
+    if kind_of(films) == CELLS:
         return lambda heat, films, drag, clearances, wet, bodies, since: _warm(
             heat, films, drag, clearances, wet, bodies, since
         )
@@ -143,16 +143,16 @@ def _warm_stage(heat, films, drag, clearances, wet, bodies, since):  # type: ign
 
 
 @overload(carry_heat, jit_options=AS_KERNELS, inline="always")
-def _carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag):  # type: ignore[no-untyped-def]
+def _carry_heat(heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag):  # type: ignore[no-untyped-def]
     if not have_heat(heat):
-        return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: RUNNING
-    if kind_of(films) in (CELLS, MODELS):
-        return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
-            heat, films, work, turning, journal, bodies, wet, taken, clearances, drag
+        return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: RUNNING
+    if kind_of(films) == CELLS:
+        return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
+            heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag
         )
     # Only what tabulated films need is handed on: a call with the arrays of all films takes as long as their heat does.
-    return lambda heat, films, work, turning, journal, bodies, wet, taken, clearances, drag: _carry(
-        heat, 0, 0, turning, journal, bodies, 0, taken, clearances, drag
+    return lambda heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag: _carry(
+        heat, 0, 0, turning, journal, bodies, 0, accepted, clearances, drag
     )
 
 
@@ -181,13 +181,13 @@ def _warm(
 
 @compiled()
 def _carry(
-    heat: LumpedHeat, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Any, taken: Taken,
-    clearances: Array, drag: Array,
+    heat: LumpedHeat, films: Any, work: Any, turning: Array, journal: Array, bodies: Array, wet: Any,
+    accepted: AcceptedStep, clearances: Array, drag: Array,
 ) -> int:  # fmt: skip
     """carry_heat of LumpedHeat: P = K slip^2 + (e x F) omega/2 - F . e', see docs/heat.md."""
     _, _, made, numbers, _ = heat.model
     ends, state, last, now, gain = heat.ends, heat.state, heat.last, heat.now, heat.gain
-    step, g, factor, contact_at, contact_stiffness, rough = taken
+    step, g, factor, contact_at, contact_stiffness, rough = accepted
     count = clearances.shape[0]
     for b in range(bodies.shape[0]):
         state[BOOKS + b] = bodies[b]
@@ -222,9 +222,9 @@ def _carry(
 def _follow(
     heat: LumpedHeat, state: Array, films: Any, drag: Array, clearances: Array, wet: Any, ended: bool
 ) -> int:
-    """Viscosities, clearances and what follows from them <- those of the temperatures of a state. ended: whether a step
-    has, in which films keep the volume of their oil. Returns OVERHEATED, with the film in the books of the state, for
-    one too hot or closed, else RUNNING."""
+    """Viscosities, clearances and what follows from them <- values at the temperatures of a state. ended: whether a
+    step has ended; it conserves the volume of the oil in the films. Returns OVERHEATED, with the film in the books of
+    the state, for one too hot or closed, else RUNNING."""
     capacity, _, made, numbers, growth = heat.model
     ends, now, count = heat.ends, heat.now, clearances.shape[0]
     bodies = state.shape[0] - BOOKS - capacity.shape[0]
@@ -265,11 +265,11 @@ def _write(
         for i in range(n):
             temperature = state[begin + i] - back * change[CHANGES + i]
             if i >= count:
-                out_heat[row, (TOLD - 1) * count + i] = temperature
+                out_heat[row, (COLUMNS - 1) * count + i] = temperature
                 continue
-            out_heat[row, TOLD * i], out_heat[row, TOLD * i + 1] = temperature, viscosity_at(numbers, temperature)
+            out_heat[row, COLUMNS * i], out_heat[row, COLUMNS * i + 1] = temperature, viscosity_at(numbers, temperature)
             for column, at in enumerate((CLEARANCE, POWER, FLOW)):
                 before = (CLEARANCE_BEFORE, POWER_BEFORE, FLOW_BEFORE)[column]
-                out_heat[row, TOLD * i + 2 + column] = now[at, i] + back * (now[before, i] - now[at, i])
+                out_heat[row, COLUMNS * i + 2 + column] = now[at, i] + back * (now[before, i] - now[at, i])
     for f in range(count):
         now[CLEARANCE_BEFORE, f] = now[CLEARANCE, f]

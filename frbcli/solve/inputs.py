@@ -4,7 +4,7 @@
 - Inputs: each step has the pressures in its middle and the temperatures at its end.
 
 With r times its gauge pressures a film has the pressures of the velocity w / r, r times as large: one table serves all
-pressures of a supply, as one serves all viscosities. Films on cells are given their pressures.
+pressures of a supply, as one serves all viscosities. Finite-volume films are given their pressures.
 
 Which of them a function means is decided by the type of the inputs when the loop is compiled, as in heat.py.
 """
@@ -29,11 +29,10 @@ class Inputs(NamedTuple):
     """k tables over time: first (k + 1,) row of each, and their number; times, values (rows,) of all.
 
     supplies, walls, pressures (.., 2): number of a table, and the film whose supply has this temperature in K, the node
-    that has it, the film whose supply has this absolute pressure in Pa. ambient: Pa; least: share of a gauge pressure
-    that counts as none; largest (F,): gauge pressures in
-    Pa that the films were made with; shares (F,): of these now; scales (F,): by which the velocities of tabulated films
-    are multiplied now; ends: films on cells as they were made, see Films.heat_ends.
-    """
+    with this temperature, the film whose supply has this absolute pressure in Pa. ambient: Pa; least: share of a gauge
+    pressure that counts as none; largest (F,): gauge pressures in Pa that the films were made with; shares (F,): of
+    these now; scales (F,): by which the velocities of tabulated films are multiplied now; ends: finite-volume films as
+    they were made, see Films.heat_ends. """
 
     first: Indices
     times: Array
@@ -55,7 +54,8 @@ def supply_warm(inputs: Any, films: Any, heat: Any) -> None:
 
 
 def supplied(films: Any, ends: Any, f: int, share: float, scale: float) -> None:
-    """Films on cells <- a share of the gauge pressures of film f; tabulated films are asked for scaled velocities."""
+    """Finite-volume films <- a share of the gauge pressures of film f; tabulated films are asked for scaled
+    velocities."""
     raise NotImplementedError
 
 
@@ -120,7 +120,7 @@ def _supply(inputs: Inputs, films: Any, heat: Any) -> None:
 
 @compiled()
 def _supply_cells(films: VolumeFilms, ends: CellEnds, f: int, share: float, scale: float) -> None:
-    """supplied of films on cells."""
+    """supplied of finite-volume films."""
     films.films[f].far.pressure = ends.films[f].far.pressure * share / scale
     films.films[f].supply = ends.films[f].supply * share / scale
     for i in range(films.cells.shape[2]):

@@ -131,8 +131,7 @@ def pinned(pin: Array, q: float, v: float, g: float, inertia: float, pulled: flo
     """Angular acceleration a of a ring with v' = v + g a and angle q + g v' in a stage, inertia a = pulled + its pin.
 
     The torque never rises with the speed of the ring, so that there is one solution, in the play, against the pin, or
-    at the edge: a ring that meets its damper there has any torque between none and that of the damper.
-    """
+    at the edge: a ring that meets its damper there has any torque between none and the damper's. """
     free = pulled / inertia
     angle = q + g * (v + g * free)
     if pin[STIFFNESS] == 0.0 or abs(angle) <= pin[PLAY]:

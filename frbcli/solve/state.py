@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from frbcli.arrays import Array
 
 RUNNING, FINISHED, CONTACT, STUCK, OVERHEATED, STANDSTILL = range(6)  # what advance returns
-# omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by those of the rotor and of the rings.
+# omega_J + omega_S, omega_J - omega_S, and speed of the grid of a film by the speeds of rotor and rings.
 SUM, SLIP, GRID, TURNING = range(4)
 
 
@@ -93,7 +93,7 @@ class State(NamedTuple):
 
 class LoopOutput(NamedTuple):
     """Output of the time loop, one row for each output time: displacements q and velocities v (rows, n), the mean oil
-    fraction (4.46) of films that keep their oil (rows, films), and of a machine with heat the columns of heat.py."""
+    fraction (4.46) of mass-conserving films (rows, films), and of a machine with heat the columns of heat.py."""
 
     q: Array
     v: Array
@@ -106,5 +106,5 @@ class LoopOutput(NamedTuple):
 
 
 def make_output(rows: int, n: int, films: int = 0) -> LoopOutput:
-    """Output of a rotor with n degrees of freedom and of films that keep their oil, without heat."""
+    """Output of a rotor with n degrees of freedom and of mass-conserving films, without heat."""
     return LoopOutput(np.zeros((rows, n)), np.zeros((rows, n)), np.zeros((rows, films)), np.zeros((rows, 0)))

@@ -36,7 +36,7 @@ from frbcli.solve.state import (
 )
 
 SMALLEST_STEP = 1e-12  # s
-UNSOLVED = 1e3  # stands for the error of a step whose stages were not solved
+UNSOLVED = 1e3  # counts as error of a step whose stages were not solved
 ERROR_MEMORY = 0.1  # s: how long a local error is taken to live on in a damped rotor
 SAFETY = 0.9  # of the step that the error estimate would allow
 SMALLEST_SHARE = 0.2  # of a step that is left of it after an error
@@ -154,7 +154,7 @@ def begin_stages(v: Array, a: Array, stage_v: Array, stage_a: Array) -> None:
 
 @compiled(inline=True)
 def begin_past(past_now: Array, past: Array) -> None:
-    """The points that predict the stages, see State.past: those of the step before, ahead of its own."""
+    """The points that predict the stages, see State.past: of the step before, ahead of its own."""
     for k in range(HISTORY):
         for i in range(past.shape[1]):
             past[k, i] = past_now[k, i]
@@ -162,7 +162,7 @@ def begin_past(past_now: Array, past: Array) -> None:
 
 @compiled()
 def shorter(step: float, error: float, order: float) -> float:
-    """The step to try in place of one whose error, over the tolerance, was too large or no number."""
+    """The step to try instead of one whose error, over the tolerance, was too large or no number."""
     share = SAFETY * error ** (-1.0 / order) if math.isfinite(error) else 0.0
     return step * max(SMALLEST_SHARE, share)
 
@@ -177,7 +177,7 @@ def reject(numbers: Array, step: float, error: float, order: float) -> bool:
 
 @compiled()
 def end_of_step(t: float, step: float, end: float) -> float:
-    """The time after a step: the end of the profile's piece, not a rounding error beside it."""
+    """The time after a step: the end of the profile's piece, not a rounding error off it."""
     t_new = t + step
     return end if t_new >= end * (1.0 - 1e-15) else t_new
 
@@ -213,7 +213,7 @@ def count_step(
     numbers: Array, errors: Array, control: Control, t_new: float, step: float, speed: float, drift: float,
     largest: float,
 ) -> int:  # fmt: skip
-    """Count a step that is done. drift: what its error adds to that of the run; largest eccentricity at its end.
+    """Count a step that is done. drift: what its error adds to the error of the run; largest eccentricity at its end.
 
     Returns RUNNING, or CONTACT where a journal has met a shell that does not give way.
     """

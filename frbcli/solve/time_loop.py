@@ -17,7 +17,16 @@ from frbcli.compiled import AS_KERNELS, compiled, folder_of
 from frbcli.solve.drive import end_of_turning, overshoots, stage_rotation, turn_on, turns_freely
 from frbcli.solve.films.forces import left_over, solved
 from frbcli.solve.films.steps import accept_films, begin_stage, film_error, make_work, most_iterations, write_oil
-from frbcli.solve.heat import NO_HEAT, LumpedHeat, Taken, begin_heat, carry_heat, have_heat, warm_stage, write_heat
+from frbcli.solve.heat import (
+    NO_HEAT,
+    AcceptedStep,
+    LumpedHeat,
+    begin_heat,
+    carry_heat,
+    have_heat,
+    warm_stage,
+    write_heat,
+)
 from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch, selected
@@ -62,8 +71,8 @@ NEWTON_SHARE = 0.02  # of the tolerance that Newton's method may leave undone
 
 
 class Own(NamedTuple):
-    """Scratch of this loop beside that of the stages: newton (m, m); past (HISTORY + stages - 1, 1 + m) times
-    and journals' velocities; q_new (n,)."""
+    """Scratch of this loop besides the stages': newton (m, m); past (HISTORY + stages - 1, 1 + m) times and journals'
+    velocities; q_new (n,)."""
 
     newton: Array
     past: Array
@@ -267,9 +276,9 @@ def _advance(
         accept_films(films, work, wet, flows, weights, step)
         write_oil(films, work, out_oil, before, written)
         contact = control.contact_eccentricity, control.contact_stiffness, control.rough
-        taken = Taken(step, g, rotor.torque_terms[1], *contact)
+        accepted = AcceptedStep(step, g, rotor.torque_terms[1], *contact)
         bodies = own.rings.bodies
-        hot = carry_heat(heat, films, work, rotor.turning, journal, bodies, wet, taken, clearances, rotor.drag)
+        hot = carry_heat(heat, films, work, rotor.turning, journal, bodies, wet, accepted, clearances, rotor.drag)
         until_end = t_new - (numbers[OUTPUTS] - 1.0) * control.output_step
         write_heat(heat, out_heat, before, written, until_end, control.output_step, step)
         numbers[STEP_DONE] = step

@@ -1,8 +1,7 @@
 """The time loop step by step, for runs that record more than the motion of the rotor. Compiled.
 
 It takes the same steps as `advance`, looks at rotor and films after each of them, and interpolates between the ends of
-a step as they are seen: what a run records beside is not known inside of one.
-"""
+a step as they are seen: what else a run records is not known inside of a step. """
 
 from __future__ import annotations
 
@@ -26,9 +25,9 @@ DRAG, LEAVES, FILLED, NOTES = range(4)
 
 
 class Notes(NamedTuple):
-    """Records of a run beside its motion: now (n + NOTES films,) the rotor's accelerations and what is noted of its
+    """Records of a run besides its motion: now (n + NOTES films,) the rotor's accelerations and what is noted of its
     films, at the end of the last step, not a number before the first one; rows (rows, the same): at the output times;
-    far_open (films,): whether the end z = 1 of the sections of films on cells is open."""
+    far_open (films,): whether the end z = 1 of the sections of finite-volume films is open."""
 
     now: Array
     rows: Array
@@ -46,13 +45,13 @@ def advance_watched(
 
 
 def oil_leaving(films: Any, work: Any, flows: Array, f: int, far_open: Array) -> float:
-    """Oil that leaves film f now: of cells over its scale, through the open ends; 0 of a film whose motion tells
+    """Oil that leaves film f now: of cells over its scale, through the open ends; 0 of a film whose motion determines
     it."""
     raise NotImplementedError
 
 
 def filling(films: Any, flows: Array, f: int) -> float:
-    """The filling of the openings of film f, whose supply may give a flow at the most; of other films 1."""
+    """The filling of the openings of film f, below 1 only with a flow-limited supply."""
     raise NotImplementedError
 
 
@@ -95,7 +94,7 @@ def _advance_watched(
 ) -> tuple[int, int]:  # fmt: skip
     numbers, q, a, flows = state.numbers, state.q, state.a, state.flows
     noted, status, written, now = notes.now, RUNNING, 0, np.empty_like(notes.now)
-    each = min(budget, 1)  # step: a literal would have a loop compiled for it beside that of runs that are not watched
+    each = min(budget, 1)  # step: a literal would need its own compiled loop besides the one of unwatched runs
     for _ in range(budget):
         t, first = numbers[TIME], numbers[OUTPUTS] - written
         left = LoopOutput(output.q[written:], output.v[written:], output.oil[written:], output.heat[written:])

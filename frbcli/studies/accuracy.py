@@ -87,7 +87,7 @@ def accuracy(
     _check(case, theories, couplings)
     short = _until(case, until)
     own = planned_rung(make_plan(short))
-    fine, coarser = _references(case, own)
+    fine, coarser = _references(own)
     rungs = list(ladder(short, own, theories, couplings))
     numbers = itertools.count(1)
     with TemporaryDirectory(prefix="frb-accuracy-") as folder:
@@ -98,24 +98,24 @@ def accuracy(
 
         exact = run(fine)
         reference = _result(fine, exact, run(coarser), _tabulating(short, fine), forces_of=exact)
-        found: list[RungResult] = []
+        rung_results: list[RungResult] = []
         failed: list[tuple[Rung, str]] = []
         complete = False
         with suppress(KeyboardInterrupt):
             for rung in rungs:
                 try:
-                    found.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
+                    rung_results.append(_result(rung, run(rung), exact, _tabulating(short, rung), rung == own))
                 except NotConverged as problem:
                     failed.append((rung, str(problem)))
-            reference, *found = _with_thresholds(case, reference, coarser, found)
+            reference, *rung_results = _with_thresholds(case, reference, coarser, rung_results)
             complete = True
-    found.sort(key=lambda item: item.cpu_s)
-    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(found), complete, tuple(failed))
+    rung_results.sort(key=lambda item: item.cpu_s)
+    return AccuracyLadder(case, short.speed.duration, reference, coarser, tuple(rung_results), complete, tuple(failed))
 
 
-def _references(case: Case, own: Rung) -> tuple[Rung, Rung]:
-    """The fine reference of a case with the planned rung `own`, and a coarser one, which tells its error."""
-    *_, best = _theories(case)
+def _references(own: Rung) -> tuple[Rung, Rung]:
+    """The fine reference of the planned rung `own`, and a coarser one, which tells its error."""
+    *_, best = THEORIES
     mesh, coarse = (_mesh(own, best, factor) for factor in (REFERENCE_MESH, COARSER_MESH))
     fine = replace(own, theory=best, mesh=mesh, tolerance=REFERENCE_TOLERANCE * own.tolerance)
     return fine, replace(fine, mesh=coarse, tolerance=LOOSER * fine.tolerance)
@@ -126,11 +126,6 @@ def _whole(run: Run) -> Run:
     if run.status == INTERRUPTED:
         raise KeyboardInterrupt
     return run
-
-
-def _theories(case: Case) -> tuple[str, ...]:
-    """The theories that a case can be computed with, the most exact one last; a bearing model is one of its own."""
-    return (case.film.bearing_model,) if case.film.bearing_model else THEORIES
 
 
 def planned_rung(plan: Plan) -> Rung:
@@ -145,7 +140,7 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
     rungs: list[Rung] = [own]
     for coupling in couplings or (own.coupling,):
         for tolerance in sorted({min(LOOSEST, factor * own.tolerance) for factor in TOLERANCES}, reverse=True):
-            for theory in theories or _theories(case):
+            for theory in theories or THEORIES:
                 meshes = [_mesh(own, theory, factor) for factor in MESHES]
                 rungs += [Rung(theory, own.cavitation, mesh, tolerance, coupling) for mesh in meshes]
     for rung in dict.fromkeys(rungs):
@@ -160,12 +155,12 @@ def ladder(case: Case, own: Rung, theories: Sequence[str] = (), couplings: Seque
 
 def by_theory(case: Case, theories: Sequence[str] = ()) -> list[Case]:
     """A case by each theory of its ladder that can be modelled: theories have kernels of their own."""
-    found = []
-    for theory in theories or _theories(case):
+    variants = []
+    for theory in theories or THEORIES:
         with suppress(InputError):
-            found.append(_with(case, f"film.theory={theory}"))
-            make_plan(found[-1])
-    return found
+            variants.append(_with(case, f"film.theory={theory}"))
+            make_plan(variants[-1])
+    return variants
 
 
 def _mesh(own: Rung, theory: str, factor: float) -> tuple[int, int] | None:
@@ -191,27 +186,27 @@ def _result(
 
 
 def _with_thresholds(
-    case: Case, reference: RungResult, coarser: Rung, found: Sequence[RungResult]
+    case: Case, reference: RungResult, coarser: Rung, results: Sequence[RungResult]
 ) -> Iterator[RungResult]:
     """The reference and what was found, with the errors of the thresholds of linear stability over all speeds of the
     case. They depend on theory and mesh alone."""
-    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in found))}
+    rungs = {(rung.theory, rung.mesh): rung for rung in (coarser, reference.rung, *(item.rung for item in results))}
     speeds = {film: _threshold(_with_rung(case, rung)) for film, rung in rungs.items()}
 
     def off(one: Rung, other: Rung) -> float:
         return speeds[one.theory, one.mesh] - speeds[other.theory, other.mesh]
 
-    for item, other in ((reference, coarser), *((item, reference.rung) for item in found)):
+    for item, other in ((reference, coarser), *((item, reference.rung) for item in results)):
         yield replace(item, error=replace(item.error, threshold_Hz=off(item.rung, other)))
 
 
 def _threshold(case: Case) -> float:
-    """Threshold in Hz; NaN without one, and for films with cells: those with oil of their own have none, the others
-    take minutes."""
+    """Threshold in Hz; NaN without one, and for finite-volume films: mass-conserving ones have none, the others take
+    minutes."""
     if make_plan(case).cells is not None or not default_speeds(case):
         return math.nan
-    found = stability(case).threshold
-    return math.nan if found is None else found.speed_Hz
+    threshold = stability(case).threshold
+    return math.nan if threshold is None else threshold.speed_Hz
 
 
 def _tabulating(case: Case, rung: Rung) -> float:
@@ -256,7 +251,7 @@ def _check(case: Case, theories: Sequence[str], couplings: Sequence[str]) -> Non
     require(case, LADDER)
     faults = [
         Fault(option, name, None, "is not known.", did_you_mean(name, known))
-        for option, names, known in (("--theory", theories, _theories(case)), ("--coupling", couplings, COUPLINGS))
+        for option, names, known in (("--theory", theories, THEORIES), ("--coupling", couplings, COUPLINGS))
         for name in dict.fromkeys(names)
         if name not in known
     ]

@@ -1,4 +1,4 @@
-"""A computed run beside a measured one: their events and their ridges."""
+"""A computed run compared with a measured one: their events and their ridges."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def _size(deviation: tuple[str, float, float], value: float) -> str:
     return f"{value:.3g} Hz" if deviation[0].startswith("frequency") else f"{1e6 * value:.3g} um"
 
 
-# Of a deviation: what deviates, root mean square of computed less measured, that of the measured ridge
+# Of a deviation: what deviates, root mean square of computed less measured, root mean square of the measured ridge
 DEVIATIONS = (
     Column("what", "", "amplitude or frequency that is compared", itemgetter(0), shown=(Shown("what"),)),
     Column("rms", "", "rms of computed less measured, m or Hz", itemgetter(1)),
@@ -57,7 +57,7 @@ RIDGES = (
 
 @dataclass(frozen=True, repr=False)
 class AgainstMeasured(Tabular):
-    """computed, measured: ridges of the runs at the same speeds; clearance: m, that of the computed run; point: of the
+    """computed, measured: ridges of the runs at the same speeds; clearance: m, of the computed run; point: of the
     computed run, that was measured; computed_events, measured_events: found alike in the motion of that point alone."""
 
     run: Run
@@ -70,8 +70,8 @@ class AgainstMeasured(Tabular):
     measured_events: Sequence[dict[str, Any]]
 
     def deviations(self) -> tuple[tuple[str, float, float], ...]:
-        """(what, root mean square of computed less measured, that of the measured ridge), m or Hz; of a whirl where
-        both runs whirl."""
+        """(what, root mean square of computed less measured, root mean square of the measured ridge), m or Hz; of a
+        whirl where both runs whirl."""
         both = self.computed.whirls & self.measured.whirls
         rows = []
         for number, axis in enumerate("xy"):
@@ -90,7 +90,7 @@ class AgainstMeasured(Tabular):
 
 
 def against_measured(run: Run, measurement: Run, signal: str = "journal") -> AgainstMeasured:
-    """Compare the events and the ridges of a run with those of a measurement.
+    """Compare the events and the ridges of a run with a measurement.
 
     Parameters
     ----------

@@ -17,7 +17,6 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.columns import Table, table_of
 from frbcli.errors import Fault, InputError, NotConverged, input_error
-from frbcli.film.bearing_model.table import models
 from frbcli.film.cavitation.table import law_named, laws, names
 from frbcli.html import Tabular
 from frbcli.nearest import did_you_mean
@@ -33,7 +32,7 @@ from frbcli.scene.planning.coarser_plan import cost_of_run
 from frbcli.scene.planning.kinematic_plan import TESTS as KINEMATIC_TESTS
 from frbcli.scene.planning.plan import THEORIES, make_plan
 from frbcli.studies.comparison_columns import VARIANT
-from frbcli.studies.side_by_side import COMMANDS, Ended, RunTask, Tell, in_turn, side_by_side
+from frbcli.studies.side_by_side import COMMANDS, Ended, Report, RunTask, in_turn, side_by_side
 
 NO_HEAT = "none"
 THERMALS = (NO_HEAT, "lumped")
@@ -45,7 +44,7 @@ UNTIL = ("onset", "contact")  # afterwards two runs differ in phase, whatever th
 
 @dataclass(frozen=True)
 class Variant:
-    """One model of the films, how they are coupled to the rotor, and a model of heat, "" for that of the case."""
+    """One model of the films, how they are coupled to the rotor, and a model of heat, "" for the case's own."""
 
     theory: str
     cavitation: str
@@ -61,14 +60,14 @@ class Variant:
 
     @property
     def coupled(self) -> str:
-        """The coupling that "auto" stands for, too."""
+        """The coupling, also for "auto"."""
         return chosen_coupling(self.coupling, self.cavitation)
 
 
 @dataclass(frozen=True)
 class Deviation:
-    """Deviation of the eccentricities from those of the first variant, the largest and the rms until until_s, in s,
-    where either begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
+    """Deviation of the eccentricities from the first variant, the largest and the rms until until_s, in s, where either
+    begins to whirl, touches its shell, or ends. NaN if that is at the very beginning."""
 
     largest: float
     rms: float
@@ -91,7 +90,7 @@ class VariantResult:
 
     @property
     def ring_ratios(self) -> dict[str, float]:
-        """Speed of each ring over that of the rotor in the last LAST of the run, by the names of their signals."""
+        """Speed of each ring over the rotor speed in the last LAST of the run, by the names of their signals."""
         rotor = float(np.mean(_last(self.run, "speed_Hz")))
         rings = [name for name in self.run.signals if name.startswith("ring_speed")]
         return {name: float(np.mean(_last(self.run, name))) / rotor for name in rings} if rotor else {}
@@ -154,7 +153,7 @@ def compare(
     case : Case
         The machine, see `load_case`.
     cavitations, theories, couplings, thermals : sequence of str
-        Names of models; an empty one stands for that of the case. With none given, the model of the case is compared
+        Names of models; an empty one means the model of the case. With none given, the model of the case is compared
         with all that have no state and cost little.
     test : {"runup", "rundown"}
         The scene.
@@ -167,7 +166,7 @@ def compare(
     -------
     Comparison
         The runs, their events, deviations and cost. Ctrl-C, or a variant that does not begin, ends the comparison with
-        the runs that there are by then. Long runs go side by side, one on each core; costs are those of each run.
+        the runs so far. Long runs go side by side, one on each core; each has its own cost.
 
     Raises
     ------
@@ -193,11 +192,11 @@ def compare(
             for number, (its_case, path, resume) in enumerate(zip(cases, paths, begun, strict=True), start=1)
         ]
 
-        def tell(number: int, progress: Progress) -> None:
+        def report(number: int, progress: Progress) -> None:
             if observe is not None:
                 observe(variants[number - 1], number, len(variants), progress)
 
-        ended = dict(_ended(tasks, tell))
+        ended = dict(_ended(tasks, report))
     runs = {number: run for number, run in sorted(ended.items()) if isinstance(run, Run)}
     failures = [end for _, end in sorted(ended.items()) if not isinstance(end, Run)]
     if 1 not in runs:
@@ -208,15 +207,15 @@ def compare(
     return Comparison(case, test, tuple(results), status, message)
 
 
-def _ended(tasks: Sequence[RunTask], tell: Tell) -> Iterator[tuple[int, Ended]]:
+def _ended(tasks: Sequence[RunTask], report: Report) -> Iterator[tuple[int, Ended]]:
     """How each run has ended. Those that take long run side by side, the longest first, if other processes know their
-    models: laws and bearing models that Python has added are known to this one alone."""
+    models: laws that Python has added are known to this one alone."""
     costs = {task.number: _cost_s(task) for task in tasks}
     shipped = all(law_named(law).__module__.startswith("frbcli.") for task in tasks for law in task.case.cavitations)
-    own = not shipped or any(task.case.film.bearing_model for task in tasks)
+    own = not shipped or any(spring.law for task in tasks for spring in task.case.springs)
     if own or joblib.cpu_count() == 1 or sum(costs.values()) - max(costs.values()) < WORTH_A_PROCESS_s:
-        return in_turn(tasks, tell)
-    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), tell)
+        return in_turn(tasks, report)
+    return side_by_side(sorted(tasks, key=lambda task: -costs[task.number]), report)
 
 
 def _cost_s(task: RunTask) -> float:
@@ -256,8 +255,7 @@ def make_variants(
     thermals: Sequence[str] = (),
 ) -> tuple[Variant, ...]:
     """The combinations to compare, see compare. Raises InputError with every wrong name, and for one model alone."""
-    known = (*THEORIES, *(model.name for model in models()))
-    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, known)]
+    faults = [*_unknown("--cavitation", cavitations, names()), *_unknown("--theory", theories, THEORIES)]
     faults += [*_unknown("--coupling", couplings, COUPLINGS), *_unknown("--thermal", thermals, THERMALS)]
     if faults:
         raise InputError(case.name or "case", tuple(faults))
@@ -266,26 +264,26 @@ def make_variants(
     if not (cavitations or theories or couplings or thermals):
         closed = names(law for law in laws() if law.closed)
         others = (Variant(theory, cavitation, own.coupling) for cavitation in closed for theory in THEORIES)
-        found = [own, *(variant for variant in others if _fits(case, variant))]
+        combinations = [own, *(variant for variant in others if _fits(case, variant))]
     else:
-        found = [
+        combinations = [
             Variant(theory, cavitation, coupling, thermal)
             for cavitation in cavitations or (own.cavitation,)
             for theory in theories or (own.theory,)
             for coupling in couplings or (own.coupling,)
             for thermal in thermals or ("",)
         ]
-    variants = tuple(dict.fromkeys(found))
+    variants = tuple(dict.fromkeys(combinations))
     if len(variants) < 2:
         problem = f"names one model only, {variants[0].name}: there is nothing to compare it with."
-        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(known)}, "
+        remedy = f"There are --cavitation {','.join(names())} and --theory {','.join(THEORIES)}, "
         remedy += f"--coupling {','.join(COUPLINGS)}, --thermal {','.join(THERMALS)}."
         raise input_error(case.name or "case", "comparison", "", problem, remedy)
     return variants
 
 
 def deviation(run: Run, reference: Run) -> Deviation:
-    """How far the eccentricities of a run are from those of a reference with the same speeds and output times."""
+    """How far the eccentricities of a run are from a reference with the same speeds and output times."""
     ends = [event["t_s"] for one in (run, reference) for event in one.events if event["kind"] in UNTIL]
     until = min([*ends, run.t_end_s, reference.t_end_s])
     count = min(int(np.searchsorted(run["time_s"], until, side="right")), len(run), len(reference))

@@ -22,12 +22,12 @@ def _event(kind: str, key: str) -> Callable[[Any], float]:
 
 
 def _uncertain(kind: str) -> Callable[[Any], tuple[float, float | None] | None]:
-    """The speed of an event with its uncertainty; that of a run with a second one."""
+    """The speed of an event with its uncertainty, where the run has one."""
     return lambda result: None if result.first(kind) is None else uncertain_pair(result.first(kind))
 
 
 def _of(account: str, key: str) -> Callable[[Any], Any]:
-    """From the cost or the error of a run; NaN where it does not tell it."""
+    """From the cost or the error of a run; NaN where the run does not state it."""
     return lambda result: getattr(result.run, account).get(key, math.nan)
 
 

@@ -3,8 +3,8 @@
 The numbers vary by their logarithms, which makes them of one size and keeps them positive. Every group of residuals
 (synchronous amplitude, frequency and amplitude of the whirl, onset) is divided by its scatter: at first by a share of
 the ridge, so that a start from afar finds the way, then by the scatter of the measured ridge about its own smooth
-course, which its second differences tell. The standard errors follow from the covariance (J^T J)^-1 of these
-residuals; where they scatter more than the measurement does, from that.
+course, judged by its second differences. The standard errors follow from the covariance (J^T J)^-1 of these residuals;
+where the residuals scatter more than the measurement does, from their own scatter.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ STEP = 0.01  # relative change of a number for its derivatives: above what steps
 FIRST_SHARE = 0.05  # of the largest of a ridge: its scatter for the first way
 LEAST_SHARE = 1e-3  # of the same: no ridge is known better
 EDGE = 2  # speeds at both ends of the ridges
-BESIDE = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
+NEAR_ONSET = 1.5  # distances of the speeds: so near to the onset a ridge grows too fast to be compared
 SECOND = 6.0  # variance of a second difference of independent numbers over theirs
 SETTLED = 1e-3  # relative change of the numbers that ends a fit
 LARGE = 1e3  # residuals of a case that cannot be run
@@ -70,7 +70,7 @@ class Fitted:
 @dataclass(frozen=True, repr=False)
 class Fit(Tabular):
     """case: with the numbers found; numbers: them; correlation: (k, k) of their errors; before, after: ridges of the
-    run with the numbers at first and in the end, measured: those of the measurement; runs: how many were made; chi:
+    run with the numbers at first and in the end, measured: of the measurement; runs: how many were made; chi:
     root mean square of the residuals over their scatter."""
 
     case: Case
@@ -149,12 +149,12 @@ def fit(
     chi = math.sqrt(float(left @ left) / freedom)
     covariance = np.linalg.pinv(slopes.T @ slopes) * max(1.0, chi) ** 2
     errors = np.sqrt(np.diag(covariance))
-    told = tuple(
+    fitted = tuple(
         replace(n, value=n.start * math.exp(x), error=n.start * math.exp(x) * float(error))
         for n, x, error in zip(numbers, at, errors, strict=True)
     )
     correlation = covariance / np.outer(errors, errors)
-    return Fit(trial.case_at(at), told, correlation, before, after, trial.measured, trial.count, chi)
+    return Fit(trial.case_at(at), fitted, correlation, before, after, trial.measured, trial.count, chi)
 
 
 class _Trial:
@@ -179,7 +179,7 @@ class _Trial:
         self._known: dict[tuple[float, ...], Ridges] = {}
 
     def case_at(self, x: Array) -> Case:
-        """The case with the numbers that are exp(x) times those at first."""
+        """The case with the numbers at exp(x) times their first values."""
         settings = [f"{key}={value!r}" for key, value in self._values(x).items()]
         return self._case.with_settings(*settings)
 
@@ -204,12 +204,12 @@ class _Trial:
     def residuals(self, x: Array, scatter: Sequence[Scatter], _: Array) -> Array:
         """Computed less measured ridges over their scatter; the limits matter to the slopes only."""
         try:
-            found = self.ridges(x)
+            computed = self.ridges(x)
         except FrbError:
             if not self._known:
                 raise
             return np.full(sum(len(group) for group in _differences(self.measured, self.measured)), LARGE)
-        groups = _differences(found, self.measured)
+        groups = _differences(computed, self.measured)
         return np.concatenate([group / size for group, size in zip(groups, scatter, strict=True)])
 
     def slopes(self, x: Array, scatter: Sequence[Scatter], limits: Array) -> Array:
@@ -232,43 +232,43 @@ class _Trial:
 
 def _compared(measured: Ridges) -> tuple[Truths, Truths]:
     """(n,) at which speeds synchronous amplitudes and whirls are compared: below and above the measured onset, not
-    beside it."""
+    close to it."""
     known = np.isfinite(measured.synchronous).all(axis=1)
     still, whirls = ~measured.whirls & known, measured.whirls & np.isfinite(measured.whirl_Hz)
     if not np.isfinite(measured.onset_Hz):
         return still, whirls
-    apart = BESIDE * float(np.median(np.diff(measured.speed_Hz)))
+    apart = NEAR_ONSET * float(np.median(np.diff(measured.speed_Hz)))
     after = measured.speed_Hz - measured.onset_Hz
     return still & (after < -apart), whirls & (after > apart)
 
 
-def _differences(found: Ridges, measured: Ridges) -> list[Array]:
+def _differences(computed: Ridges, measured: Ridges) -> list[Array]:
     """Computed less measured, by groups: synchronous amplitudes in m, frequencies in Hz and amplitudes in m of the
     whirl, the onset in Hz. A ridge that the computed run does not have there counts as nothing, except at the EDGE
     outermost speeds, which its windows may not reach: what is not known there is no difference."""
     still, whirls = _compared(measured)
     pairs = [
-        (_reached(found.synchronous, measured.synchronous)[still].ravel(), measured.synchronous[still].ravel()),
-        (_reached(found.whirl_Hz, measured.whirl_Hz)[whirls], measured.whirl_Hz[whirls]),
-        (_reached(found.whirl, measured.whirl)[whirls], measured.whirl[whirls]),
-        (_onset(found), _onset(measured)) if np.isfinite(measured.onset_Hz) else (np.zeros(0), np.zeros(0)),
+        (_reached(computed.synchronous, measured.synchronous)[still].ravel(), measured.synchronous[still].ravel()),
+        (_reached(computed.whirl_Hz, measured.whirl_Hz)[whirls], measured.whirl_Hz[whirls]),
+        (_reached(computed.whirl, measured.whirl)[whirls], measured.whirl[whirls]),
+        (_onset(computed), _onset(measured)) if np.isfinite(measured.onset_Hz) else (np.zeros(0), np.zeros(0)),
     ]
     return [np.nan_to_num(mine) - other for mine, other in pairs]
 
 
-def _reached(found: Array, measured: Array) -> Array:
+def _reached(computed: Array, measured: Array) -> Array:
     """A computed ridge (n, ...) over the speeds; the measured one at the outermost ones that its windows miss."""
-    filled, places = found.copy(), np.arange(len(found))
-    known = np.flatnonzero(np.isfinite(found.reshape(len(found), -1)).all(axis=1))
-    if len(known) and known[0] <= EDGE and known[-1] >= len(found) - 1 - EDGE:
+    filled, places = computed.copy(), np.arange(len(computed))
+    known = np.flatnonzero(np.isfinite(computed.reshape(len(computed), -1)).all(axis=1))
+    if len(known) and known[0] <= EDGE and known[-1] >= len(computed) - 1 - EDGE:
         outside = (places < known[0]) | (places > known[-1])
         filled[outside] = measured[outside]
     return filled
 
 
-def _onset(found: Ridges) -> Array:
+def _onset(computed: Ridges) -> Array:
     """(1,) Hz; of a run that does not whirl, its last speed."""
-    return np.array([found.onset_Hz if np.isfinite(found.onset_Hz) else found.speed_Hz[-1]])
+    return np.array([computed.onset_Hz if np.isfinite(computed.onset_Hz) else computed.speed_Hz[-1]])
 
 
 def _reach(run: Run) -> float:
@@ -292,15 +292,15 @@ def _shares(measured: Ridges, run: Run) -> list[Scatter]:
 def _scatter(measured: Ridges, run: Run) -> list[Scatter]:
     """The scatter of each measured ridge about its smooth course. When a whirl begins is not known better than _reach,
     so that its amplitude, where it still grows, is not either."""
-    found, reach = list[Scatter](), _reach(run)
+    scatter, reach = list[Scatter](), _reach(run)
     for group in _groups(measured):
         second = np.diff(group, 2, axis=0)
         rough = float(np.sqrt(np.mean(second**2) / SECOND)) if second.size else FIRST_SHARE * _largest(group)
-        found.append(max(rough, LEAST_SHARE * _largest(group)))
+        scatter.append(max(rough, LEAST_SHARE * _largest(group)))
     grown = _groups(measured)[-1]
     earlier = np.interp(measured.speed_Hz[_compared(measured)[1]] - reach, measured.speed_Hz, measured.whirl)
-    found[-1] = np.hypot(found[-1], grown - earlier)
-    return [*found, reach]
+    scatter[-1] = np.hypot(scatter[-1], grown - earlier)
+    return [*scatter, reach]
 
 
 def _largest(group: Array) -> float:

@@ -34,9 +34,9 @@ class Rung:
 
 @dataclass(frozen=True)
 class RungError:
-    """Against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s, where a
-    whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor speeds at
-    which the whirl begins, threshold_Hz: of those from which on it grows by linear stability, NaN if either has none;
+    """Error against the reference. eccentricity_largest, eccentricity_rms: deviation from the start until until_s,
+    where a whirl begins to grow in either run, or it touches its shell or ends; onset_Hz: difference of the rotor
+    speeds at which the whirl begins; threshold_Hz: difference of the stability thresholds, NaN if either has none;
     force_relative: of the film forces at states of the run, against a finer mesh."""
 
     eccentricity_largest: float
@@ -80,17 +80,17 @@ class AccuracyLadder(Tabular):
     @property
     def front(self) -> tuple[RungResult, ...]:
         """Pareto's front: the rungs for which no cheaper rung has a smaller error."""
-        best, found = math.inf, []
+        best, cheapest = math.inf, []
         for result in sorted(self.ladder, key=lambda item: item.cpu_s):
             if result.error.eccentricity_largest < best:
                 best = result.error.eccentricity_largest
-                found.append(result)
-        return tuple(found)
+                cheapest.append(result)
+        return tuple(cheapest)
 
     def above_front(self, quiet: bool = False) -> float:
-        """How many times as much the choice of the plan costs as the cheapest rung that is as close; 1 on the front.
-        quiet: by the counted work in place of the measured CPU time. Infinite if that run did not begin, and beside
-        runs that end at once, which cost nothing; NaN if its error is not known."""
+        """Cost of the planned rung over the cost of the cheapest rung that is as close; 1 on the front.
+        quiet: by the counted work instead of the measured CPU time. Infinite if that run did not begin, and among runs
+        that end at once, which cost nothing; NaN if its error is not known."""
         planned = next((item for item in self.ladder if item.planned), None)
         if planned is None:
             return math.inf
@@ -124,7 +124,7 @@ def _difference(value: float) -> str:
 RUNG = (
     Column("theory", "", "theory of the films"),
     Column("cavitation", "", "cavitation model"),
-    Column("mesh", "", "elements or cells along and around; none of the short bearing and bearing models"),
+    Column("mesh", "", "elements or cells along and around; none of the short bearing"),
     Column("tolerance", "", "local error of a step", shown=(Shown("tol.", _tolerance),)),
     Column("coupling", "", "coupling of rotor and films"),
 )

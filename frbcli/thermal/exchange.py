@@ -21,14 +21,14 @@ FIRST, SECOND, CONDUCTANCE, OF_FILM = range(4)
 # they were made: clearance m, viscosity Pa s, Couette's resistance N m s; Q eta / C^3 of the formula m Pa s / s.
 SUPPLY, INLET, BASE, REFERENCE, VISCOSITY, DRAG, FORMULA = range(7)
 # Numbers: volumetric heat capacity of the oil at 0 K and its slope, m, hottest film K, Vogel's law (3.12); 1 where the
-# side flow is that of the formula; 1 where films are in balance at each instant.
+# side flow follows from the formula; 1 where films are in balance at each instant.
 HEAT_AT_ZERO, HEAT_SLOPE, MIXING, HOTTEST, ETA_0, A, C, BY_FORMULA, BALANCED = range(9)
 # What a run has gone through so far, in J: dissipated by the films, carried away by the oil, taken by nodes of given
 # temperature, kept by the films; and 1 + the film that became too hot, 0 if none.
 DISSIPATED, CARRIED, GIVEN, IN_FILMS, HOT, BOOKS = range(6)
-# Rows of what a film is now: power W, flow m^3/s, viscosity Pa s, clearance m, scale of its pressures over that of its
-# table, share of its gap that is oil, heat that its oil takes along W/K, share of its gauge supply pressure; the first
-# two and the clearance at the start of the last step.
+# Rows of what a film is now: power W, flow m^3/s, viscosity Pa s, clearance m, scale of its pressures over the table's,
+# share of its gap that is oil, heat that its oil takes along W/K, share of its gauge supply pressure; the first two and
+# the clearance at the start of the last step.
 POWER, FLOW, ETA, CLEARANCE, SCALE, SHARE, OIL_HEAT, SHARE_OF_SUPPLY = range(8)
 POWER_BEFORE, FLOW_BEFORE, CLEARANCE_BEFORE, FILM_ROWS = range(8, 12)
 # What the last step has added to the books, its length in s, and then what it has added to the temperatures of n nodes.
@@ -146,7 +146,7 @@ def fastest(capacity: Array, links: Array, films: Array, numbers: Array, now: Ar
 
 @compiled(inline=True)
 def held_share(films: Array, now: Array, f: int) -> float:
-    """Oil in a film over that of its full gap at the reference clearance."""
+    """Oil in a film over the oil of its full gap at the reference clearance."""
     return float(max(now[SHARE, f], 1e-3) * now[CLEARANCE, f] / films[REFERENCE, f])
 
 
@@ -234,10 +234,9 @@ def heat_step(
 
     The backward differentiation formula of second order for steps of any length is Euler's implicit formula for a
     shorter step that begins where a share of the last change has led. What follows from it for temperatures holds for
-    the books, too: what one node loses is what others gain, to round-off. Rates are those of `ahead`, which
-    extrapolates the temperatures, or where a step is not short against the time constants of all nodes, those of its
-    end: nodes of little capacity are in balance then.
-    """
+    the books, too: what one node loses is what others gain, to round-off. Rates are taken at `ahead`, which
+    extrapolates the temperatures, or where a step is not short against the time constants of all nodes, at its end:
+    nodes of little capacity are in balance then. """
     capacity, links, films, numbers, _ = model
     balanced, count, n = numbers[BALANCED] != 0.0, films.shape[1], temperatures.shape[0]
     ratio = step / last[LENGTH] if last[LENGTH] > 0.0 else 0.0

@@ -1,9 +1,8 @@
 """The steady temperatures of a machine: what the films dissipate leaves with the oil and through the walls.
 
-Power and flow of the films follow from their solution. Next to it both are taken as those of concentric films, whose
-power is in proportion to the viscosity and whose flow to its inverse; what the temperatures that then balance lack
-follows from one solution to the next, and from one speed to the next (Broyden, Math. Comp. 19, 1965).
-"""
+Power and flow of the films follow from their solution. Next to it both are taken as for concentric films, whose power
+is in proportion to the viscosity and whose flow to its inverse; what the temperatures that then balance lack follows
+from one solution to the next, and from one speed to the next (Broyden, Math. Comp. 19, 1965). """
 
 from __future__ import annotations
 
@@ -21,7 +20,7 @@ ROUNDS, ITERATIONS = 60, 200
 LONGEST = 30.0  # K by which a temperature changes in one iteration of Newton's method
 FURTHEST = 100.0  # K by which it changes from one solution of the films to the next
 DIFFERENCE = 1e-4  # K
-LEAST_CHANGE = 1e-9  # K from which a change tells a slope
+LEAST_CHANGE = 1e-9  # K from which a change resolves a slope
 COLDEST = 5.0  # K above the pole of the viscosity law
 
 
@@ -78,7 +77,7 @@ def steady_heat(
         step = np.asarray(np.linalg.lstsq(slope, -change)[0])
         left, speeds = float(np.abs(step).max()), films.speeds
         if left < SETTLED and rounds > 0:
-            return _found(model, temperatures, viscosities, clearances, films, slope)
+            return _with_losses(model, temperatures, viscosities, clearances, films, slope)
         if rounds >= ROUNDS // 2:
             step = 0.5 * change
         step *= min(1.0, FURTHEST / max(left, 1e-300))
@@ -86,7 +85,7 @@ def steady_heat(
     raise NotConverged(f"The temperatures do not settle: they still change by {left:.2g} K after {ROUNDS} rounds.")
 
 
-def _found(
+def _with_losses(
     model: HeatModel, t: Array, viscosities: Array, clearances: Array, films: FilmHeat, slope: Array
 ) -> SteadyHeat:
     gain, whole = rates(model, t, films.power, films.flow, clearances), float(films.power.sum())

@@ -322,7 +322,7 @@ def test_the_slow_roll_vector_is_that_of_a_surface(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("changes", "fault"),
     [
-        ({"tacho": None, "speed_Hz": 4.0}, "does not tell the angle"),
+        ({"tacho": None, "speed_Hz": 4.0}, "does not hold the angle"),
         ({"slow_roll_Hz": 2.0}, "turns 0 times within 10% of 2 Hz"),
     ],
 )

@@ -13,8 +13,8 @@ from synthetic_run import Rotor, as_run, make_run
 
 from frbcli.analysis.events import WHIRL_BEGINS, find_events
 from frbcli.analysis.uncertainty import (
-    BESIDE,
     BETWEEN,
+    BY_SHARE,
     FAINT,
     NEAR,
     NEAR_REVOLUTIONS,
@@ -65,7 +65,7 @@ def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> 
     found = with_uncertainties(run, own, second)
     usual = TRIMMED * 0.01 * (2.0 / 3.0) ** 0.5  # by the root mean square of 0, 1 and 1 %, three of the four
     assert found[3]["speed_uncertainty_Hz"] == pytest.approx(SAFETY * STUDENT[2] / STUDENT[0] * usual * 210.0)
-    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(0.5 * BESIDE * 0.01 * 120.0)
+    assert found[0]["speed_uncertainty_Hz"] == pytest.approx(0.5 * BY_SHARE * 0.01 * 120.0)
     on_cells = with_uncertainties(run, own, second, share=1.2)  # no more than of a whirl that is alone
     assert on_cells[0]["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 0.01 * 120.0)
 

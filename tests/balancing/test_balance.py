@@ -243,14 +243,14 @@ def test_planes_that_are_alike_are_doubtful_or_refused(tmp_path: Path, capsys: p
     document = balanced([*words, *PULSES, *Y], capsys)
     assert document["status"] == "doubtful"
     assert document["condition"] > 50.0
-    assert any("hard to tell apart" in doubt for doubt in document["doubts"])
+    assert any("hard to separate" in doubt for doubt in document["doubts"])
     assert frb([*words, *PULSES, *Y]) == 0
     said = capsys.readouterr().out
     assert "Doubtful:" in said
     assert "doubtful corrections" in said
     assert max(map(len, said.splitlines())) <= 80
     document = balanced([*recordings(tmp_path, alike(0.0)), *PULSES, *Y], capsys, 3)
-    assert "cannot be told apart" in document["message"]
+    assert "cannot be separated" in document["message"]
 
 
 def test_a_feeble_trial_is_doubtful(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

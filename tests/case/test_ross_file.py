@@ -305,7 +305,7 @@ def test_files_that_hold_no_rotor(content: bytes | None, problem: str, tmp_path:
 def test_not_beside_sections(tmp_path: Path) -> None:
     (tmp_path / "rotor.toml").write_text(to_toml(rotor_file()))
     text = CASE.replace("[oil]", '[[shaft]]\nlength = "1 m"\ndiameter = "10 mm"\n[oil]')
-    with pytest.raises(InputError, match=r"given beside \[\[shaft\]\]"):
+    with pytest.raises(InputError, match=r"given with \[\[shaft\]\]"):
         load_case_text(text, folder=tmp_path)
 
 

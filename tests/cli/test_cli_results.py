@@ -78,18 +78,18 @@ def test_waterfall_tells_json_what_it_did(run_file: Path, capsys: pytest.Capture
 def test_waterfall_takes_a_window_that_fits_the_ramp_and_tells_what_a_longer_one_loses(
     run_file: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """300 Hz in 1 s: 1/sqrt(300) s."""
+    """300 Hz in 1 s: 2.3 widths part 1X and 0.5X from 75 Hz on, which is longer than 1/sqrt(300) s."""
     picture = run_file.with_name("w.svg")
     assert frb(["waterfall", str(run_file), "-o", str(picture), "--json"]) == 0
     document = json.loads(capsys.readouterr().out)
-    assert document["window_s"] == pytest.approx(300.0**-0.5, rel=1e-3)
-    assert document["synchronous_low_dB"] == pytest.approx(0.064, abs=0.002)
+    assert document["window_s"] == pytest.approx(2.3 / 37.5, rel=1e-3)
+    assert document["synchronous_low_dB"] == pytest.approx(0.063, abs=0.001)
     assert "dB low" not in picture.read_text()
     assert frb(["waterfall", str(run_file), "-o", str(picture), "--json", "--window", "0.2 s"]) == 0
     said = capsys.readouterr()
-    assert json.loads(said.out)["synchronous_low_dB"] == pytest.approx(4.9, abs=0.1)
-    assert "up to 4.9 dB low" in picture.read_text()
-    assert "up to 4.9 dB low" in said.err + said.out
+    assert json.loads(said.out)["synchronous_low_dB"] == pytest.approx(3.66, abs=0.05)
+    assert "up to 3.7 dB low" in picture.read_text()
+    assert "up to 3.7 dB low" in said.err + said.out
 
 
 def test_waterfall_draws_amplitudes_by_order(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -134,7 +134,7 @@ def test_no_resting_position_is_exit_3(capsys: pytest.CaptureFixture[str]) -> No
     assert frb(["runup", *QUICK, "--set", "start.position=resting", "--json"]) == 3
     said = capsys.readouterr()
     assert json.loads(said.out)["status"] == "not-converged"
-    assert "resting position" in said.err
+    assert "static equilibrium" in said.err
 
 
 # --- progress ---
@@ -277,7 +277,7 @@ def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
     words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
     assert frb(words) == 0
     assert "steps/rev" not in capsys.readouterr().err
-    monkeypatch.setattr("frbcli.cli.progress.TOLD_EVERY_s", 0.02)
+    monkeypatch.setattr("frbcli.cli.progress.PRINT_EVERY_s", 0.02)
     assert frb(words) == 0
     assert "steps/rev" in capsys.readouterr().err
     assert frb([*words, "--quiet"]) == 0

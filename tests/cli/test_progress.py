@@ -43,7 +43,7 @@ def test_without_a_terminal_a_line_comes_now_and_then(
         tell("a rung", number, 100, PROGRESS)
         spent[0] += 1.0
     lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 2 * int(99 / (progress.TOLD_EVERY_s + 1.0))
+    assert len(lines) == 2 * int(99 / (progress.PRINT_EVERY_s + 1.0))
     assert any(re.match(r"\d+ of 100: a rung: .*left$", line) for line in lines)
 
 

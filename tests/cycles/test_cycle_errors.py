@@ -147,7 +147,7 @@ def test_a_fold_that_the_other_films_do_not_have_is_uncertain() -> None:
 
 def test_a_branch_without_cycles_is_not_in_the_legend() -> None:
     found, _ = beside(SOFT)
-    empty = CycleBranch(None, (), "No cycle was found beside the Hopf point.")
+    empty = CycleBranch(None, (), "No cycle was found next to the Hopf point.")
     figure = limit_cycles_figure(replace(found, branches=(*found.branches, empty)))
     told = [text.get_text() for text in figure.legends[0].get_texts()]
     assert [words for words in told if words.startswith("cycles")] == ["cycles, branch 1"]

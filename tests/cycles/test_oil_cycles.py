@@ -353,7 +353,7 @@ def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> Non
     words += [word for setting in settings for word in ("--set", setting)]
     assert run([*words, "--csv", str(tmp_path / "oil.csv")]) == 0
     document = json.loads(capsys.readouterr().out)
-    assert "keep their oil" in document["notes"][0]
+    assert "are mass-conserving" in document["notes"][0]
     (branch,) = document["branches"]
     assert branch["points"][0]["torque_N_m"] is None
     assert (tmp_path / "oil.png").exists()

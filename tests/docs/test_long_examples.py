@@ -11,7 +11,7 @@ from test_docstrings import FUNCTIONS, sections
 
 import frbcli
 
-OWN = {"add_law", "remove_law", "add_bearing", "remove_bearing"}  # of models that the reader has written
+OWN = {"add_law", "remove_law", "add_force_law", "remove_force_law"}  # of models that the reader has written
 QUICK = {"measured_run", "read_run", "find_events", "order_track", "write_report", "against_measured", "damped_modes",
          "draw_eccentricity", "draw_orbit", "draw_waterfall", "draw_spectrum"}  # fmt: skip
 LONG = [name for name in FUNCTIONS if "# doctest: +SKIP" in sections(name)["Examples"] and name not in OWN]

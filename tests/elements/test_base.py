@@ -177,7 +177,7 @@ def test_bad_motions_of_the_ground_are_refused(given: tuple[Any, str, str]) -> N
 
 
 def test_modes_without_masses_do_not_say_what_the_ground_moves() -> None:
-    with pytest.raises(InputError, match="masses, and those of the housing are not known"):
+    with pytest.raises(InputError, match="masses, and the masses of the housing are unknown"):
         machine(RIGID, shaken(), housing=MODES)
 
 

@@ -158,7 +158,7 @@ def test_a_rotor_that_does_not_tilt_has_its_axis_alone() -> None:
     case = frbcli.load_case("jeffcott").with_settings(more)
     assert make_rotor(case).over_speed is None
     (element,) = ThrustElement.of(case)
-    assert "does not tilt" in element.told(site_of(case))[2]
+    assert "does not tilt" in element.plan_line(site_of(case))[2]
     point = frbcli.stability(case, [300.0]).points[0]
     assert point.axial is not None
     assert point.axial.films.load == pytest.approx(40.0, rel=1e-7)
@@ -219,7 +219,7 @@ def test_a_run_from_standstill_under_load_is_refused_with_a_speed_that_will_do()
     ("changed", "said"),
     [
         ({"thrust_bearing": None}, "has no thrust bearing that carries its load"),
-        ({"thrust_bearing": [PADS, PADS]}, "beside 2 thrust bearings"),
+        ({"thrust_bearing": [PADS, PADS]}, "with 2 thrust bearings"),
         ({"thrust_bearing": [PADS | {"pads": 2}]}, "fewer than three pads"),
         ({"thrust_bearing": [PADS | {"side": "left"}]}, "pulls the collar off its pads"),
         ({"axial": {"load": "0 N"}, "thrust_bearing": [PADS | {"side": "right"}]}, "is 0: the film pushes the collar"),

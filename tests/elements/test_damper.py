@@ -407,7 +407,7 @@ def test_bad_dampers_are_refused(given: tuple[dict[str, Any], str, str]) -> None
 
 
 def test_a_damper_lies_around_the_film_in_its_shell() -> None:
-    with pytest.raises(InputError, match="not above that of the film in the shell"):
+    with pytest.raises(InputError, match="not above the value of the film in the shell"):
         load_case("jeffcott").with_settings({"bearing.damper": DAMPER | {"diameter": "25 mm"}})
 
 

@@ -209,7 +209,7 @@ def test_places_of_a_turbocharger_are_bearings_and_disks() -> None:
 
 FAULTS = {
     "no such place": (push("compresor"), "force.0.at", "no place"),
-    "both": (push(order=2.0, frequency="50 Hz"), "force.0.frequency", "beside order"),
+    "both": (push(order=2.0, frequency="50 Hz"), "force.0.frequency", "with order"),
     "order 0": (push(order=0.0), "force.0.order", "is 0"),
     "frequency 0": (push(frequency="0 Hz"), "force.0.frequency", "is 0"),
     "phase": (push(phase="10 deg"), "force.0.phase", "constant"),
@@ -290,7 +290,7 @@ def test_the_lines_of_a_table_are_no_whirl(broad: bool, tmp_path: Path, capfd: p
         '[[force]]\nat = "journal"\nfile = "force.csv"\n', encoding="utf-8")  # fmt: skip
     assert frb(["runup", str(tmp_path / "case.toml"), "-o", str(tmp_path / "run.h5")]) == 0
     told = " ".join("".join(capfd.readouterr()).split())
-    assert ("not told apart from whirl" in told) is broad
+    assert ("not separated from whirl" in told) is broad
     if not broad:
         assert {event["kind"] for event in frbcli.read_run(tmp_path / "run.h5").events} == OWN_EVENTS
 

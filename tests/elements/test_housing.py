@@ -198,7 +198,7 @@ def test_modes_with_masses_are_orthonormal_and_have_the_weight() -> None:
     case = case_from_dict(SHAFT | {"housing": {"modes": modes, "masses": {"left": "4 kg", "right": "9 kg"}}})
     np.testing.assert_allclose(make_rotor(case).static_load[-4:], [0.0, -2.0 * G, 0.0, -3.0 * G], rtol=1e-12)
     assert load_case_text(case.source_text, name=case.name) == case
-    with pytest.raises(InputError, match="in place of 1"):
+    with pytest.raises(InputError, match="instead of 1"):
         case.with_settings({"housing.masses": {"left": "5 kg", "right": "9 kg"}})
     turned = [*modes[:3], modes[3] | {"at": {"left": [0.0, 0.0], "right": [0.2, 0.2]}}]
     with pytest.raises(InputError, match="with mode 3"):
@@ -240,7 +240,7 @@ def test_modes_out_of_a_table_are_those_that_stand_in_the_case(tmp_path: Path) -
 
 
 BAD_TABLES = {
-    "orthonormal": (TABLE.replace("91,0,0,0,0.33", "91,0,0,0,0.4"), {"masses": LUMPS}, "in place of 1"),
+    "orthonormal": (TABLE.replace("91,0,0,0,0.33", "91,0,0,0,0.4"), {"masses": LUMPS}, "instead of 1"),
     "half a place": (TABLE.replace(",right_y", ""), {}, "has 6 values in row 1"),
     "no y": ("frequency_Hz,left_x,right_x\n80,1,1\n", {}, "lacks left_y, right_y"),
     "no frequency": (TABLE.replace("frequency_Hz", "mode"), {}, "lacks frequency_Hz"),
@@ -250,9 +250,9 @@ BAD_TABLES = {
     "no rows": (TABLE.splitlines()[0], {}, "has 0 modes"),
     "empty": ("", {}, "is empty"),
     "beside modes": (TABLE, {"modes": [{"frequency": "80 Hz", "at": {"left": [1.0, 0.0], "right": [0.0, 0.0]}}]},
-                     "beside modes"),
+                     "with modes"),
     "a bearing left out": ("frequency_Hz,left_x,left_y\n80,1,0\n", {}, "no displacement at right"),
-    "beside a rigid housing": (TABLE, {"mass": "3 kg"}, "beside modes"),
+    "beside a rigid housing": (TABLE, {"mass": "3 kg"}, "with modes"),
 }  # fmt: skip
 
 
@@ -401,7 +401,7 @@ FAULTS: dict[str, tuple[dict[str, Any], str, str]] = {
     "mount without position": (
         {"mounts": [*mounted()["mounts"], {"stiffness": "1 N/m"}]}, "housing.mounts.2.position", "is missing"
     ),
-    "both": ({"modes": [MODE]}, "housing.mass", "beside modes"),
+    "both": ({"modes": [MODE]}, "housing.mass", "with modes"),
     "a bearing left out": (
         {"mass": None, "inertia": None, "position": None, "mounts": None,
          "modes": [MODE | {"at": {"left": [1.0, 0.0]}}]},

@@ -116,7 +116,7 @@ def test_films_are_no_stiffer_than_rigid_ones() -> None:
 
 
 def test_natural_frequencies_on_springs_leave_it_out_and_say_so() -> None:
-    with pytest.raises(InputError, match="beside the bearings"):
+    with pytest.raises(InputError, match="adds to the bearings"):
         natural_modes(load_case("turbocharger-car", ['magnetic_pull=[{ at = "disk_turbine", pull = "1e5 N/m" }]']), 1e7)
 
 

@@ -3,9 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
-import runpy
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +20,7 @@ from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
-from frbcli.rotor.port import ANSWER, MOTION, XX, Port
+from frbcli.rotor.port import ANSWER, MOTION, XX
 from frbcli.rotor.port_function import evaluate
 from frbcli.runs.run import runup
 from frbcli.scene.gate.gate import faults
@@ -221,32 +218,6 @@ def test_a_spring_between_two_places_acts_on_both() -> None:
     del data["spring"]
     stiffer = stability(case_from_dict(data, "stiffer"), [100.0]).points[0].eigenvalues
     np.testing.assert_allclose(np.sort(both.imag), np.sort(stiffer.imag), rtol=1e-9)
-
-
-def test_a_force_of_ones_own_moves_a_machine(tmp_path: Path) -> None:
-    """F = -p d^5, the law of docs/adding-a-model.md: a quarter period from its energy."""
-
-    page = (Path(__file__).parents[2] / "docs" / "adding-a-model.md").read_text(encoding="utf-8")
-    (example,) = (text for text in re.findall(r"```python\n(.*?)```", page, re.DOTALL) if "ForceLaw" in text)
-    file = tmp_path / "own.py"
-    file.write_text(example, encoding="utf-8")
-    law = runpy.run_path(str(file))["FifthPower"](1e25)
-
-    amplitude = 3e-5
-
-    def quarter(angle: float) -> float:
-        x = amplitude * math.sin(angle)
-        rest = (amplitude**4 + amplitude**2 * x**2 + x**4) * 1e25 / 3.0
-        return 1.0 / math.sqrt((K + rest) / M)
-
-    period = 4.0 * quad(quarter, 0.0, 0.5 * math.pi, epsabs=0.0, epsrel=1e-12)[0]
-    system = made(sprung({"stiffness": "1e-3 N/m"}))
-    port = Port("own", dict(system.rotor.points)["journal"], 1.0, law)
-    system = replace(system, rotor=replace(system.rotor, ports=(port,)))
-    profile = speed_profile([0.0, 5.0 * period], [0.0, 0.0])
-    begin = start(system, profile, np.array([amplitude, 0.0]))
-    result = march(system, profile, control(tolerance=1e-10, longest=1e-4, output=period), begin)
-    np.testing.assert_allclose(result.q[:, 0], amplitude, rtol=1e-6)
 
 
 @pytest.mark.parametrize(

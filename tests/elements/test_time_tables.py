@@ -157,7 +157,7 @@ def test_a_long_interval_between_equal_values_is_no_gap(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("keys", [{"order": 2.0}, {"frequency": "5 Hz"}, {"rotating": True}, {"phase": "10 deg"}])
 def test_a_table_is_refused_beside_what_makes_a_force_harmonic(keys: dict[str, Any], tmp_path: Path) -> None:
-    with pytest.raises(InputError, match="beside file"):
+    with pytest.raises(InputError, match="with file"):
         machine(tmp_path, written(tmp_path, *row(0)), **keys)
 
 

@@ -132,11 +132,11 @@ def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: p
     monkeypatch.setattr(FilmSolver, "steady", counting)
     system = static_films.static_films(with_rates("1 ms", "1 s")).system
     before = resting_position(system, 2.0 * math.pi * 160.0)
-    near = resting_position(system, 2.0 * math.pi * 155.0, before.displacements, beside=before)
+    near = resting_position(system, 2.0 * math.pi * 155.0, before.displacements, neighbour=before)
     foreseen, omega, counts = 2.0 * near.displacements - before.displacements, 2.0 * math.pi * 150.0, []
     for beside in (None, near):
         iterations.clear()
-        found = resting_position(system, omega, foreseen, beside=beside)
+        found = resting_position(system, omega, foreseen, neighbour=beside)
         counts.append(sum(iterations))
         if beside is None:
             alone = found
@@ -146,7 +146,7 @@ def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: p
 
 @pytest.mark.nightly
 def test_gas_that_is_released_fast_and_absorbed_slowly_raises_the_threshold() -> None:
-    """By more than both errors; docs/theory.md has the table."""
+    """By more than both errors; docs/theory.md has the values."""
     case = with_rates("0.1 ms", "1 s")
     _, points = stability_points(case, [130.0, 200.0])
     found, note = find_threshold(case, StaticMachines(case, memory=True), points)

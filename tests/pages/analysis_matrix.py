@@ -10,10 +10,8 @@ from collections.abc import Mapping, Sequence
 
 from paths import DOCS
 
-import frbcli
 from frbcli.case.reading.load import load_case
 from frbcli.errors import Fault, InputError
-from frbcli.film.bearing_model.model import BearingModel
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import (
@@ -30,7 +28,6 @@ from frbcli.scene.gate.rule import (
 )
 
 PAGE = DOCS / "matrix.md"
-MODEL, FLOWLESS = "own", "own-without-flow"
 MOTION = 'motion = { eccentricity = 0.5, angle = "-60 deg", speed = "20 Hz", frequency = "20 Hz" }'
 TWO_PHASE = "film.cavitation=two-phase"
 ELROD, BUBBLY = "film.cavitation=elrod", "film.cavitation=bubbly"
@@ -99,7 +96,6 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
     "two-phase": ("jeffcott", (TWO_PHASE,)),
     "two-phase, published form": ("jeffcott", (TWO_PHASE, "film.two-phase.form=published")),
     "ball bearings in squeeze film dampers": ("turbocharger-ball", ()),
-    "bearing model from Python": ("jeffcott", (f"film.theory={MODEL}",)),
     "floating ring": ("floating-ring", ("film.cavitation=half-sommerfeld",)),
     "floating ring, two-phase": ("floating-ring", (TWO_PHASE,)),
     "floating ring that does not turn": ("floating-ring", ("bearing.ring.spin=blocked",)),
@@ -170,30 +166,22 @@ FILMS: dict[str, tuple[str, tuple[str, ...]]] = {
 }
 
 # Pairs of features that a machine may have together.
-MODEL_THEORY = f"film.theory={MODEL}"
 PUBLISHED = (TWO_PHASE, "film.two-phase.form=published")
 APART = "film.coupling=co-simulation"
 PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     "heat and clearance steps": ("jeffcott", (OIL, HEAT, STEP)),
     "heat and the published form": ("jeffcott", (OIL, HEAT, *PUBLISHED)),
-    "heat and a bearing model from Python": ("jeffcott", (OIL, HEAT, MODEL_THEORY)),
-    "heat and a bearing model without its flow": ("jeffcott", (OIL, HEAT, f"film.theory={FLOWLESS}")),
     "heat and co-simulation": ("jeffcott", (OIL, HEAT, APART)),
     "heat and floating rings": ("floating-ring-heat", ()),
     "heat and squeeze film dampers": ("jeffcott", (OIL, HEAT, DAMPER)),
     "clearance steps and the published form": ("jeffcott", (STEP, *PUBLISHED)),
-    "clearance steps and a bearing model from Python": ("jeffcott", (STEP, MODEL_THEORY)),
     "blade loss and co-simulation": ("jeffcott", (LOSS, APART)),
     "clearance steps and co-simulation": ("jeffcott", (STEP, APART)),
     "clearance steps and rings that turn": (
         "floating-ring", ('bearing.outer.clearance_steps=[{time="0.1 s", clearance="75 um"}]',)
     ),
     "rings that turn and the published form": ("floating-ring", PUBLISHED),
-    "rings that turn and a bearing model from Python": (
-        "floating-ring", (MODEL_THEORY, "film.cavitation=half-sommerfeld", 'bearing.inner.supply={kind="none"}')
-    ),
     "co-simulation and the published form": ("jeffcott", (*PUBLISHED, APART)),
-    "co-simulation and a bearing model from Python": ("jeffcott", (APART, MODEL_THEORY)),
     "co-simulation and harmonic forces": ("jeffcott", (HARMONIC, APART)),
     "co-simulation and rings that turn": ("floating-ring", (APART,)),
     "co-simulation and cartridges that turn": ("turbocharger-car-cartridge", (APART,)),
@@ -259,15 +247,9 @@ Reason = tuple[str, str]  # key without the number of a bearing, and problem
 
 def page() -> str:
     """The page in Markdown."""
-    frbcli.add_bearing(BearingModel(MODEL, "one's own", _force, flow=_flow))
-    frbcli.add_bearing(BearingModel(FLOWLESS, "one's own, without its flow", _force))
-    try:
-        reasons: dict[Reason, list[str]] = {}  # with the values of the key
-        rows = _table(reasons, FILMS, tuple(ANALYSES))
-        rows += ["", "## Two features together", "", *_table(reasons, PAIRS, TOGETHER)]
-    finally:
-        frbcli.remove_bearing(MODEL)
-        frbcli.remove_bearing(FLOWLESS)
+    reasons: dict[Reason, list[str]] = {}  # with the values of the key
+    rows = _table(reasons, FILMS, tuple(ANALYSES))
+    rows += ["", "## Two features together", "", *_table(reasons, PAIRS, TOGETHER)]
     notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
     return "\n".join([HEAD, *rows, "", "## Reasons", "", *notes, ""])
 
@@ -339,14 +321,6 @@ def refused(name: str, settings: Sequence[str], analysis: str) -> tuple[Fault, .
     except InputError as error:
         return error.faults
     return ()
-
-
-def _force(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return -1e6 * dx - 1e3 * vx, -1e6 * dy - 1e3 * vy
-
-
-def _flow(dx, dy, vx, vy, omega, bearing):  # type: ignore[no-untyped-def]  # noqa: ARG001
-    return 1e-6
 
 
 if __name__ == "__main__":

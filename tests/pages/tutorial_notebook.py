@@ -35,7 +35,7 @@ def cells() -> list[tuple[str, str]]:
         ("code", 'run = frbcli.runup(case, "turbo.h5")\nrun'),
         ("code", "frbcli.picture(run)"),
         ("code", "run.to_pandas().describe()"),
-        ("markdown", "Waterfall and orbit on axes of one's own:"),
+        ("markdown", "Waterfall and orbit on given axes:"),
         ("code", "from matplotlib import pyplot\n\nfigure, (left, right) = pyplot.subplots(1, 2, figsize=(9, 4), "
          'width_ratios=(2, 1), layout="constrained")\nfrbcli.draw_waterfall(run, signal="front", ax=left)\n'
          'frbcli.draw_orbit(run, bearing="front", ax=right)'),

@@ -113,7 +113,7 @@ def test_a_stability_map_is_as_wide_as_its_curves_and_names_its_shade() -> None:
     (axes,) = figure.axes
     assert axes.get_xlim() == pytest.approx((385.0, 515.0))
     assert axes.get_ylabel() == "oil viscosity in mPa s"
-    assert "resting position unstable" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "static equilibrium unstable" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
 def onset(film: str, t_s: float) -> dict[str, object]:

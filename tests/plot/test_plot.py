@@ -19,6 +19,7 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
+from frbcli.plot.picture import fit
 from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
 from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
 from frbcli.plot.run.orbit import orbit_figure, visible_steps
@@ -57,7 +58,7 @@ def levels(axes: Axes) -> QuadMesh:
 
 
 def test_waterfall_shows_the_whirl_where_it_is(run: Run) -> None:
-    axes = waterfall_figure(run).axes[0]
+    axes = waterfall_figure(run, "time").axes[0]
     mesh = levels(axes)
     assert mesh.get_clim() == LEVELS_dB
     level = np.asarray(mesh.get_array())
@@ -72,7 +73,7 @@ def test_waterfall_shows_the_whirl_where_it_is(run: Run) -> None:
 
 
 def test_waterfall_draws_the_rotor_speed_and_its_half_and_names_them(run: Run) -> None:
-    figure = waterfall_figure(run)
+    figure = waterfall_figure(run, "time")
     whole, half = figure.axes[0].get_lines()
     np.testing.assert_allclose(whole.get_ydata(), 30.0 * np.asarray(whole.get_xdata()), rtol=1e-6)
     np.testing.assert_allclose(half.get_ydata(), 0.5 * np.asarray(whole.get_ydata()))
@@ -85,7 +86,7 @@ def test_waterfall_of_a_ring_draws_the_ring_lines(run: Run) -> None:
     columns = {name: run[name] for name in run.signals}
     ring = {"ring_x_m": run["journal_x_m"], "ring_y_m": run["journal_y_m"]}
     ringed = as_run(columns | ring | {"ring_speed_Hz": 0.25 * run["speed_Hz"]})
-    drawn = [np.asarray(line.get_ydata())[-1] for line in waterfall_figure(ringed).axes[0].get_lines()]
+    drawn = [np.asarray(line.get_ydata())[-1] for line in waterfall_figure(ringed, "time").axes[0].get_lines()]
     np.testing.assert_allclose(np.array(drawn) / drawn[0], [1.0, 0.625, 0.125])
 
 
@@ -99,6 +100,31 @@ def test_waterfall_over_speed_of_an_up_and_down_run_has_two_parts(up_and_down: R
     assert [axes.get_title("left") for axes in figure.axes[:2]] == ["run-up", "run-down"]
     for axes in figure.axes[:2]:
         assert (np.diff(levels(axes).get_coordinates()[0, :, 0]) >= 0.0).all()
+
+
+def test_a_run_up_is_drawn_over_speed_with_the_time_above_and_its_events_by_number(run: Run, up_and_down: Run) -> None:
+    events = [
+        {"kind": "critical-speed", "t_s": 4.0, "speed_Hz": 120.0, "frequency_Hz": 120.0, "film": None, "point": "disk"},
+        {"kind": "onset", "t_s": 6.5, "speed_Hz": 195.0, "frequency_Hz": 97.0, "film": "journal", "point": None},
+    ]
+    figure = waterfall_figure(replace(run, events=events))
+    axes = figure.axes[0]
+    assert axes.get_xlabel() == "rotor speed in Hz"
+    marks = {text.get_text(): text.xy for text in axes.texts if text.get_text().isdigit()}
+    assert marks == {"1": (120.0, 120.0), "2": (195.0, 97.0)}
+    written = texts(figure)
+    assert "time in s" in written
+    assert "1  critical-speed disk, 120.0 Hz" in written
+    assert "2  onset journal, 195.0 Hz" in written
+    (above,) = axes.child_axes
+    low, high = above.get_xlim()
+    assert (low, high) == pytest.approx([place / 30.0 for place in axes.get_xlim()], abs=0.02)
+    fit(figure, rpm=True)
+    assert axes.get_xlabel() == "rotor speed in rpm"
+    assert waterfall_figure(up_and_down).axes[0].get_xlabel() == "time in s"
+    over_time = waterfall_figure(run, "time")
+    fit(over_time, rpm=True)
+    assert over_time.axes[0].child_axes[0].get_xlabel() == "rotor speed in rpm"
 
 
 def test_waterfall_over_speed_at_constant_speed_is_refused() -> None:

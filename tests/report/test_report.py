@@ -247,7 +247,7 @@ def warm(tmp_path_factory: pytest.TempPathFactory) -> Run:
 
 def test_a_page_about_heat_has_its_pictures_and_speeds_as_the_case(warm: Run) -> None:
     told = report(warm, author="A. Engineer")
-    for words in ("Temperatures, viscosities, losses and side flows.", "Speed of the rings over that of the rotor.",
+    for words in ("Temperatures, viscosities, losses and side flows.", "Speed of the rings over the rotor speed.",
                   "J with the oil", "12000 rpm", "rotor, rpm", "A. Engineer",
                   f"frb {frbcli.__version__}", "stated error of the eccentricity, until"):  # fmt: skip
         assert words in told

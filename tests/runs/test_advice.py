@@ -208,7 +208,7 @@ def test_stuck_run_without_oil_is_told_so_first() -> None:
         ),
         (
             ("film.cavitation=two-phase", "film.two-phase.form=published"),
-            ("conservative", "steepness = 0.9 in place of 0.99"),
+            ("conservative", "steepness = 0.9 instead of 0.99"),
             ("diffusion",),
         ),
     ],

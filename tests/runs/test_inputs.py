@@ -192,7 +192,7 @@ FAULTS = {
     "below the air": ([pressure((0, "2 bar"), (20, "0.5 bar"))], "below the ambient pressure"),
     "no list of pairs": (["bearing.supply.pressure=[1, 2]"], "no list of times with values"),
     "no file": (['bearing.supply.pressure={ file = "none.csv" }'], "does not exist"),
-    "beside": (['bearing.supply.pressure={ file = "none.csv", unit = "bar" }'], "beside other keys"),
+    "beside": (['bearing.supply.pressure={ file = "none.csv", unit = "bar" }'], "with other keys"),
     "too hot": ([*HEAT, supplied((0, "20 degC"), (20, "400 degC"))], "not below thermal.hottest_film"),
     "without heat": ([*HEAT, "thermal.model=none", supplied((0, "20 degC"), (20, "40 degC"))], "without heat"),
     "pressure of the air": ([f"oil.ambient_pressure={points((0, '1 bar'), (20, '0.8 bar'))}"], "from one that stays"),

@@ -381,7 +381,7 @@ def test_a_rotor_that_starts_resting_stays_there(tmp_path: Path) -> None:
 
 
 def test_no_resting_position_at_standstill(tmp_path: Path) -> None:
-    with pytest.raises(NotConverged, match="resting position"):
+    with pytest.raises(NotConverged, match="static equilibrium"):
         runup(short_case("start.position=resting"), tmp_path / "run.h5")
 
 

@@ -251,7 +251,7 @@ def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> 
     (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no feed holes"),
     (("bearing.inner.supply.on=journal",), "in the journal"),
     (('bearing.outer.supply={kind="none"}',), "without a supply"),
-    (("bearing.inner.supply.axial_position=0.3",), "beside a central groove"),
+    (("bearing.inner.supply.axial_position=0.3",), "next to a central groove"),
     (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the feed holes"),
     ((*AT_END, "bearing.outer.lobes={count=3, preload=0.5}"), "lobes in the housing"),
     ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),

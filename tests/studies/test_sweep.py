@@ -242,7 +242,7 @@ def test_points_that_fail_are_kept_and_the_others_go_on(case: Case, tmp_path: Pa
         "input-error", "not-converged", "input-error", "contact", "finished",
     ]  # fmt: skip
     assert "must be greater than 0" in found.points[0].message
-    assert "resting position" in found.points[1].message
+    assert "static equilibrium" in found.points[1].message
     assert "contact at" in found.points[3].message
     assert [point.message for point in found.points if "\n" in point.message] == []
     table = found.to_pandas()

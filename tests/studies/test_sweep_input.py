@@ -206,7 +206,7 @@ def test_the_command_samples_machines(
     assert Path(told["picture"]).exists()
     both = [*words, "--set", "oil.viscosity=uniform(8, 9)", "--set", "bearing.clearance=30 um,35 um"]
     assert frb([*both, "-o", "other"]) == 2
-    assert "beside keys that scatter" in capsys.readouterr().err
+    assert "while other keys scatter" in capsys.readouterr().err
 
 
 def test_the_command_takes_ranges_and_links_and_gives_reasons(

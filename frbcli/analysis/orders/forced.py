@@ -2,7 +2,7 @@
 
 Forces and the ground of a case have known frequencies f or orders k of the rotor speed. With their phase
 theta = 2 pi f t, or k times the angle of the rotor, a signal holds Re(A exp(i theta)) with an amplitude A that changes
-slowly. A is the mean of 2 x exp(-i theta) under a Hann window of PERIODS periods, and what it stands for is subtracted.
+slowly. A is the mean of 2 x exp(-i theta) under a Hann window of PERIODS periods; Re(A exp(i theta)) is subtracted.
 
 A measurement does not say what forces it. Lines that keep one frequency over a large range of rotor speeds, such as
 mains hum or a shaker, are found from its spectrum.
@@ -33,7 +33,7 @@ TRACKED = "journal", "disk"
 
 MOST_LINES = 8
 SHARE_OF_TABLE = 0.1  # of the largest line of a table over time: smaller ones are left out
-TOLD_APART = 0.8  # share of the mean square of a table that its lines have to hold
+LEAST_SHARE = 0.8  # share of the mean square of a table that its lines have to hold
 LEAST = 0.0125  # amplitude over the clearance of a line in a measurement, half of that from which a whirl counts
 WIDEST = 1.2  # ratio of the rotor speeds over which a line has to keep its frequency ...
 SPEED_BINS, FEWEST_BINS = 10, 5  # ... in each of so many ranges of it
@@ -76,10 +76,10 @@ class WithoutForced:
             left = np.array(run[name], dtype=float)
             for course in PASSES * self._courses:
                 periods = self._periods(course.line, 0, len(left))
-                found = _amplitude(left, periods, speed, course.line)
-                if found is not None:
-                    course.amplitudes.setdefault(name, []).append(found)
-                    left -= _motion(*found, periods)
+                amplitude = _amplitude(left, periods, speed, course.line)
+                if amplitude is not None:
+                    course.amplitudes.setdefault(name, []).append(amplitude)
+                    left -= _motion(*amplitude, periods)
 
     def __len__(self) -> int:
         return len(self._run)
@@ -91,8 +91,8 @@ class WithoutForced:
         """The samples from start to stop of a signal."""
         seen = signals.piece(self._run, name, start, stop)
         for course in self._courses:
-            for found in course.amplitudes.get(name, []):
-                seen = seen - _motion(*found, self._periods(course.line, start, stop))
+            for amplitude in course.amplitudes.get(name, []):
+                seen = seen - _motion(*amplitude, self._periods(course.line, start, stop))
         return seen
 
     def _periods(self, line: ForcedLine, start: int, stop: int) -> Array:
@@ -103,7 +103,7 @@ class WithoutForced:
 
 
 def forced_lines(run: RunLike) -> list[ForcedLine]:
-    """What forces a run beside its unbalance, from its references; order 1 is that of the unbalance."""
+    """What forces a run in addition to its unbalance (order 1), from its references."""
     known = run.references
     lines = [ForcedLine(frequency_Hz=known[name]) for name in known if signals.is_forced(name, "Hz")]
     return lines + [ForcedLine(order=known[name]) for name in known if signals.is_forced(name, "order")]
@@ -127,18 +127,18 @@ def lines_of_table(times_s: Array, values: Array) -> tuple[list[float], bool]:
     level = np.sqrt((np.abs(np.fft.rfft(moved * hann(count), 4 * count)) ** 2).sum(axis=0))
     places = local_maxima(level, SHARE_OF_TABLE * float(level.max())) if level.max() > 0.0 else np.empty(0, int)
     line_Hz = (count - 1) / (count * 4 * float(times_s[-1] - times_s[0]))
-    found: list[float] = []
+    frequencies_Hz: list[float] = []
     held = np.zeros(len(level), dtype=bool)
     for place in sorted(places.tolist(), key=lambda each: -float(level[each])):
         frequency = line_Hz * (place + summit(*level[place - 1 : place + 2]))
-        if frequency * float(times_s[-1] - times_s[0]) < FEWEST or len(found) == MOST_LINES:
+        if frequency * float(times_s[-1] - times_s[0]) < FEWEST or len(frequencies_Hz) == MOST_LINES:
             continue
-        if all(abs(frequency - other) > SAME * other for other in found):
-            found.append(frequency)
+        if all(abs(frequency - other) > SAME * other for other in frequencies_Hz):
+            frequencies_Hz.append(frequency)
             width = max(SAME * place, 8.0)
             held[max(0, int(place - width)) : int(place + width) + 1] = True
     whole = float((level**2).sum())
-    return found, whole == 0.0 or float((level[held] ** 2).sum()) >= TOLD_APART * whole
+    return frequencies_Hz, whole == 0.0 or float((level[held] ** 2).sum()) >= LEAST_SHARE * whole
 
 
 def constant_lines(run: RunLike, room: float) -> list[ForcedLine]:
@@ -155,15 +155,15 @@ def constant_lines(run: RunLike, room: float) -> list[ForcedLine]:
     lines = np.abs(np.fft.fft(motion * shape, padded)) / shape.sum()
     level = lines[: padded // 2] + np.append(lines[0], lines[: -(padded // 2) : -1])
     places = [int(each) for each in local_maxima(level, LEAST)]
-    found: list[ForcedLine] = []
+    kept: list[ForcedLine] = []
     for place in sorted(places, key=lambda each: -float(level[each]))[: 4 * MOST_LINES]:
         frequency = (place + summit(*level[place - 1 : place + 2])) / (padded * step_s)
-        near = any(abs(frequency - other.frequency_Hz) <= SAME * other.frequency_Hz for other in found)
-        if near or frequency * count * step_s < 2 * PERIODS or len(found) == MOST_LINES:
+        near = any(abs(frequency - other.frequency_Hz) <= SAME * other.frequency_Hz for other in kept)
+        if near or frequency * count * step_s < 2 * PERIODS or len(kept) == MOST_LINES:
             continue
         if line := _constant(motion, time_s, speed, frequency):
-            found.append(line)
-    return found
+            kept.append(line)
+    return kept
 
 
 def _constant(motion: Complex, time_s: Array, speed: Array, frequency: float) -> ForcedLine | None:
@@ -243,15 +243,15 @@ def _width(periods: Array, speed: Array, line: ForcedLine) -> int:
 
 
 def _motion(at: Array, amplitude: Complex, periods: Array) -> Array:
-    """What a line moves (n,) at passed periods (n,)."""
+    """Motion (n,) of a line at passed periods (n,)."""
     there = np.interp(periods, at, amplitude)
     return np.asarray((there * np.exp(2j * np.pi * periods)).real)
 
 
 def forced_references(lines: Iterable[ForcedLine]) -> dict[str, float]:
     """Lines as references of a run."""
-    found: dict[str, float] = {}
+    references: dict[str, float] = {}
     for number, line in enumerate(lines, start=1):
         kind, value = ("order", line.order) if line.order else ("Hz", line.frequency_Hz)
-        found[f"{signals.FORCED}_{number}_{kind}"] = value
-    return found
+        references[f"{signals.FORCED}_{number}_{kind}"] = value
+    return references

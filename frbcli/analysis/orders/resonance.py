@@ -21,7 +21,7 @@ REVOLUTIONS = 8  # of the window: a resonance is passed in many more
 WHIRL = 0.5  # order of oil whirl
 WITHOUT_MOTION = 1.5  # neither whirl nor unbalance nor its harmonics: what is seen there is the background
 PROMINENCE = 0.25  # share of its height by which a peak stands out of the higher of its two sides
-# The same of the highest peak of a run that begins or ends beside a resonance, or of one that is strongly damped: a
+# The same of the highest peak of a run that begins or ends close to a resonance, or of one that is strongly damped: a
 # known critical speed of the machine, and a phase that turns by LAG between the lowest points of both sides, decide.
 LOW_PROMINENCE = 0.02
 OVER_BACKGROUND = 5.0
@@ -29,7 +29,7 @@ FLOOR = 1e-4  # amplitude relative to the clearance; less is round-off of a roto
 # By how much the motion falls behind the unbalance from half-way up a peak to half-way down. It is 60 to 130 degrees
 # for critical speeds of rotors in oil films, and next to nothing where a film alone changes, because oil goes or comes.
 LAG = np.radians(30.0)
-NEAR = 0.15  # share of a frequency by which a resonance may lie beside a mode: films are not as full, nor as linear
+NEAR = 0.15  # share of a frequency by which a resonance may differ from a mode: films are not as full, nor as linear
 LATE = 1.5  # a ramp of r Hz/s passes a lightly damped mode by up to this times sqrt(r) before the motion is largest
 
 TURNS_BACK = 0.1  # share of the range of speeds by which a speed goes back where a pass ends
@@ -39,8 +39,8 @@ SAME = 0.02  # share of the speed within which peaks of several points are one r
 # further; its phase turns back between two of these beats.
 BEATS, TURNED = 6.0, np.radians(45.0)
 
-WIDE, NARROW = 4, 32  # revolutions: what the short window sees about the order 1 beside what the long one sees at it
-BESIDE = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
+WIDE, NARROW = 4, 32  # revolutions: windows for what differs from the order 1, and for what is at it
+FURTHEST = 2.0 / NARROW  # from order 1: the long window is blind to what lies further off
 BEGINS, ENDS = 0.05, 0.025  # amplitude relative to the clearance, as of whirls
 SUSTAINED_REVOLUTIONS = 20.0  # likewise: what dies sooner is the end of a resonance
 
@@ -63,18 +63,18 @@ def resonant(kind: str, name: str) -> tuple[Tracked, ...]:
     return tuple(Tracked(kind, name, order, REVOLUTIONS) for order in orders)
 
 
-def beside(kind: str, name: str) -> tuple[Tracked, ...]:
-    """The tracks in which vibrations beside the synchronous one are sought: two windows, both senses."""
+def near_synchronous(kind: str, name: str) -> tuple[Tracked, ...]:
+    """The tracks in which vibrations close to the synchronous one are sought: two windows, both senses."""
     return tuple(Tracked(kind, name, order, window) for order in (1.0, -1.0) for window in (WIDE, NARROW))
 
 
 def near(frequency: float, modes: Iterable[float], late: float = 0.0) -> bool:
-    """Whether a frequency in Hz is that of one of the modes; late: by how much a ramp may have moved it, Hz."""
+    """Whether a frequency in Hz belongs to one of the modes; late: by how much a ramp may have moved it, Hz."""
     return any(abs(frequency - mode) <= NEAR * mode + late for mode in modes)
 
 
 @dataclass(frozen=True)
-class _Found:
+class _Passage:
     """A resonance at a step of the revolutions, in the motion of a point by its number; mode: the known critical speed
     in Hz next to it, None if none is known; turn: by how much the phase turns from the lowest point before the
     resonance to that behind it, rad."""
@@ -97,20 +97,20 @@ def critical_steps(
 ) -> list[tuple[int, int]]:
     """Which of the points shows each critical speed the clearest, and at which step of `turns`, in their order.
 
-    motions: of each disk, or else journal, those of `resonant`, in m; floor: m, less is round-off; quiet: spans of time
-    in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a resonance
-    that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
+    motions: of each disk, or else journal, tracked by `resonant`, in m; floor: m, less is round-off; quiet: spans of
+    time in s without whirl; modes: critical speeds in Hz of the linearised machine, None if they are not known; a
+    resonance that begins one of the vibrations is none then. Each way up and down in speed has resonances of its own.
     """
-    chosen: list[_Found] = []
-    modes = None if modes is None else told_apart(modes)
+    chosen: list[_Passage] = []
+    modes = None if modes is None else distinct_modes(modes)
     for pass_ in passes(turns.speed_Hz):
         for span in quiet:
-            found = [
+            resonances = [
                 each
                 for point, tracked in enumerate(motions)
                 for each in _in_pass(tracked, turns, (floor, point), pass_, span, modes, vibrations)
             ]
-            chosen += _distinct(found, turns, modes)
+            chosen += _distinct(resonances, turns, modes)
     return [(each.point, each.step) for each in sorted(chosen, key=lambda each: each.step)]
 
 
@@ -123,8 +123,8 @@ def passes(speed_Hz: Array) -> list[tuple[int, int]]:
     return list(itertools.pairwise([0, *inner, len(size)]))
 
 
-def told_apart(modes: Sequence[float]) -> list[float]:
-    """Critical speeds in Hz, ascending, one of those that a peak does not tell apart."""
+def distinct_modes(modes: Sequence[float]) -> list[float]:
+    """Critical speeds in Hz, ascending; of several that share a peak the lowest."""
     kept: list[float] = []
     for mode in modes:
         if not kept or mode > (1.0 + SAME) * kept[-1]:
@@ -140,9 +140,9 @@ def _in_pass(
     quiet: tuple[float, float],
     modes: Sequence[float] | None,
     vibrations: Sequence[Vibration],
-) -> Iterator[_Found]:
-    """The resonances of a point in one pass and one span of time without whirl. numbers: floor, and that of the
-    point; others: see critical_steps."""
+) -> Iterator[_Passage]:
+    """The resonances of a point in one pass and one span of time without whirl. numbers: (floor, number of the point);
+    others: see critical_steps."""
     half = REVOLUTIONS * STEPS // 2
     floor, point = numbers
     begins, ends = (int(step) for step in np.searchsorted(turns.time_s, quiet))
@@ -163,14 +163,14 @@ def _in_pass(
         known = not peak.low if modes is None else near(speed, modes, late)
         if known and not own:
             mode = None if modes is None else min(modes, key=lambda each: abs(each - speed))
-            yield _Found(step, point, peak.prominence, peak.height, mode, peak.turn)
+            yield _Passage(step, point, peak.prominence, peak.height, mode, peak.turn)
 
 
-def _distinct(found: Sequence[_Found], turns: Revolutions, modes: Sequence[float] | None) -> list[_Found]:
+def _distinct(passages: Sequence[_Passage], turns: Revolutions, modes: Sequence[float] | None) -> list[_Passage]:
     """The clearest of the resonances of one pass that belong together: of several points, of one mode, and those that
     the free vibration behind a resonance makes by beating with the unbalance, in which the phase turns back."""
-    kept: list[_Found] = []
-    for each in sorted(found, key=lambda each: -each.prominence):
+    kept: list[_Passage] = []
+    for each in sorted(passages, key=lambda each: -each.prominence):
         speed, ramp = abs(float(turns.speed_Hz[each.step])), _ramp(turns, each.step)
         same = max(SAME * speed, 0.0 if modes is not None else 2.0 * LATE * np.sqrt(ramp))
         others = [abs(abs(float(turns.speed_Hz[other.step])) - speed) for other in kept]
@@ -185,7 +185,7 @@ def _distinct(found: Sequence[_Found], turns: Revolutions, modes: Sequence[float
 
 
 def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
-    """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: those of `resonant`,
+    """Amplitude in m of the synchronous motion of a point at a step of its revolutions; motions: as by `resonant`,
     whose windows are half of REVOLUTIONS behind."""
     return float(np.abs(motions[0][step - REVOLUTIONS * STEPS // 2]))
 
@@ -193,7 +193,7 @@ def synchronous_amplitude(motions: Sequence[Complex], step: int) -> float:
 @dataclass(frozen=True)
 class _Resonance:
     """A peak of the synchronous motion, see Peak. height: of it; low: whether its prominence is so low that only a
-    known critical speed makes it one; turn: see _Found."""
+    known critical speed makes it one; turn: see _Passage."""
 
     place: int
     before: int
@@ -205,7 +205,7 @@ class _Resonance:
 
 
 def _resonances(motions: Sequence[Complex], floor: float, until: int) -> list[_Resonance]:
-    """The resonances with the unbalance up to a sample; motions (n,): those of `resonant`."""
+    """The resonances with the unbalance up to a sample; motions (n,): as by `resonant`."""
     synchronous, background, whirl = motions
     amplitude: Array = np.abs(synchronous)
     if len(amplitude) == 0:
@@ -283,7 +283,7 @@ def vibrations_beside(
 ) -> Iterator[Vibration]:
     """Vibrations of a disk or journal with frequencies of their own near the rotor speed, before the first whirl.
 
-    tracked: those of `beside` in m; clearance: m. A vibration with the frequency of a mode of the machine, see
+    tracked: by `near_synchronous`, in m; clearance: m. A vibration with the frequency of a mode of the machine, see
     critical_steps, is the decay of a resonance.
     """
     half, more = NARROW * STEPS // 2, (NARROW - WIDE) * STEPS // 2
@@ -293,7 +293,7 @@ def vibrations_beside(
     speed = turns.speed_Hz[half:-half]
     order = 1.0 + np.sign(speed) * np.gradient(np.unwrap(np.angle(forward))) * STEPS / (2.0 * np.pi)
     amplitude = (np.abs(forward) + np.abs(backward)) / clearance  # along the longer axis of the orbit
-    apart = np.where(np.abs(order - 1.0) >= BESIDE, amplitude, 0.0)
+    apart = np.where(np.abs(order - 1.0) >= FURTHEST, amplitude, 0.0)
     settled, until = turns.settled, max(0, int(np.searchsorted(turns.time_s, before_s)) - 2 * half)
     sustained = round(SUSTAINED_REVOLUTIONS * STEPS)
     for first, last in intervals_above(apart[settled:until], BEGINS, ENDS, sustained):

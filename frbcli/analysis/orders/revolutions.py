@@ -1,6 +1,6 @@
 """The motion of a run by orders: how far it moves with a multiple of the rotor speed, exact whatever the speed does.
 
-A motion z of order q, z = A exp(i q phi) with the rotor's angle phi, stands still when it is multiplied by
+A motion z of order q, z = A exp(i q phi) with the rotor's angle phi, is constant when it is multiplied by
 exp(-i q phi). Its mean under a window w of R revolutions is A: with the angle psi = integral of |omega| that the rotor
 has passed, either way,
 
@@ -10,9 +10,9 @@ The samples are even in time. So the integrand is summed up from sample to sampl
 nor loses any of it, and read at even angles: what lies between two of them is a cell, on which w is constant. The
 samples pass piece by piece, and only cells that a window still needs are kept.
 
-A Hann window is blind to the orders q + j/R, |j| >= 2, and all but blind to what lies further off; its square to those
-with |j| >= 3, and far more so to the rest: a whip may move a disk by millimetres where unbalance moves it by
-micrometres.
+A Hann window is blind to the orders q + j/R, |j| >= 2, and nearly blind to what lies further off; its square is blind
+to the orders with |j| >= 3, and suppresses the rest far more: a whip may move a disk by millimetres where unbalance
+moves it by micrometres.
 """
 
 from __future__ import annotations
@@ -93,7 +93,7 @@ def track(run: RunLike, wanted: Sequence[Tracked]) -> tuple[Revolutions, list[Co
         for window in windows:
             window.take(cells[window.key])
     turns = rotor.turns()
-    return turns, [window.found(len(turns.revolution)) for window in windows]
+    return turns, [window.means(len(turns.revolution)) for window in windows]
 
 
 @dataclass(frozen=True)
@@ -133,7 +133,7 @@ class _Rotor:
         return _Piece(angle, passed, edges, before, edges - passed[before])
 
     def turns(self) -> Revolutions:
-        times, speeds = (np.concatenate([np.empty(0), *found]) for found in (self._times, self._speeds))
+        times, speeds = (np.concatenate([np.empty(0), *blocks]) for blocks in (self._times, self._speeds))
         return Revolutions(np.arange(len(times)) / STEPS, times, speeds)
 
 
@@ -169,7 +169,7 @@ class _Window:
         self._shape = shape / shape.sum()
         self._first = 0  # number of the first cell in reach
         self._reach = np.empty(0, dtype=np.complex128)
-        self._found: list[Complex] = []
+        self._means: list[Complex] = []
 
     def take(self, cells: Complex) -> None:
         width, every = len(self._shape), CELLS // STEPS
@@ -177,12 +177,12 @@ class _Window:
         if len(reach) >= width:
             length = fast_length(len(reach))
             through = np.fft.ifft(np.fft.fft(reach, length) * np.fft.fft(self._shape, length))[width - 1 : len(reach)]
-            self._found.append(through[-self._first % every :: every].copy())  # a view would keep all of it
+            self._means.append(through[-self._first % every :: every].copy())  # a view would keep all of it
         kept = max(0, len(reach) - width + 1)
         self._first, self._reach = self._first + kept, reach[kept:].copy()
 
-    def found(self, steps: int) -> Complex:
+    def means(self, steps: int) -> Complex:
         """(m - 2 half,) of m steps in all."""
-        found = np.concatenate([np.empty(0, dtype=np.complex128), *self._found])
-        self._found.clear()
-        return found[: max(0, steps - 2 * self._half)]
+        means = np.concatenate([np.empty(0, dtype=np.complex128), *self._means])
+        self._means.clear()
+        return means[: max(0, steps - 2 * self._half)]

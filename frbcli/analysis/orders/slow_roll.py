@@ -31,7 +31,7 @@ class SlowRoll:
 
 def slow_roll(signal: Array, angle: Array, speed: Array, slow: float) -> SlowRoll:
     """The slow-roll vector of a signal (n,) at angles (n,) in rad and speeds (n,) in Hz of the rotor, where these are
-    within BAND of the speed `slow` in Hz, by least squares beside a straight line.
+    within BAND of the speed `slow` in Hz, by least squares together with a straight line.
 
     Raises ValueError if the rotor turns less than LEAST_REVOLUTIONS there."""
     near = np.abs(np.abs(speed) - slow) <= BAND * slow

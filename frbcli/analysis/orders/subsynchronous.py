@@ -216,9 +216,9 @@ def _table(ridges: Sequence[_Ridge], count: int) -> tuple[Array, Array]:
 
 
 def _begins(amplitude: Array, settled: int) -> int:
-    """The window in which a ridge of an amplitude (windows,) becomes a whirl; settled: that in which the run has
-    settled. The fall of the start is a ridge, too, and may fade into that of a whirl which grows later; a whirl that
-    begins with the run grows beyond what the start has left."""
+    """The window in which a ridge of an amplitude (windows,) becomes a whirl; settled: the window in which the run has
+    settled. The fall of the start is a ridge, too, and may fade into a whirl which grows later; a whirl from the
+    beginning of the run grows beyond what the start has left."""
     whirls, fades = amplitude >= BEGINS, (amplitude > 0.0) & (amplitude < BEGINS)
     first = int(np.argmax(whirls))
     faded = first + int(np.argmax(fades[first:]))  # itself: it never does
@@ -246,8 +246,8 @@ def whirl_names(events: Sequence[Mapping[str, Any]]) -> list[str]:
     """The whirls that onset, lock-in and offset of floating rings belong to, "" for other events, in their order.
 
     Of a symmetric rotor Sub_i and Sub_o, after the film. Of a rotor in several bearings the first whirls of inner films
-    are one, the next ones of inner films another, and those of outer films a third: Sub 1, Sub 2 and Sub 3 in the order
-    in which they begin.
+    are one, the next whirls of inner films another, and whirls of outer films a third: Sub 1, Sub 2 and Sub 3 in the
+    order in which they begin.
     """
     names, seen, known = list[str](), Counter[tuple[str, str]](), list[tuple[str, bool]]()
     for event in events:

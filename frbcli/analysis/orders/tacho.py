@@ -30,8 +30,8 @@ MOST_SPREAD = 0.03  # revolutions, of that angle at the pulses
 @dataclass(frozen=True)
 class Tacho:
     """speed_Hz, angle: (n,) at the times of the samples, the latter in rad, 0 at the first pulse; missing, double: how
-    many pulses were added and left out; mark: the angle in revolutions, as the speed has it from the first sample on,
-    at which the rotor is at a pulse; None where it differs between them, or there are several in a revolution."""
+    many pulses were added and left out; mark: the angle in revolutions at which the rotor is at a pulse, integrated
+    from the speed since the first sample; None where it differs between pulses, or a revolution has several."""
 
     speed_Hz: Array
     angle: Array
@@ -96,12 +96,12 @@ def _mean_speeds(moments: Array, pulses: int) -> tuple[Array, Array]:
     last = first + width
     speeds = width / (pulses * (moments[last] - moments[first]))
     middles, kept = np.unique(0.5 * (moments[first] + moments[last]), return_index=True)
-    found = speeds[kept]
+    v = speeds[kept]
     if len(middles) < 2:
-        return middles, found
-    ends = [found[at] + (found[next_] - found[at]) / (middles[next_] - middles[at]) * (moments[at] - middles[at])
+        return middles, v
+    ends = [v[at] + (v[next_] - v[at]) / (middles[next_] - middles[at]) * (moments[at] - middles[at])
             for at, next_ in ((0, 1), (-1, -2))]  # fmt: skip
-    speeds = np.concatenate([[max(ends[0], 0.0)], found, [max(ends[1], 0.0)]])
+    speeds = np.concatenate([[max(ends[0], 0.0)], v, [max(ends[1], 0.0)]])
     return np.concatenate([moments[:1], middles, moments[-1:]]), speeds
 
 
@@ -169,9 +169,9 @@ def _double(steps: Array) -> NDArray[np.int64]:
 
 def _around(steps: Array, apart: int) -> tuple[Array, Array]:
     """The median of three intervals (m,) before each one and of three behind it, as far as there are any; at the ends
-    those of the other side are doubled, so that the first and the last intervals are never too long."""
+    the other side's are doubled, so that the first and the last intervals are never too long."""
     count = len(steps)
-    found = []
+    medians = []
     for sense in (-1, 1):
         near = np.full((3, count), np.nan)
         for k in range(3):
@@ -180,5 +180,5 @@ def _around(steps: Array, apart: int) -> tuple[Array, Array]:
             near[k, inside] = steps[other[inside]]
         filled = np.where(np.isnan(near[0]), np.inf, 0.0)
         known = np.where(np.isnan(near), near[0], near)
-        found.append(np.where(np.isinf(filled), np.inf, np.median(known, axis=0)))
-    return found[0], found[1]
+        medians.append(np.where(np.isinf(filled), np.inf, np.median(known, axis=0)))
+    return medians[0], medians[1]

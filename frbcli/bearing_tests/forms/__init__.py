@@ -1,1 +1,1 @@
-"""Tests of films that are not solved on cells: the short bearing, bearing models."""
+"""Tests of films that are not solved on cells: the short bearing."""

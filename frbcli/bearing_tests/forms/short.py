@@ -1,6 +1,6 @@
 """Kinematic tests of the extended short bearing (appendix B): closed forms, no flow around that the pressure drives.
 
-The torques follow from the motion and the force: Couette's term is that of the gap, and the term of the pressure is
+The torques follow from the motion and the force: Couette's term from the gap; the term of the pressure is
 half the moment of the force about the middle of the shell, with any pressure in the film.
 """
 
@@ -33,11 +33,11 @@ ANGLES = 720  # at which the largest pressure is sought
 
 def short_moment(plan: KinematicPlan, motion: Motion, share: float = 1.0) -> FilmMoment:
     """The film for a motion; what a short bearing does not know of its oil is NaN. share: of the supply pressure. The
-    error is that of the theory, against the film of finite length."""
+    error is the theory's, against the film of finite length."""
     section = _rectangle(plan, share)
     film = _film(plan, section)
-    found = _force(section, film, motion).force
-    force = float(found[0]), float(found[1])
+    vector = _force(section, film, motion).force
+    force = float(vector[0]), float(vector[1])
     exact = modal_force(plan, motion) if share == 1.0 else (UNKNOWN, UNKNOWN)
     error = math.dist(force, exact) / math.hypot(*exact) if any(exact) else UNKNOWN
     return FilmMoment(_field(plan, section, film, motion), _loads(section, film, motion, force), error, 0, 0,
@@ -60,8 +60,8 @@ def short_course(plan: KinematicPlan, rubbing: Rubbing, path: Path, times: Array
         along = PROBE_WIDTH * section.bearing_width / section.width
         probe = float(_pressures(section, film, motion, np.array([PROBE]), np.array([along]))[0, 0])
         gap = float(gap_height(section, motion.d, np.array([PROBE]))[0])
-        found = rubbing.loads(_loads(section, film, motion, (x, y)), motion)
-        moments.append(MovedFilm(time, motion.d, found, probe, gap, 0))
+        loads = rubbing.loads(_loads(section, film, motion, (x, y)), motion)
+        moments.append(MovedFilm(time, motion.d, loads, probe, gap, 0))
     worst = max(moments, key=lambda moment: moment.size)
     there = short_moment(plan, path(worst.time), _share(plan, worst.time))
     error = there.force_error * rubbing.share_of_error(there.loads, worst.loads)

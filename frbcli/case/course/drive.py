@@ -33,7 +33,7 @@ SQUARE = Quantity("N*m*s^2", "1e-7 N*m*s^2", least=0)
 POWERS = {"constant": CONSTANT, "linear": LINEAR, "square": SQUARE}  # of the speed in rad/s
 GOVERNED = 0.02  # share of the highest speed over which a governor takes the torque away
 STEPS, POINTS = 2000, 32  # of the course that is expected
-FLAT = 1e-9  # exponent from which on a step is that of a line
+FLAT = 1e-9  # exponent below which a step counts as linear
 TURN = 2.0 * math.pi
 
 
@@ -65,7 +65,7 @@ class BrakingLoad(Model):
 class _Points:
     """Reads a list of speeds or times with torques."""
 
-    remedy = 'Write e.g. [["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]], or times in place of the speeds.'
+    remedy = 'Write e.g. [["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]], or times instead of the speeds.'
 
     def read(self, given: object) -> TorquePoints:
         """Raises ValueFault."""
@@ -105,14 +105,14 @@ class _Points:
 
     def __get_pydantic_json_schema__(self, _schema: CoreSchema, _handler: GetJsonSchemaHandler) -> dict[str, Any]:
         pair = {"type": "array", "minItems": 2, "maxItems": 2}
-        told = "speeds or times with torques"
-        return {"type": "array", "items": pair, "minItems": 2, "description": told,
+        description = "speeds or times with torques"
+        return {"type": "array", "items": pair, "minItems": 2, "description": description,
                 "examples": [[["0 Hz", "0.1 N*m"], ["500 Hz", "0 N*m"]]]}  # fmt: skip
 
 
 @dataclass(frozen=True)
 class _Loads:
-    """Reads a load: one quantity, whose unit tells the power of the speed, or a table of several."""
+    """Reads a load: one quantity, whose unit gives the power of the speed, or a table of several."""
 
     remedy = 'Write e.g. "0.01 N*m", "1e-4 N*m*s", "1e-7 N*m*s^2", or { constant = "0.01 N*m", square = ... }.'
 
@@ -185,7 +185,7 @@ class Drive(MachineTable):
             yield Breach(("rotor", "polar_inertia"), "is missing; [drive] turns it.", remedy)
             return
         if self.points is not None and "torque" in self.model_fields_set:
-            yield Breach((*path, "torque"), "is given beside points.", "Keep one of the two.")
+            yield Breach((*path, "torque"), "is given with points.", "Keep one of the two.")
         if self.end is not None and self.end <= self.start:
             problem = f"is {display(self.end, SPEED)}, not above the start at {display(self.start, SPEED)}."
             yield Breach((*path, "to"), problem, "Raise it, or leave it out.")

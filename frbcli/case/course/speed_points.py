@@ -1,4 +1,4 @@
-"""The rotor speed through given points, or as it was measured: the case gets times and speeds in place of the keys
+"""The rotor speed through given points, or as it was measured: the case gets times and speeds instead of the keys
 `points` or `file`, and from, to and duration that follow from them."""
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ REMEDY = 'Write e.g. [["0 s", "0 Hz"], ["1 s", "900 Hz"]].'
 
 
 def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with times and speeds in place of speed.points and speed.file, and the faults.
+    """The tables of a case with times and speeds instead of speed.points and speed.file, and the faults.
 
     folder: that a relative path counts from.
     """
@@ -30,7 +30,7 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
         return data, []
     given = [key for key in ("points", "file", TIMES) if key in speed]
     if len(given) > 1:
-        return data, [Breach(("speed", given[0]), f"is given beside {given[1]}.", "Keep one of them.")]
+        return data, [Breach(("speed", given[0]), f"is given with {given[1]}.", "Keep one of them.")]
     try:
         written = _written(speed, folder)
         times, speeds = (_column(each, unit) for each, unit in zip(written, ("s", SPEED), strict=True))
@@ -38,11 +38,11 @@ def with_speed_points(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any
     except Refused as fault:
         return data, [Breach(("speed", *given), *fault.args)]
     follows = {"from": speeds[0], "to": max(speeds, key=abs), "duration": times[-1]}
-    found = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
+    clashes = [_differs(key, speed[key], value) for key, value in follows.items() if key in speed]
     kept = {key: value for key, value in speed.items() if key not in ("points", "file", "tacho", "pulses")}
     ramp = {key: f"{value!r} {RAMP[key]}" for key, value in follows.items() if key not in kept}
     columns = dict(zip((TIMES, SPEEDS), written, strict=True))
-    return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in found if breach]
+    return data | {"speed": {**kept, **ramp, **columns}}, [breach for breach in clashes if breach]
 
 
 def _differs(key: str, given: object, follows: float) -> Breach | None:
@@ -51,7 +51,7 @@ def _differs(key: str, given: object, follows: float) -> Breach | None:
             return None
     except ValueFault:
         pass
-    problem = "is given beside points or a file, which it follows from."
+    problem = "is given with points or a file, which it follows from."
     return Breach(("speed", key), problem, "Leave it out, or set the whole table: speed = { from, to, duration }.")
 
 
@@ -60,8 +60,8 @@ def _written(speed: dict[str, Any], folder: Path) -> tuple[Any, Any]:
     if isinstance(speed.get("file"), str):
         tacho = speed.get("tacho")
         path = folder / str(speed["file"])
-        found = read_tacho(path, str(tacho), speed.get("pulses", 1)) if tacho else read_table(path, MEASURED)
-        return found["time"], found["x"]
+        columns = read_tacho(path, str(tacho), speed.get("pulses", 1)) if tacho else read_table(path, MEASURED)
+        return columns["time"], columns["x"]
     if TIMES in speed or SPEEDS in speed:
         return speed.get(TIMES), speed.get(SPEEDS)
     points = speed.get("points")

@@ -1,7 +1,6 @@
 """Tables over time out of a file of a measuring instrument or of a calculation: CSV, WAV, MAT or UFF.
 
-The case gets the numbers in place of the key `file`, so that a run has all that it was made of.
-"""
+The case gets the numbers instead of the key `file`, so that a run has all that it was made of. """
 
 from __future__ import annotations
 
@@ -52,11 +51,11 @@ KINDS = {"force": FORCE, "base": ACCELERATION}  # tables of the case file that c
 
 
 def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with the numbers of each `file` over time in place of that key, and the faults.
+    """The tables of a case with the numbers of each `file` over time instead of that key, and the faults.
 
     folder: that a relative path counts from. A table whose file has faults keeps the key.
     """
-    found, left = list[Breach](), MOST_NUMBERS
+    breaches, left = list[Breach](), MOST_NUMBERS
     for kind, wanted in KINDS.items():
 
         def joined(name: str, kept: dict[str, Any], wanted: TableKind = wanted) -> dict[str, Any]:
@@ -67,8 +66,8 @@ def with_time_tables(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
         for path, _ in tables(data, kind):
             data, faults = with_file(data, path, joined, ("over_time",))
-            found += faults
-    return data, found
+            breaches += faults
+    return data, breaches
 
 
 def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[str, list[float]]:
@@ -83,15 +82,15 @@ def read_table(path: Path, wanted: TableKind, most: int = MOST_NUMBERS) -> dict[
     except InputError as error:
         (fault,) = error.faults
         raise Refused(fault.problem, fault.remedy) from None
-    found = {"time": time, **values}
-    shortest, longest = min(map(len, found.values())), max(map(len, found.values()))
+    series = {"time": time, **values}
+    shortest, longest = min(map(len, series.values())), max(map(len, series.values()))
     if shortest != longest:
         raise Refused(f"has columns of {shortest} and of {longest} rows.", "Give all columns the same rows.")
-    if longest * len(found) > most:
-        problem = f"has {longest} rows of {len(found)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
+    if longest * len(series) > most:
+        problem = f"has {longest} rows of {len(series)} columns; the tables of a case hold {MOST_NUMBERS} numbers."
         raise Refused(problem, "Cut it, or sample it at fewer times.")
     _check_times(columns, time, list(values.values()))
-    return {name: column.tolist() for name, column in found.items()}
+    return {name: column.tolist() for name, column in series.items()}
 
 
 def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
@@ -123,7 +122,7 @@ def read_tacho(path: Path, name: str, pulses: int) -> dict[str, list[float]]:
 
 
 def _plain(columns: Columns) -> Iterator[tuple[str, str]]:
-    """The names of the columns: as people write them, in small letters and without unit, and as they stand there."""
+    """The names of the columns: as people write them, in small letters and without unit, and as in the file."""
     from frbcli.results.measured.delimited import without_unit
 
     for name in columns.values:
@@ -160,7 +159,7 @@ def _named(columns: Columns, wanted: TableKind) -> tuple[str, str]:
     listed = ", ".join(f'"{name}"' for name in columns.values)
     if not wanted.y:
         raise Refused(f'has no column "{wanted.x[0]}".', f'Call it "{wanted.x[0]}". It has: {listed}.')
-    remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column beside the time. It has: {listed}.'
+    remedy = f'Call them "{wanted.x[0]}" and "{wanted.y[0]}", or give one column besides the time. It has: {listed}.'
     raise Refused("has no columns of the values in x and y.", remedy)
 
 
@@ -173,16 +172,16 @@ def _values(columns: Columns, name: str, wanted: TableKind) -> Array:
 
 def _unit(columns: Columns, name: str, si: str, number: int = 1) -> float:
     """SI value of a number in a column. Raises Refused for a unit of something else."""
-    told = columns.unit(name) or ""
+    unit = columns.unit(name) or ""
     suffix = SUFFIX.fullmatch(name)
-    if not told.strip("-1 ") and suffix is None:
+    if not unit.strip("-1 ") and suffix is None:
         return float(number)
     try:
-        return quantity(f"{number} {told if told.strip('-1 ') else suffix.group(2) if suffix else si}", si)
+        return quantity(f"{number} {unit if unit.strip('-1 ') else suffix.group(2) if suffix else si}", si)
     except ValueFault:
-        if not told.strip("-1 "):
+        if not unit.strip("-1 "):
             return float(number)  # the end of a name that is no unit
-        problem = f'has "{told}" as unit of the column "{name}".'
+        problem = f'has "{unit}" as unit of the column "{name}".'
         raise Refused(problem, f"Give it in {si} or a unit like it.") from None
 
 
@@ -233,15 +232,15 @@ class InputOverTime:
 def inputs_of(model: Model, key: str = "") -> Iterator[InputOverTime]:
     """The inputs over time of a case, or of a part of it under a key."""
     for name, field in type(model).model_fields.items():
-        found, here = getattr(model, name), f"{key}.{field.alias or name}".lstrip(".")
-        if isinstance(found, OverTime):
+        child, here = getattr(model, name), f"{key}.{field.alias or name}".lstrip(".")
+        if isinstance(child, OverTime):
             unit = unit_of(field)
             if unit is not None:
-                yield InputOverTime(here, found, unit)
-        elif isinstance(found, Model):
-            yield from inputs_of(found, here)
-        elif isinstance(found, tuple):
-            parts = [part for part in found if isinstance(part, Model)]
+                yield InputOverTime(here, child, unit)
+        elif isinstance(child, Model):
+            yield from inputs_of(child, here)
+        elif isinstance(child, tuple):
+            parts = [part for part in child if isinstance(part, Model)]
             for number, part in enumerate(parts):
                 yield from inputs_of(part, here if len(parts) == 1 else f"{here}.{number}")
 
@@ -251,17 +250,17 @@ def with_input_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any]
 
     folder: that a relative path counts from.
     """
-    found = list[Breach]()
+    breaches = list[Breach]()
     for path, wanted in _places(data):
 
         def numbers(name: str, kept: dict[str, Any], wanted: TableKind = wanted) -> dict[str, Any]:
             if kept:
-                raise Refused("is given beside other keys.", "Keep the file alone.")
+                raise Refused("is given with other keys.", "Keep the file alone.")
             return {"source": name, **read_table(folder / name, wanted)}
 
         data, faults = with_file(data, path, numbers)
-        found += faults
-    return data, found
+        breaches += faults
+    return data, breaches
 
 
 def _places(data: Mapping[str, Any]) -> Iterator[tuple[Key, TableKind]]:

@@ -1,9 +1,8 @@
 """Coefficients of a bearing over speed out of a file: of ROSS, as `frb bearing --ross` writes it, too, or a CSV.
 
 A file of ROSS is a table of its class and tag with lists kxx to cyy in N/m and N s/m over the frequency in rad/s, as
-`BearingElement.save` writes it, TOML or JSON. The case gets the numbers in place of the key `file`, so that a run has
-all that it was made of.
-"""
+`BearingElement.save` writes it, TOML or JSON. The case gets the numbers instead of the key `file`, so that a run has
+all that it was made of. """
 
 from __future__ import annotations
 
@@ -32,7 +31,7 @@ WRITE = "Write it with frb bearing --ross, with BearingElement.save of ROSS, or 
 
 
 def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with the numbers of each bearing's `file` in place of that key, and the faults.
+    """The tables of a case with the numbers of each bearing's `file` instead of that key, and the faults.
 
     folder: that a relative path counts from. A bearing whose file has faults keeps the key.
     """
@@ -40,13 +39,13 @@ def with_coefficient_files(data: dict[str, Any], folder: Path) -> tuple[dict[str
     def joined(name: str, kept: dict[str, Any]) -> dict[str, Any]:
         return {**kept, "over_speed": {"source": name, **_with_units(_checked(_read(folder / name)))}}
 
-    found = list[Breach]()
+    breaches = list[Breach]()
     for path, bearing in tables(data, "bearing"):
         if bearing.get("kind") == "coefficients":
-            beside = ("stiffness", "damping", "mass", "over_speed")
-            data, faults = with_file(data, path, joined, beside, "Keep the file, or the coefficients themselves.")
-            found += faults
-    return data, found
+            excluded = ("stiffness", "damping", "mass", "over_speed")
+            data, faults = with_file(data, path, joined, excluded, "Keep the file, or the coefficients themselves.")
+            breaches += faults
+    return data, breaches
 
 
 def _with_units(columns: Columns) -> dict[str, list[str]]:
@@ -82,8 +81,8 @@ def _of_ross(text: str, is_json: bool) -> Columns:
     items = data.items() if isinstance(data, dict) else ()
     elements = [(name, item) for name, item in items if name.startswith(BEARINGS) and isinstance(item, dict)]
     if len(elements) != 1:
-        told = "no bearing" if not elements else f"{len(elements)} bearings"
-        raise Refused(f"holds {told}, not one.", WRITE)
+        count = "no bearing" if not elements else f"{len(elements)} bearings"
+        raise Refused(f"holds {count}, not one.", WRITE)
     name, element = elements[0]
     over = [key for key in OVER if element.get(key) is not None]
     if len(over) > 1:

@@ -1,8 +1,7 @@
 """The modes of a housing out of a file: a table, as a finite element program lists them, with a row for each mode, or a
 rotor of ROSS.
 
-The case gets the modes in place of the key `file`, so that a run has all that it was made of.
-"""
+The case gets the modes instead of the key `file`, so that a run has all that it was made of. """
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ FILE = "a table of modes"
 
 
 def with_housing_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with the modes of housing.file in place of that key, and the faults.
+    """The tables of a case with the modes of housing.file instead of that key, and the faults.
 
     folder: that a relative path counts from. With faults the tables are returned unchanged.
     """

@@ -26,17 +26,17 @@ class Refused(Exception):
 
 def with_file(
     data: dict[str, Any], path: Key, joined: Callable[[str, dict[str, Any]], dict[str, Any]],
-    beside: Iterable[str] = (), remedy: str = "Keep one of the two.",
+    excluded: Iterable[str] = (), remedy: str = "Keep one of the two.",
 ) -> tuple[dict[str, Any], list[Breach]]:  # fmt: skip
-    """The tables of a case with what the file of one of them holds in place of its key `file`, and the fault, with
-    which it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; beside:
-    keys that the file stands in place of; remedy: where one of them is given, too."""
+    """The tables of a case with what the file of one of them holds instead of its key `file`, and the fault, with which
+    it keeps the key. joined: that table by the name of the file and the other keys, may raise Refused; excluded: keys
+    that the file replaces; remedy: where one of them is given, too."""
     given = at(data, path)
     name, key = given.get("file") if isinstance(given, dict) else None, (*path, "file")
     if not isinstance(name, str) or not name:
         return data, []
-    if both := [other for other in beside if other in given]:
-        return data, [Breach(key, f"is given beside {' and '.join(both)}.", remedy)]
+    if both := [other for other in excluded if other in given]:
+        return data, [Breach(key, f"is given with {' and '.join(both)}.", remedy)]
     try:
         table = joined(name, {other: value for other, value in given.items() if other != "file"})
     except Refused as fault:
@@ -54,18 +54,18 @@ def text_of(path: Path, meant: str, write: str) -> str:
         raise Refused(str(error), write if isinstance(error, NoText) else f"Name {meant}.") from None
 
 
-def number_table(text: str, names_told: str) -> Columns:
-    """The columns of a text by their names; names_told: the remedy for wrong names. Raises Refused."""
+def number_table(text: str, names_remedy: str) -> Columns:
+    """The columns of a text by their names; names_remedy: the remedy for wrong names. Raises Refused."""
     try:
         rows = [row for row in csv.reader(text.splitlines()) if any(cell.strip() for cell in row)]
     except csv.Error as error:
-        raise Refused(f"cannot be read: {error}.", names_told) from None
+        raise Refused(f"cannot be read: {error}.", names_remedy) from None
     if not rows:
-        raise Refused("is empty.", names_told)
+        raise Refused("is empty.", names_remedy)
     names = [cell.strip() for cell in rows[0]]
     if len(set(names)) < len(names):
         twice = next(name for name in names if names.count(name) > 1)
-        raise Refused(f'has the column "{twice}" twice.', names_told)
+        raise Refused(f'has the column "{twice}" twice.', names_remedy)
     columns: Columns = {name: [] for name in names}
     for number, row in enumerate(rows[1:], start=1):
         if len(row) != len(names):

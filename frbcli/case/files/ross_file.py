@@ -35,11 +35,11 @@ class RossElement:
 
     def number(self, key: str, default: float | None = None) -> float:
         """A finite number, and of what a case file has a quantity for, one that it would take. Raises Refused."""
-        found = self.values.get(key, default)
-        if isinstance(found, bool) or not isinstance(found, int | float):
+        number = self.values.get(key, default)
+        if isinstance(number, bool) or not isinstance(number, int | float):
             raise Refused(f'lacks a number "{key}" in "{self.name}".', WRITE)
         try:
-            value = float(found)
+            value = float(number)
         except OverflowError:  # a whole number of hundreds of digits
             value = math.inf
         if not math.isfinite(value):

@@ -1,9 +1,8 @@
 """The housing that a rotor of ROSS has: point masses that its bearings stand on, on bearings to the ground.
 
-In ROSS a bearing with `n_link` acts between a node of the shaft and that of a `PointMass`, and other bearings between
-these masses or from them to the ground. The masses by themselves move by M u'' + C u' + K u = F, and that has the modes
-K u_k = omega_k^2 M u_k with u_k . M u_k = 1, each by itself if u_j . C u_k = 0 of any two.
-"""
+In ROSS a bearing with `n_link` acts between a node of the shaft and the node of a `PointMass`, and other bearings
+between these masses or from them to the ground. The masses by themselves move by M u'' + C u' + K u = F, and that has
+the modes K u_k = omega_k^2 M u_k with u_k . M u_k = 1, each by itself if u_j . C u_k = 0 of any two. """
 
 from __future__ import annotations
 
@@ -50,9 +49,8 @@ class _Masses:
 def ross_housing(path: Path, bearings: Sequence[tuple[str, float]]) -> dict[str, Any]:
     """The keys `modes` and `masses` of a housing out of a rotor file.
 
-    bearings: names and positions in m of those of the case, each at a node at which the rotor of the file has one, too.
-    Raises Refused.
-    """
+    bearings: names and positions in m of the bearings of the case, each at a node at which the rotor of the file has
+    one, too. Raises Refused. """
     elements = ross_elements(path)
     _, positions = shaft_of_file(elements)
     springs = [element for element in elements if "kxx" in element.values]
@@ -78,25 +76,25 @@ def ross_housing(path: Path, bearings: Sequence[tuple[str, float]]) -> dict[str,
 
 def _masses(elements: Sequence[RossElement], springs: Sequence[RossElement], nodes: int) -> _Masses:
     """The point masses of a file with what holds them; nodes: of the shaft."""
-    found: dict[int, Array] = {}
+    by_node: dict[int, Array] = {}
     for element in elements:
         if element.kind == MASS:
             mass = element.values.get("m")
             both = np.array([element.number(key, mass) for key in ("mx", "my")])
             if np.any(both <= 0.0):
                 raise Refused(f'has no mass in x or y in "{element.name}".', REMEDY)
-            found[int(element.node)] = found.get(int(element.node), np.zeros(2)) + both
-    if not found:
+            by_node[int(element.node)] = by_node.get(int(element.node), np.zeros(2)) + both
+    if not by_node:
         problem = f"has no {MASS}: its bearings stand on the ground."
         raise Refused(problem, "Remove housing.file, or give the bearings in ROSS an n_link with a PointMass.")
-    size = 2 * len(found)
-    masses = _Masses(tuple(found), np.concatenate(list(found.values())), *np.zeros((2, size, size)))
+    size = 2 * len(by_node)
+    masses = _Masses(tuple(by_node), np.concatenate(list(by_node.values())), *np.zeros((2, size, size)))
     for element in springs:
         ends = _ends(element)
         if not any(end < nodes for end in ends):
             seen = np.zeros((2, size))
             for sign, end in zip((1.0, -1.0), ends, strict=False):
-                if end not in found:
+                if end not in by_node:
                     raise Refused(f'has "{element.name}" at node {end}, which has no {MASS}.', "Add it in ROSS.")
                 seen[:, masses.rows(end)] += sign * np.eye(2)
             masses.stiffness[:] += seen.T @ _matrix(element, "k") @ seen
@@ -121,7 +119,7 @@ def _constant(element: RossElement, key: str) -> float:
 
 
 def _matrix(element: RossElement, letter: str) -> Array:
-    """(2, 2) coefficients of what holds a mass: constant, and symmetric, as those of springs and dampers."""
+    """(2, 2) coefficients of what holds a mass: constant and symmetric, as of springs and dampers."""
     if any(_constant(element, f"m{axes}") for axes in AXES):
         raise Refused(f'has a mass in "{element.name}", which holds a {MASS}.', "Add it to that in ROSS.")
     matrix = np.array([_constant(element, f"{letter}{axes}") for axes in AXES]).reshape(2, 2)
@@ -136,18 +134,18 @@ def _under(
 ) -> int | None:
     """The node of the mass under a bearing of the case, None of one on the ground."""
     near = SAME_PLACE * positions[-1]
-    found = set[int | None]()
+    carriers = set[int | None]()
     for element in springs:
         ends = _ends(element)
         here = [end for end in ends if end < len(positions) and abs(positions[end] - position) <= near]
         if here:
-            found |= {end for end in ends if end not in here} or {None}
-    if not found:
+            carriers |= {end for end in ends if end not in here} or {None}
+    if not carriers:
         places = sorted({positions[end] for element in springs for end in _ends(element) if end < len(positions)})
         listed = ", ".join(f"{1e3 * place:.6g} mm" for place in places) or "none"
         problem = f'has no bearing at {1e3 * position:.6g} mm, where the case has "{name}"; its bearings: {listed}.'
         raise Refused(problem, "Let both have the same positions.")
-    linked = found - {None}
+    linked = carriers - {None}
     if len(linked) > 1 or not linked <= set(masses.nodes):
         raise Refused(f"has bearings at {1e3 * position:.6g} mm that do not stand on one {MASS}.", "Link them to one.")
     return next(iter(linked), None)
@@ -161,13 +159,13 @@ def _modes(masses: _Masses, carrying: Sequence[slice]) -> list[tuple[float, floa
     stiffness, damping = (each / np.outer(root, root) for each in (masses.stiffness, masses.damping))
     count, group = connected_components(csr_array((stiffness != 0.0) | (damping != 0.0)), directed=False)
     moved = {int(each) for rows in carrying for each in group[rows]}
-    found = [
+    modes = [
         (square, ratio, displacement / root)
         for number in range(count)
         if number in moved
         for square, ratio, displacement in _coupled(stiffness, damping, np.flatnonzero(group == number))
     ]
-    return sorted(found, key=lambda mode: mode[0])
+    return sorted(modes, key=lambda mode: mode[0])
 
 
 def _coupled(stiffness: Array, damping: Array, own: NDArray[np.intp]) -> Iterator[tuple[float, float, Array]]:

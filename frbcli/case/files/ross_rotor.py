@@ -2,10 +2,9 @@
 
 Such a file is a table of elements, named by class and tag: a shaft element carries its node `n`, length, outer and
 inner diameters at both ends and its material, a disk its node, mass and inertias, all in SI. Bearings and seals of the
-file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP.
-Its alpha and beta are damping over mass and over stiffness that does not turn. What an element specifies beside that is
-refused by its name, unless it has no effect.
-"""
+file are left out: frb has its own. A cone becomes a stack of cylinders, each thinner than the next by a share STEP. Its
+alpha and beta are damping over mass and over stiffness that does not turn. Anything else that an element specifies is
+refused by its name, unless it has no effect. """
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ STEP, MOST_CYLINDERS = 0.025, 80  # of a cone: relative change of the diameter f
 DISK = ("DiskElement", "DiskElement6DoF")
 HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
 MASS = "PointMass"  # that bearings stand on
-TAKEN = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
+SUPPORTED = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
 DAMPINGS = {"mass_damping": "alpha", "stiffness_damping": "beta"}  # C = alpha M + beta K of an element
 LABELS = ("tag", "color", "scale_factor", "kwargs")
 ALWAYS = {"shear_effects": True, "rotary_inertia": True, "gyroscopic": True, "shear_method_calc": "cowper"}
@@ -45,7 +44,7 @@ UNITS = {"length": "m", "diameter": "m", "inner_diameter": "m", "density": "kg/m
 
 
 def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Breach]]:
-    """The tables of a case with shaft and disks of its rotor.file in place of that key, and its faults.
+    """The tables of a case with shaft and disks of its rotor.file instead of that key, and its faults.
 
     folder: that a relative path counts from. A [[disk]] of the case with the name of one of the file's completes it,
     e.g. by an unbalance; others come in addition. With faults the tables are returned unchanged.
@@ -55,7 +54,7 @@ def with_rotor_file(data: dict[str, Any], folder: Path) -> tuple[dict[str, Any],
     if rotor.get("kind") not in OF_SECTIONS or not isinstance(name, str) or not name:
         return data, []
     if "shaft" in data:
-        return data, [Breach(KEY, "is given beside [[shaft]].", "Keep one of the two.")]
+        return data, [Breach(KEY, "is given with [[shaft]].", "Keep one of the two.")]
     try:
         shaft, disks = _rotor(ross_elements(folder / name), _says_what_carries(data))
     except Refused as fault:
@@ -98,14 +97,14 @@ def _rotor(elements: Sequence[RossElement], carried: bool) -> tuple[list[dict[st
     return [_with_units(section) for section in shaft_tables], [_with_units(disk) for disk in disks]
 
 
-def _with_units(found: dict[str, Any]) -> dict[str, Any]:
+def _with_units(entries: dict[str, Any]) -> dict[str, Any]:
     """A table with units, so that SI values of the file do not look like numbers without a unit."""
-    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in found.items()}
+    return {key: f"{value!r} {UNITS[key]}" if key in UNITS else value for key, value in entries.items()}
 
 
 def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
     """Tables of [[shaft]] for a shaft element."""
-    _refuse_others(element, TAKEN)
+    _refuse_others(element, SUPPORTED)
     outer, inner = element.number("odl"), element.number("idl")
     growth = element.number("odr", outer) - outer, element.number("idr", inner) - inner
     if inner >= outer or inner + growth[1] >= outer + growth[0]:
@@ -131,10 +130,10 @@ def _cylinders(element: RossElement) -> Iterator[dict[str, Any]]:
         }
 
 
-def _refuse_others(element: RossElement, taken: Sequence[str]) -> None:
-    """Raises Refused for a value beside those that are taken, unless it is what frb models or none at all."""
+def _refuse_others(element: RossElement, supported: Sequence[str]) -> None:
+    """Raises Refused for a value that is not supported, unless it equals what frb models or is empty."""
     for key, value in element.values.items():
-        if key in taken or key in LABELS:
+        if key in supported or key in LABELS:
             continue
         if key in ALWAYS:
             if value != ALWAYS[key]:
@@ -147,7 +146,7 @@ def _refuse_others(element: RossElement, taken: Sequence[str]) -> None:
 
 
 def _cylinders_of(outer: float, growth: float, inner_growth: float) -> int:
-    """How many cylinders stand for a cone; outer: diameter at its left end, growth: of the outer and inner ones."""
+    """How many cylinders replace a cone; outer: diameter at its left end, growth: of the outer and inner ones."""
     least = min(outer, outer + growth)
     change = max(abs(growth), abs(inner_growth)) / least
     return min(max(1, math.ceil(change / STEP)), MOST_CYLINDERS)

@@ -1,1 +1,1 @@
-"""How films are computed and surfaces touch; laws and bearing models of one's own."""
+"""How films are computed and surfaces touch; laws that were added from Python."""

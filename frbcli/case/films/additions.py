@@ -1,4 +1,4 @@
-"""Cavitation laws and bearing models of one's own: cases take them in this process, with the keys of their tables."""
+"""Cavitation laws that were added from Python: cases take them in this process, with the keys of their tables."""
 
 from __future__ import annotations
 
@@ -9,15 +9,12 @@ from frbcli.case.film_tables import adopt
 from frbcli.case.films.film_model import FilmModel
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.support import Damper
-from frbcli.case.theories import check_model
-from frbcli.film.bearing_model import table as bearing_models
-from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation import table
 from frbcli.film.cavitation.law import Law
 
 
 def add_law(law: type[Law]) -> None:
-    """Let film.cavitation take a law of one's own in this process, and [film.NAME] its keys.
+    """Let film.cavitation take a user-defined law in this process, and [film.NAME] its keys.
 
     Parameters
     ----------
@@ -27,15 +24,13 @@ def add_law(law: type[Law]) -> None:
     Raises
     ------
     ValueError
-        If it is no law, or has the name of a shipped law or of a bearing model.
+        If it is no law, or has the name of a shipped law.
 
     Examples
     --------
     >>> import frbcli
     >>> frbcli.add_law(MyLaw)  # doctest: +SKIP
     """
-    if any(model.name == getattr(law, "name", None) for model in bearing_models.models()):
-        raise ValueError(f"{law.__name__} has the name of a bearing model, {law.name}; choose another one")
     table.add(law)
     _adopt()
 
@@ -59,51 +54,6 @@ def remove_law(name: str) -> None:
     >>> frbcli.remove_law("mine")  # doctest: +SKIP
     """
     table.remove(name)
-    _adopt()
-
-
-def add_bearing(model: BearingModel) -> None:
-    """Let film.theory take a bearing model of one's own in this process, and [film.NAME] its keys.
-
-    Parameters
-    ----------
-    model : BearingModel
-        The model, whose functions are compiled here. One of the same name that was added before is replaced.
-
-    Raises
-    ------
-    InputError
-        If it is no model, or numba cannot compile it.
-
-    Examples
-    --------
-    >>> import frbcli
-    >>> frbcli.add_bearing(model)  # doctest: +SKIP
-    """
-    check_model(model, FilmModel)
-    bearing_models.add(model)
-    _adopt()
-
-
-def remove_bearing(name: str) -> None:
-    """Take a bearing model away that add_bearing has added.
-
-    Parameters
-    ----------
-    name : str
-        Name of the model.
-
-    Raises
-    ------
-    KeyError
-        For any other model.
-
-    Examples
-    --------
-    >>> import frbcli
-    >>> frbcli.remove_bearing("damper")  # doctest: +SKIP
-    """
-    bearing_models.remove(name)
     _adopt()
 
 

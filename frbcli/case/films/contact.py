@@ -76,7 +76,7 @@ class Contact(Model):
         if self.roughness is None:
             return None
         close = display(self.mean_height + FEW_TOUCH * self.roughness, "m")
-        reason = f"asperities carry beside the film in gaps below some {close}, with friction {self.friction:g}"
+        reason = f"asperities carry next to the film in gaps below some {close}, with friction {self.friction:g}"
         if self.flow_factors:
             reason += "; the film flows between them with flow factors"
         return f"rough, {display(self.roughness, 'm')}", reason
@@ -88,7 +88,7 @@ class Contact(Model):
 
     @property
     def shear(self) -> float:
-        """Share of the journal in the square of the roughness, less that of the shell."""
+        """Share of the journal in the square of the roughness, less the shell's share."""
         if self.journal_roughness is None or self.flow_roughness == 0.0:
             return 0.0
         return 2.0 * (self.journal_roughness / self.flow_roughness) ** 2 - 1.0

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
-from frbcli.case.film_tables import THEORIES, Cavitation, Theory, adopt, attribute
+from frbcli.case.film_tables import Cavitation, Theory, adopt, attribute
 from frbcli.case.model import Model
 from frbcli.film.cavitation.table import law_named
 
@@ -17,7 +17,7 @@ class FilmModel(Model):
     """How the films are computed."""
 
     theory: Theory = Field(
-        default="auto", description="of the Reynolds equation; or the name of a bearing model from Python"
+        default="auto", description="of the Reynolds equation"
     )
     cavitation: Cavitation = Field(default="half-sommerfeld", description="model of all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
@@ -43,11 +43,6 @@ class FilmModel(Model):
     if TYPE_CHECKING:  # the tables of the laws, which these declare
 
         def __getattr__(self, name: str) -> Any: ...
-
-    @property
-    def bearing_model(self) -> str:
-        """The name of the bearing model in `theory`, "" for a theory of the program."""
-        return "" if self.theory in THEORIES else self.theory
 
     def given(self, cavitation: str) -> Any:
         """The values of the table [film.NAME] of a cavitation law by attribute, None if the law has no keys."""

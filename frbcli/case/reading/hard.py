@@ -51,19 +51,19 @@ class HardCase:
         return shlex.join(["frb", self.command, self.base, *(w for text in self.settings for w in ("--set", text))])
 
     def case(self, fine: bool = False) -> Case:
-        """Its case, or that of its reference. Raises InputError if it is refused."""
+        """Its case, or the case of its reference. Raises InputError if it is refused."""
         return load_case(self.base, (*self.settings, *(self.fine if fine else ())))
 
 
 def hard_cases(names: Sequence[str] = ()) -> tuple[HardCase, ...]:
     """The hard cases of these names, all of them for (). Raises InputError for unknown names."""
     entries = tomllib.loads(hard_folder().joinpath(LIST).read_text(encoding="utf-8"))["case"]
-    found = {entry["name"]: _hard_case(entry) for entry in entries}
-    unknown = [name for name in names if name not in found]
+    cases = {entry["name"]: _hard_case(entry) for entry in entries}
+    unknown = [name for name in names if name not in cases]
     if unknown:
-        faults = (Fault("NAME", name, None, "is no hard case.", _nearest(name, found)) for name in unknown)
+        faults = (Fault("NAME", name, None, "is no hard case.", _nearest(name, cases)) for name in unknown)
         raise InputError("hard cases", tuple(faults))
-    return tuple(found[name] for name in names) if names else tuple(found.values())
+    return tuple(cases[name] for name in names) if names else tuple(cases.values())
 
 
 def _hard_case(entry: dict[str, Any]) -> HardCase:
@@ -71,8 +71,8 @@ def _hard_case(entry: dict[str, Any]) -> HardCase:
     return HardCase(**(entry | lists))
 
 
-def _nearest(name: str, found: dict[str, HardCase]) -> str:
-    return did_you_mean(name, found, "`frb cases --hard` lists them.")
+def _nearest(name: str, cases: dict[str, HardCase]) -> str:
+    return did_you_mean(name, cases, "`frb cases --hard` lists them.")
 
 
 def hard_folder() -> Traversable:

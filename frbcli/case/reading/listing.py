@@ -13,11 +13,10 @@ from frbcli.case.quantities import unit_of
 from frbcli.case.reading.toml import parse
 from frbcli.case.rules.contact_checks import OF_SPRING, WITH_DEFAULT
 from frbcli.case.schema import Case
-from frbcli.film.bearing_model import table as bearing_models
 from frbcli.film.cavitation import table
 from frbcli.units import NUMBER, display, readable
 
-MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is told
+MOST_LISTED = 12  # numbers of a list; of a table from a file only the count is listed
 
 
 @dataclass(frozen=True)
@@ -44,45 +43,43 @@ def _values(prefix: str, model: Model, written: Any) -> Iterator[Value]:
         yield from _one(f"{prefix}{key}", getattr(model, name), field, here)
 
 
-def _one(key: str, found: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
+def _one(key: str, content: Any, field: FieldInfo, written: Any) -> Iterator[Value]:
     """written: the same value in the text of the case, None where it is not there."""
-    if found is None or found == () or found == "":
+    if content is None or content == () or content == "":
         return
-    if isinstance(found, Model):
-        yield from _values(f"{key}.", found, written)
-    elif isinstance(found, tuple) and isinstance(written, dict) and hasattr(found[0], "place"):
-        yield from _by_place(key, found, written)
-    elif isinstance(found, tuple):
-        if len(found) > MOST_LISTED and isinstance(found[0], float):
-            yield Value(key, len(found), "", f"{len(found)} values")
+    if isinstance(content, Model):
+        yield from _values(f"{key}.", content, written)
+    elif isinstance(content, tuple) and isinstance(written, dict) and hasattr(content[0], "place"):
+        yield from _by_place(key, content, written)
+    elif isinstance(content, tuple):
+        if len(content) > MOST_LISTED and isinstance(content[0], float):
+            yield Value(key, len(content), "", f"{len(content)} values")
             return
-        both = isinstance(written, dict) and len(found) > 1  # one table that stands for both ends of a cartridge
-        single = both or (key in ("bearing", "base") and len(found) == 1)
-        each = written if isinstance(written, list) else [written] * len(found)
-        for index, (item, its_text) in enumerate(zip(found[:1] if both else found, each, strict=not both)):
+        both = isinstance(written, dict) and len(content) > 1  # one table for both ends of a cartridge
+        single = both or (key in ("bearing", "base") and len(content) == 1)
+        each = written if isinstance(written, list) else [written] * len(content)
+        for index, (item, its_text) in enumerate(zip(content[:1] if both else content, each, strict=not both)):
             yield from _one(key if single else f"{key}.{index}", item, field, its_text)
-    elif isinstance(found, float):
+    elif isinstance(content, float):
         unit = unit_of(field) or NUMBER
         si = "" if unit == NUMBER else readable(unit)
-        yield Value(key, found, si, display(found, unit), bool(si) and isinstance(written, int | float))
+        yield Value(key, content, si, display(content, unit), bool(si) and isinstance(written, int | float))
     else:
-        yield Value(key, found, "", str(found))
+        yield Value(key, content, "", str(content))
 
 
-def _by_place(key: str, found: tuple[Any, ...], written: dict[str, Any]) -> Iterator[Value]:
+def _by_place(key: str, items: tuple[Any, ...], written: dict[str, Any]) -> Iterator[Value]:
     """Values of a list of models that is written as a table by their places."""
-    for item in found:
+    for item in items:
         fields = type(item).model_fields
         (name,) = fields.keys() - {"place"}
         yield from _one(f"{key}.{item.place}", getattr(item, name), fields[name], written.get(item.place))
 
 
 def _is_idle(key: str, case: Case) -> bool:
-    """Whether a key belongs to a cavitation, bearing or contact model that the case does not use."""
+    """Whether a key belongs to a cavitation or contact model that the case does not use."""
     section, _, rest = key.partition(".")
     if section == "contact":
         return rest in (OF_SPRING if case.contact.rough else WITH_DEFAULT)
     model = rest.partition(".")[0]
-    if section == "film" and model in (bearing.name for bearing in bearing_models.models()):
-        return model != case.film.theory
     return section == "film" and model in table.names() and model not in case.cavitations

@@ -111,9 +111,9 @@ def load_case_text(
     except TomlFault as error:
         raise InputError(source, (error.fault,)) from None
     data, overridden, faults = _apply(data, [functools.partial(with_setting, setting=setting) for setting in settings])
-    case, data, found = _checked(data, name, folder)
-    if found:
-        faults += _located(found, data, overridden, text)
+    case, data, flaws = _checked(data, name, folder)
+    if flaws:
+        faults += _located(flaws, data, overridden, text)
     if faults or case is None:
         raise _refused(source, faults)
     return case.with_source_text(to_toml(data))
@@ -131,8 +131,8 @@ def with_settings(case: Case, settings: Iterable[str | Mapping[str, object]]) ->
             problem, remedy = "is no setting.", 'Write "key = value" or {"key": value}.'
             raise InputError(case.name or "case", (Fault("settings", str(type(given)), None, problem, remedy),))
     data, overridden, faults = _apply(parse(case.source_text), applied)
-    changed, data, found = _checked(data, case.name or "case", ".")
-    faults += _located(found, data, overridden, "")
+    changed, data, flaws = _checked(data, case.name or "case", ".")
+    faults += _located(flaws, data, overridden, "")
     if faults or changed is None:
         raise _refused(case.name or "case", faults)
     return changed.with_source_text(to_toml(data))
@@ -145,7 +145,7 @@ def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Pa
     ----------
     data : mapping
         Nested mappings and sequences. Quantities are numbers in SI or text with a unit; a table may also be a model of
-        `frbcli.case`; None stands for a key that is not given.
+        `frbcli.case`; None: a key that is not given.
     name : str
         Name of the case, if the data have none.
     folder : str or Path
@@ -175,9 +175,9 @@ def case_from_dict(data: Mapping[str, Any], name: str = "case", folder: str | Pa
         raise InputError(name, (error.fault,)) from None
     if not isinstance(tables, dict):
         raise InputError(name, (Fault("data", "", None, "is not a dict.", "Give a table of the case's tables."),))
-    case, tables, found = _checked(tables, name, folder)
-    if found or case is None:
-        raise _refused(name, _located(found, tables, (), ""))
+    case, tables, flaws = _checked(tables, name, folder)
+    if flaws or case is None:
+        raise _refused(name, _located(flaws, tables, (), ""))
     return case
 
 
@@ -199,16 +199,16 @@ def _checked(data: dict[str, Any], name: str, folder: str | Path) -> tuple[Case 
     data, wrong = with_speed_points(data, Path(folder))
     data, unread_inputs = with_input_files(data, Path(folder))
     unfit += [*wrong, *unread_inputs, *no_modes]
-    case, found = _validate(data)
+    case, flaws = _validate(data)
     files = {breach.path[:-1] for breach in unread_inputs}
-    found = [breach for breach in found if breach.path not in files]
+    flaws = [breach for breach in flaws if breach.path not in files]
     if wrong:  # from, to and duration would follow
-        found = [breach for breach in found if breach.path[0] != "speed"]
-    if case is not None and not (found or unfit):
-        found = list(machine_breaches(case))
+        flaws = [breach for breach in flaws if breach.path[0] != "speed"]
+    if case is not None and not (flaws or unfit):
+        flaws = list(machine_breaches(case))
     if unread:  # what the file would have completed is no fault of the case
-        found = [*unread, *(breach for breach in found if breach.path[0] != "disk")]
-    return case, data, [*unknown, *unfit, *found]
+        flaws = [*unread, *(breach for breach in flaws if breach.path[0] != "disk")]
+    return case, data, [*unknown, *unfit, *flaws]
 
 
 def _refused(source: str, faults: Sequence[Fault]) -> InputError:
@@ -218,7 +218,7 @@ def _refused(source: str, faults: Sequence[Fault]) -> InputError:
 def _plain(value: Any, path: lines.Path = ()) -> Any:
     """`value` as a file would give it: tables, lists, text and numbers. Raises TomlFault."""
     if len(path) > DEEPEST:
-        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as a case file has it."))
+        raise TomlFault(Fault(_dotted(path[:3]), "", None, "is nested too deeply.", "Write it as in a case file."))
     if isinstance(value, Model):
         return as_tables(value)
     if isinstance(value, Mapping):
@@ -277,35 +277,35 @@ def _validate(data: dict[str, Any]) -> tuple[Case | None, list[Breach]]:
     """The case in `data`, None if the models reject it, and all faults."""
     case, guess = None, data
     guessed: list[lines.Path] = []
-    found: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
+    faults: dict[lines.Path, Breach] = {}  # one per key: the first says why the value cannot be taken at all
     try:
         case = Case.model_validate(data)
     except ValidationError as error:
         guess, guessed = with_nearest_kinds(error, data)
-        found |= {breach.path: breach for breach in objections(error, data)}
+        faults |= {breach.path: breach for breach in objections(error, data)}
     if guess != data:
         try:
             Case.model_validate(guess)
         except ValidationError as error:
-            found = {breach.path: breach for breach in objections(error, guess)} | found
-    found = {breach.path: breach for breach in breaches(guess)} | found
-    return case, [breach for breach in found.values() if not _follows(breach, found.values(), guessed)]
+            faults = {breach.path: breach for breach in objections(error, guess)} | faults
+    faults = {breach.path: breach for breach in breaches(guess)} | faults
+    return case, [breach for breach in faults.values() if not _follows(breach, faults.values(), guessed)]
 
 
-def _follows(breach: Breach, found: Iterable[Breach], guessed: Sequence[lines.Path]) -> bool:
+def _follows(breach: Breach, others: Iterable[Breach], guessed: Sequence[lines.Path]) -> bool:
     """Whether a fault is of the form of a table whose kind was guessed, and whose other keys belong to another kind."""
     for path in guessed:
-        of_form = [each for each in found if each.path[: len(path)] == path and each.path[len(path) :] != ("kind",)]
+        of_form = [each for each in others if each.path[: len(path)] == path and each.path[len(path) :] != ("kind",)]
         if breach in of_form and breach.problem in (UNKNOWN, MISSING):
             return any(each.problem == UNKNOWN and len(each.path) == len(path) + 1 for each in of_form)
     return False
 
 
-def _located(found: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:
+def _located(flaws: Sequence[Breach], data: dict[str, Any], overridden: Sequence[lines.Path], text: str) -> list[Fault]:
     """The breaches as faults with the lines of their keys; what came from a setting has no line."""
     known = lines.key_lines(text)
     faults = []
-    for breach in found:
+    for breach in flaws:
         from_setting = any(breach.path[: len(path)] == path for path in overridden)
         line = None if from_setting else known.get(breach.path)
         faults.append(Fault(_dotted(breach.path), _shown(data, breach.path), line, breach.problem, breach.remedy))
@@ -318,12 +318,12 @@ def _dotted(path: lines.Path) -> str:
 
 def _shown(data: Any, path: lines.Path) -> str:
     """The value at `path` as text for a fault; nothing for what is absent, a table or a list."""
-    found = at(data, path)
-    if found is None or isinstance(found, dict | list):
+    value = at(data, path)
+    if value is None or isinstance(value, dict | list):
         return ""
-    if isinstance(found, int) and found.bit_length() > LARGEST_SHOWN:
+    if isinstance(value, int) and value.bit_length() > LARGEST_SHOWN:
         return ""
-    shown = f'"{found}"' if isinstance(found, str) else str(found).lower() if isinstance(found, bool) else str(found)
+    shown = f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
     return _printable(shown)
 
 

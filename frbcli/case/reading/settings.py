@@ -11,7 +11,7 @@ from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.errors import Fault
 
 DEEPEST_KEY = 8
-ALL = "*"  # in place of an index: every table of an array
+ALL = "*"  # instead of an index: every table of an array
 
 _INDEX = re.compile(r"[0-9]{1,4}")
 
@@ -21,9 +21,8 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
 
     The value is TOML where it can be ("3", "true", "{ kind = 'none' }"), else text ("40 um"). An index, or a name,
     leads into an array of tables: "bearing.0.width", "bearing.front.width"; "bearing.*.width" sets the key in all. An
-    index at the end is a value of a list: "bearing.support.stiffness.1" that of y.
-    Index 0, the name, or * of a single table are the table itself.
-    """
+    index at the end is a value of a list: "bearing.support.stiffness.1" is the one in y. Index 0, the name, or * of a
+    single table are the table itself. """
     key, equals, value = setting.partition("=")
     parts = _parts(key)
     if not (equals and parts and _encodable(setting)):
@@ -33,7 +32,7 @@ def with_setting(data: Mapping[str, Any], setting: str) -> tuple[dict[str, Any],
 
 
 def with_value(data: Mapping[str, Any], key: str, value: Any) -> tuple[dict[str, Any], Path]:
-    """As with_setting, with a value as a file has it; None takes the key out. Raises TomlFault."""
+    """As with_setting, with a value as written in a file; None takes the key out. Raises TomlFault."""
     parts = _parts(key)
     if not (parts and _encodable(key)):
         raise _refuse(key or "settings", "is not of the form key.path.", 'Write e.g. {"speed.to": "200 Hz"}.')

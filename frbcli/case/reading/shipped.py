@@ -52,7 +52,7 @@ def _text(name: str) -> str:
 
 
 def shipped_folder() -> Traversable:
-    """Their directory: inside an installed package; beside the package in a checkout or an editable installation."""
+    """Their directory: inside an installed package; next to the package in a checkout or an editable installation."""
     package = files("frbcli")
     installed = package.joinpath("shipped_cases")
     return installed if installed.is_dir() else Path(str(package)).parent / "cases"

@@ -23,17 +23,17 @@ class Breach:
 
 def tables(data: Mapping[str, Any], key: str) -> list[tuple[Path, dict[str, Any]]]:
     """The tables of [key] or [[key]] with their paths."""
-    found = data.get(key)
-    if isinstance(found, dict):
-        return [((key,), found)]
-    many = enumerate(found) if isinstance(found, list) else ()
+    entry = data.get(key)
+    if isinstance(entry, dict):
+        return [((key,), entry)]
+    many = enumerate(entry) if isinstance(entry, list) else ()
     return [((key, index), item) for index, item in many if isinstance(item, dict)]
 
 
 def table(data: Mapping[str, Any], key: str) -> dict[str, Any]:
     """The table [key], empty if there is none."""
-    found = data.get(key)
-    return found if isinstance(found, dict) else {}
+    entry = data.get(key)
+    return entry if isinstance(entry, dict) else {}
 
 
 def at(data: Any, path: Path) -> Any:

@@ -34,8 +34,8 @@ def parse(text: str) -> dict[str, Any]:
     try:
         tables = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
-        found = _LINE.search(str(error))
-        line = int(found.group(1)) if found else text.count("\n") + 1
+        match = _LINE.search(str(error))
+        line = int(match.group(1)) if match else text.count("\n") + 1
         problem = f"is not TOML: {_LINE.sub('', str(error)).replace(' (at end of document)', ' at the end')}."
         raise TomlFault(Fault("text", "", line, problem, 'Write: key = value, with text in "quotes".')) from None
     except RecursionError:

@@ -38,7 +38,7 @@ def tilt_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def pin_breaches(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
-    """A pin of a ring that does not turn, and one beside the ring."""
+    """A pin of a ring that does not turn, and one outside of the ring."""
     if table(bearing, "ring").get("spin") == "blocked" and "pin" in bearing:
         remedy = 'Remove it, or write ring.spin = "free".'
         yield Breach((*path, "pin"), "has no effect: the ring is blocked, as by a pin without play.", remedy)

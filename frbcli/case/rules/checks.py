@@ -61,7 +61,7 @@ def breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
         if key not in data and "motion" not in data and not (key == "speed" and "drive" in data):
             yield Breach((key,), "is missing.", f"Add the table [{key}].")
     if {"speed", "drive"} <= data.keys():
-        yield Breach(("speed",), "is given beside [drive], from which the speed follows.", "Keep one of the two.")
+        yield Breach(("speed",), "is given with [drive], from which the speed follows.", "Keep one of the two.")
 
 
 def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
@@ -85,7 +85,7 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
     for key in ("temperature", "shear_factor"):
         if key in oil and constant:
             problem = "has no effect: the viscosity is constant."
-            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel in place of the viscosity.")
+            yield Breach(("oil", key), problem, "Remove it, or give oil.vogel instead of the viscosity.")
     yield from law_breaches(oil, number(oil, "temperature", "K"), ("oil", "temperature"))
     ambient, cavitation = number(oil, "ambient_pressure", "Pa", ATMOSPHERE), number(oil, "cavitation_pressure", "Pa")
     if ambient and cavitation and cavitation > ambient:
@@ -97,7 +97,7 @@ def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     for (at, inside), (_, outside) in ring_films(bearing):
         inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
         if inner and outer and inner >= outer:
-            problem = f"is {display(inner, 'm')}, not below that of the outer film, {display(outer, 'm')}."
+            problem = f"is {display(inner, 'm')}, not below the outer film's, {display(outer, 'm')}."
             yield Breach((*path, *at, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
     ring = bearing.get("ring")
     yield from pin_breaches(path, bearing)
@@ -117,7 +117,7 @@ def _damper(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     film = ringed[0][1][1] if ringed else bearing
     inner, outer = number(film, "diameter", "m"), number(table(bearing, "damper"), "diameter", "m")
     if inner and outer and inner >= outer:
-        problem = f"is {display(outer, 'm')}, not above that of the film in the shell, {display(inner, 'm')}."
+        problem = f"is {display(outer, 'm')}, not above the value of the film in the shell, {display(inner, 'm')}."
         yield Breach((*path, "damper", "diameter"), problem, "It is the outer diameter of the shell.")
 
 
@@ -136,7 +136,7 @@ def _rotor(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]]])
         if not data.get("shaft") and "file" not in table(data, "rotor"):
             yield Breach(("shaft",), "is missing.", "Add [[shaft]] sections with length and diameter, or rotor.file.")
         if {"modes", "cutoff"} <= set(table(data, "rotor")):
-            yield Breach(("rotor", "cutoff"), "is given beside modes.", "Keep one of the two.")
+            yield Breach(("rotor", "cutoff"), "is given with modes.", "Keep one of the two.")
         if sum(2 if bearing.get("kind") == "cartridge" else 1 for _, bearing in bearings) < 2:
             yield Breach(("bearing",), "is given once; a turbocharger rotor needs two.", "Write [[bearing]] twice.")
         for path, bearing in bearings:
@@ -189,7 +189,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
         if x is not None and y is not None and math.hypot(x, y) >= 1:
             yield Breach(("start", "displacement"), "is outside the clearance.", "Its length must be below 1.")
     if "displacement" in start and "position" in start:
-        yield Breach(("start", "position"), "is given beside a displacement.", "Keep one of the two.")
+        yield Breach(("start", "position"), "is given with a displacement.", "Keep one of the two.")
     duration, step = number(speed, "duration", "s"), number(table(data, "output"), "step", "s", OUTPUT_STEP)
     if not duration or not step or min(duration, step) < 0:
         return
@@ -205,7 +205,7 @@ def _run(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _kept(films: Mapping[str, Any], whole: float) -> Iterator[Breach]:
-    """Films that a run keeps, between times of it. whole: s that it lasts at the most."""
+    """Films that a run keeps, between times of it. whole: s that it lasts at most."""
     begin, end = (number(films, key, "s") for key in ("from", "to"))
     if begin is None or end is None:
         return
@@ -218,10 +218,10 @@ def _kept(films: Mapping[str, Any], whole: float) -> Iterator[Breach]:
 
 def _motion(motion: Mapping[str, Any]) -> Iterator[Breach]:
     if "load" in motion and "eccentricity" in motion:
-        yield Breach(("motion", "load"), "is given beside an eccentricity.", "Keep one of the two.")
+        yield Breach(("motion", "load"), "is given with an eccentricity.", "Keep one of the two.")
     for key in ("eccentricity_rate", "whirl_speed"):
         if key in motion and "velocity" in motion:
-            yield Breach(("motion", "velocity"), f"is given beside motion.{key}.", "Keep one of the two.")
+            yield Breach(("motion", "velocity"), f"is given with motion.{key}.", "Keep one of the two.")
 
 
 def _films(path: Path, bearing: dict[str, Any]) -> Iterator[tuple[Path, dict[str, Any]]]:

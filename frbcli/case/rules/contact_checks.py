@@ -47,7 +47,7 @@ def _breaches_of_asperities(contact: Mapping[str, Any]) -> Iterator[Breach]:
         problem = "has an effect on flow factors only."
         yield Breach(("contact", "journal_roughness"), problem, "Add flow_factors = true, or remove it.")
     elif journal and roughness and journal > roughness:
-        problem = "is more than roughness, which is that of both surfaces."
+        problem = "is more than roughness, which holds for both surfaces together."
         yield Breach(("contact", "journal_roughness"), problem, "Correct one of the two.")
     if roughness and radius and roughness > STEEPEST * radius > 0.0:
         problem = f"is {roughness / radius:.3g} of summit_radius, and summits are flat: at most {STEEPEST:g} of it."

@@ -1,4 +1,4 @@
-"""Rules that tie the keys of elements without a film together, and those of cases without any film. See checks.py."""
+"""Rules that tie the keys of elements without a film together, and rules of cases without any film. See checks.py."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ OF_FILMS = (
 
 def has_films(data: Mapping[str, Any]) -> bool:
     """Whether a bearing of the tables may have a film: true for tables that cannot be read."""
-    found = tables(data, "bearing")
-    return not found or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in found)
+    listed = tables(data, "bearing")
+    return not listed or any(bearing.get("kind") not in WITHOUT_FILM or "damper" in bearing for _, bearing in listed)
 
 
 def balls_alone(data: Mapping[str, Any]) -> bool:
@@ -71,7 +71,7 @@ def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     given = [key for key in GIVEN if key in bearing]
     if "over_speed" in bearing:
         if given:
-            problem = f"is given beside {' and '.join(given)}."
+            problem = f"is given with {' and '.join(given)}."
             yield Breach((*path, "over_speed"), problem, "Keep the table over speed, or the constant coefficients.")
         yield from _over_speed((*path, "over_speed"), table(bearing, "over_speed"))
     elif not given and "file" not in bearing:
@@ -86,7 +86,7 @@ def _coefficients(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 def _balls(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
     angle, clearance = "contact_angle" in bearing, "radial_clearance" in bearing
     if angle == clearance:
-        problem = "is given beside radial_clearance, from which it follows." if angle else "is missing."
+        problem = "is given with radial_clearance, from which it follows." if angle else "is missing."
         yield Breach((*path, "contact_angle"), problem, 'Keep one: contact_angle = "15 deg", or radial_clearance.')
     yield from _preload(path, bearing, angle)
     ball, pitch = (number(bearing, key, "m") for key in ("ball_diameter", "pitch_diameter"))
@@ -114,15 +114,15 @@ def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Br
 
 
 def _matrix(given: object) -> tuple[float, ...] | None:
-    """The entries of a mass matrix, None if it cannot be read; one quantity is that of both directions."""
+    """The entries of a mass matrix, None if it cannot be read; one quantity holds for both directions."""
     if given is None:
         return tuple(entry for row in EMPTY_MATRIX for entry in row)
     if isinstance(given, list | tuple) and len(given) == 2 and all(isinstance(r, list | tuple) for r in given):
-        found = [number({"": entry}, "", "kg") for row in given for entry in row]
+        entries = [number({"": entry}, "", "kg") for row in given for entry in row]
     else:
-        found = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
-    known = tuple(entry for entry in found if entry is not None)
-    return known if len(known) == len(found) == 4 else None
+        entries = [number({"": given}, "", "kg"), 0.0, 0.0, number({"": given}, "", "kg")]
+    known = tuple(entry for entry in entries if entry is not None)
+    return known if len(known) == len(entries) == 4 else None
 
 
 def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
@@ -136,7 +136,7 @@ def _over_speed(path: Path, values: Mapping[str, Any]) -> Iterator[Breach]:
     given = [name for name in MASSES if name in values]
     if 0 < len(given) < len(MASSES):
         missing = next(name for name in MASSES if name not in values)
-        yield Breach((*path, missing), "is missing beside the other masses.", "Give all four of them.")
+        yield Breach((*path, missing), "is missing, while other masses are given.", "Give all four of them.")
     if len(set(lengths.values())) != 1:
         return
     speeds = [number({"": value}, "", "Hz") for value in values.get("speed", [])]

@@ -30,8 +30,7 @@ _FORMS = {
 }
 
 
-# Keys that take names which are added from Python, and the functions that add them.
-OWN: dict[Path, str] = {("film", "theory"): "frbcli.add_bearing", ("film", "cavitation"): "frbcli.add_law"}
+CAVITATION: Path = ("film", "cavitation")  # which takes names that are added from Python
 
 # Names that engineers know and a case does not have: a part of the name, and what takes its place
 KINDS_ELSEWHERE = {
@@ -109,7 +108,7 @@ def _path(loc: Sequence[str | int], data: Any) -> Path:
         if path[-2:-1] in BY_PLACE and isinstance(element, str) and not isinstance(data, dict):
             continue  # the value itself, which a table by places has without its name
         if isinstance(element, int) and isinstance(data, str | int | float):
-            continue  # one quantity that stands for a matrix
+            continue  # one quantity instead of a matrix
         path = (*path, element)
         kind_seen = False
         data = at(data, (element,))
@@ -132,8 +131,8 @@ def _breach(path: Path, loc: Sequence[str | int], kind: str, context: dict[str, 
         return Breach((*path, "kind"), problem, elsewhere or _one_of(tag, _kinds(loc)))
     if kind == "literal_error":
         remedy = _one_of(str(context["input"]), _choices(_place(loc).field))
-        if path in OWN:
-            remedy += f" One of your own is added in this process before the case is read: {OWN[path]}."
+        if path == CAVITATION:
+            remedy += " A law of your own is added in this process before the case is read: frbcli.add_law."
         return Breach(path, UNKNOWN, remedy)
     field = _place(loc).field
     if kind == "tuple_type" and field is not None and _parts(field.annotation, Model):
@@ -182,7 +181,7 @@ def _kinds(loc: Sequence[str | int]) -> list[str]:
 
 
 def _example(field: FieldInfo | None) -> str:
-    """An example of a value as it stands in a file, or nothing."""
+    """An example of a value as written in a file, or nothing."""
     if field is None:
         return ""
     for kind in (Quantity, Count):
@@ -218,10 +217,10 @@ def _half(value: object) -> str:
         return ""
 
 
-def _one_of(found: str, choices: Sequence[str]) -> str:
-    return did_you_mean(found, choices)
+def _one_of(name: str, choices: Sequence[str]) -> str:
+    return did_you_mean(name, choices)
 
 
-def _close(found: str, choices: Sequence[str]) -> str:
+def _close(name: str, choices: Sequence[str]) -> str:
     """The choice nearest to what was found, or nothing."""
-    return next(iter(nearest(found, choices)), "")
+    return next(iter(nearest(name, choices)), "")

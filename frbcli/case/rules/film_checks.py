@@ -94,7 +94,7 @@ def _profile(
 ) -> Iterator[Breach]:
     """A table of gaps over one turn, none of which is less than the clearance."""
     if "lobes" in film:
-        yield Breach(path, "is given beside lobes.", "Keep one of the two.")
+        yield Breach(path, "is given with lobes.", "Keep one of the two.")
     try:
         angles, gaps = zip(*PROFILE.validate_python(film["profile"]), strict=True)
     except ValidationError:
@@ -122,7 +122,7 @@ def law_breaches(oil: Mapping[str, Any], temperature: float | None, path: Path) 
     else:
         given = "points" if "points" in oil["viscosity"] else "grade"
         problem = f"makes the viscosity of the {given} {viscosity:.3g} Pa*s."
-        yield Breach(path, problem, "The figures of a grade are of 40 to 150 degC, those of points near them.")
+        yield Breach(path, problem, "A grade has data from 40 to 150 degC, given points only near them.")
 
 
 def viscosity_law(oil: Mapping[str, Any]) -> VogelLaw | None:

@@ -51,13 +51,13 @@ def implausible(data: Mapping[str, Any]) -> Iterator[Breach]:
     for doubt in _doubts(data):
         if doubt.name not in confirmed:
             doubts.setdefault(doubt.path, []).append(doubt)
-    for path, found in doubts.items():
-        yield Breach(path, f"{'; '.join(doubt.problem for doubt in found)}.", _remedy(found, at(data, path)))
+    for path, raised in doubts.items():
+        yield Breach(path, f"{'; '.join(doubt.problem for doubt in raised)}.", _remedy(raised, at(data, path)))
 
 
-def _remedy(found: list[_Doubt], value: object) -> str:
-    names = ", ".join(f'"{doubt.name}"' for doubt in found)
-    bare = "" if isinstance(value, str | dict) else f" A number without a unit is in {readable(found[0].unit)}."
+def _remedy(raised: list[_Doubt], value: object) -> str:
+    names = ", ".join(f'"{doubt.name}"' for doubt in raised)
+    bare = "" if isinstance(value, str | dict) else f" A number without a unit is in {readable(raised[0].unit)}."
     return f"Correct speed, diameter or clearance, or confirm it at the top of the file: confirm = [{names}].{bare}"
 
 
@@ -131,8 +131,8 @@ def _ring_growths(inside: Mapping[str, Any], outside: Mapping[str, Any], top: _S
 
 def _top_speed(data: Mapping[str, Any]) -> _Speed | None:
     places = (("speed", "to"), ("speed", "from"), ("motion", "speed"))
-    found = [((section, key), _size(table(data, section), key, SPEED)) for section, key in places]
-    speeds = [_Speed(path, value) for path, value in found if value is not None]
+    places_and_values = [((section, key), _size(table(data, section), key, SPEED)) for section, key in places]
+    speeds = [_Speed(path, value) for path, value in places_and_values if value is not None]
     return max(speeds, key=lambda speed: speed.value, default=None)
 
 

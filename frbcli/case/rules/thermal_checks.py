@@ -41,7 +41,7 @@ def _film(path: Path, film: Mapping[str, Any]) -> Iterator[Breach]:
     """Keys of a film that heat makes superfluous."""
     if "viscosity" in film:
         problem = "is constant, but [thermal] has films that warm up."
-        remedy = "Remove it: the viscosity is that of [oil] at the film's temperature."
+        remedy = "Remove it: the viscosity follows from [oil] at the film's temperature."
         yield Breach((*path, "viscosity"), problem, remedy)
     if "temperature" in film:
         problem = "has no effect: [thermal] finds the film's temperature."

@@ -64,7 +64,7 @@ def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
         yield Breach(("axial",), "has no thrust bearing that carries its load.", remedy)
         return
     if len(bearings) > 1:
-        problem = f"is given beside {len(bearings)} thrust bearings, and one collar carries it."
+        problem = f"is given with {len(bearings)} thrust bearings, and one collar carries it."
         yield Breach(key, problem, 'Keep one, with side = "both" where pads stand on both sides.')
     if "oil" not in data:
         yield Breach(("oil",), "is missing.", "Add the table [oil].")

@@ -12,8 +12,8 @@ from frbcli.case.supplies.supply import MIDDLE, LargestFlow, Openings, Outline, 
 from frbcli.errors import Fault
 from frbcli.film.gap import Edge
 
-SHOWN = 0.06  # half of its width over that of the bearing in a sketch: a case does not have it
-ONE_LAND = 0.25  # flow of one land of the whole width over that of two lands of half of it
+SHOWN = 0.06  # half of its width over the bearing's in a sketch: not given in a case
+ONE_LAND = 0.25  # flow of one land of the whole width over the flow of two lands of half of it
 
 
 class CircumferentialGroove(PressureSupply):

@@ -1,4 +1,4 @@
-"""The contract of all supplies of oil: what differs between the kinds stands in their own files.
+"""The contract of all supplies of oil: what differs between the kinds is in their own files.
 
 Angles are phi of the developed gap, z counts from the end of the bearing in m. The pressure of a supply is absolute in
 the case file; everything that is made of it takes the gauge pressure, over the ambient one, 0 where nothing supplies.
@@ -75,7 +75,7 @@ class OilSupply(Model):
     sizes: ClassVar[tuple[str, ...]] = ("width", "diameter")  # keys that are no larger than the width of the bearing
 
     def absolute(self, ambient: float) -> float:
-        """The absolute pressure of the supply in Pa, the largest one where it changes over time; that of the air where
+        """The absolute pressure of the supply in Pa, the largest one where it changes over time; of the air where
         nothing supplies."""
         return ambient
 
@@ -125,7 +125,7 @@ class OilSupply(Model):
 
     @property
     def land_share(self) -> float:
-        """Flow of a concentric film over that of two lands of half the width."""
+        """Flow of a concentric film over the flow of two lands of half the width."""
         return 1.0
 
     @property
@@ -149,8 +149,8 @@ class OilSupply(Model):
         """Its outlines as holes with its pressure."""
         gauge = self.gauge(ambient)
         return tuple(
-            Hole(found.position, found.axial, found.half_angle, found.half_width, gauge, found.round)
-            for found in self.outlines(radius, width)
+            Hole(outline.position, outline.axial, outline.half_angle, outline.half_width, gauge, outline.round)
+            for outline in self.outlines(radius, width)
         )
 
     @property
@@ -164,7 +164,7 @@ class OilSupply(Model):
         return "developed gap", f"with openings: {self.kind}"
 
     def faults(self, key: str) -> list[Fault]:
-        """Faults of which no film can be made; key: that of the supply."""
+        """Faults of which no film can be made; key: of the supply."""
         return []
 
     @classmethod
@@ -215,8 +215,8 @@ class PressureSupply(OilSupply):
     @property
     def words(self) -> str:
         up_to = "" if self.over_time is None else "up to "
-        told = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
-        return told if self.flow is None else f"{told}, at most {display(self.flow, 'm^3/s')}"
+        text = f"{super().words}, {up_to}{1e-5 * largest(self.pressure):.4g} bar"
+        return text if self.flow is None else f"{text}, at most {display(self.flow, 'm^3/s')}"
 
 
 class SpacedSupply(PressureSupply):

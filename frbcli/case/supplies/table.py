@@ -1,4 +1,4 @@
-"""The table of the supplies: one row each. Everything else about a supply stands in its own file."""
+"""The table of the supplies: one row each. All else about a supply is in its own file."""
 
 from __future__ import annotations
 

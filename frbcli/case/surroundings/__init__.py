@@ -1,1 +1,1 @@
-"""What a rotor stands on and what acts on it beside its bearings."""
+"""What a rotor stands on and what acts on it besides its bearings."""

@@ -55,13 +55,13 @@ class Base(MachineTable):
     def turning(self) -> str:
         """What it changes with, in words."""
         if self.over_time is not None:
-            return self.over_time.told
+            return self.over_time.origin
         of = "" if self.speed is None else f" of {self.speed:g} Hz"
         return f"order {1.0 if self.order is None else self.order:g}{of}"
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
         if case.housing is not None and case.housing.modes and not case.housing.masses:
-            problem = "acts on masses, and those of the housing are not known: its modes do not say them."
+            problem = "acts on masses, and the masses of the housing are unknown: its modes do not contain them."
             yield Breach(path, problem, "Give housing.masses, or a rigid housing.")
         if self.over_time is not None:
             yield from table_breaches(path, self, self.over_time, ("order", "speed", "phase"))

@@ -1,4 +1,4 @@
-"""A force on a place of the machine beside unbalance and weight."""
+"""A force on a place of the machine besides unbalance and weight."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class AppliedForce(MachineTable):
     def turning(self) -> str:
         """Its order, its frequency or its table in words; "" of a constant force."""
         if self.over_time is not None:
-            return self.over_time.told
+            return self.over_time.origin
         order, frequency = self.turns
         return f"order {order:g}" if order else f"{frequency:g} Hz" if frequency else ""
 
@@ -76,7 +76,7 @@ class AppliedForce(MachineTable):
         if not node_at(case, self.at):
             yield Breach((*path, "at"), *no_place(case, self.at))
         if self.order is not None and self.frequency is not None:
-            yield Breach((*path, "frequency"), "is given beside order.", "Keep one of the two.")
+            yield Breach((*path, "frequency"), "is given with order.", "Keep one of the two.")
         for key in ("order", "frequency"):
             if getattr(self, key) == 0.0:
                 yield Breach((*path, key), "is 0.", "Leave it out: the force is then constant.")

@@ -1,4 +1,4 @@
-"""The housing that all bearings stand in: a rigid body on mounts, or the modes of an elastic one."""
+"""The housing of all bearings: a rigid body on mounts, or the modes of an elastic one."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ def _rigid(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
 def _modal(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
     for key in RIGID:
         if getattr(housing, key) not in (None, ()):
-            yield Breach((*path, key), "is given beside modes.", "Keep the keys of a rigid housing, or its modes.")
+            yield Breach((*path, key), "is given with modes.", "Keep the keys of a rigid housing, or its modes.")
     carried = (SYMMETRIC_PLACE,) if case.rotor.symmetric else tuple(bearing.name for bearing in case.placed_bearings)
     known = {each.place for each in housing.masses}
     for number, mode in enumerate(housing.modes):
@@ -152,7 +152,7 @@ def _modal(path: Path, case: Case, housing: Housing) -> Iterator[Breach]:
         wanted = float(j == k)
         if abs(product - wanted) > ORTHONORMAL:
             which = "with itself" if j == k else f"with mode {k + 1}"
-            problem = f"has a sum of masses times displacements {which} of {product:.4g} in place of {wanted:g}."
+            problem = f"has a sum of masses times displacements {which} of {product:.4g} instead of {wanted:g}."
             remedy = "Give orthonormal modes, each divided by the root of its modal mass, and all masses."
             yield Breach((*path, "modes", j, "at"), problem, remedy)
 

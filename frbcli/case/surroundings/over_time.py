@@ -32,7 +32,7 @@ class OverTime(Model):
         return self.x, self.y or self.x
 
     @property
-    def told(self) -> str:
+    def origin(self) -> str:
         """Where it is from, in words."""
         return f"{len(self.time)} rows of {self.source}" if self.source else f"{len(self.time)} rows"
 
@@ -48,12 +48,12 @@ def over_time_problem(time: Sequence[float], *columns: Sequence[float]) -> str:
 
 
 def largest(value: float | OverTime) -> float:
-    """The value of an input, or the largest one of its table: that of all analyses but runs."""
+    """The value of an input, or the largest one of its table, which all analyses but runs use."""
     return max(value.x) if isinstance(value, OverTime) else value
 
 
 def first(value: float | OverTime) -> float:
-    """The value of an input, or the first one of its table: that of the start of a run."""
+    """The value of an input, or the first one of its table, with which a run starts."""
     return value.x[0] if isinstance(value, OverTime) else value
 
 
@@ -63,7 +63,7 @@ def is_over_time(given: object) -> bool:
 
 
 def values_of(given: object, unit: str) -> tuple[float, ...]:
-    """SI values of an input as it was written, all of those of a table; none where it cannot be read."""
+    """SI values of an input as it was written, of a table all; none where it cannot be read."""
     try:
         if isinstance(given, dict):
             return tuple(_numbers(given.get("x", ())))
@@ -120,8 +120,8 @@ class Input:
         points = {"type": "array", "items": pair, "minItems": 2, "description": "times with values"}
         file = {"type": "object", "description": "a file with the columns time and value: { file = ... }"}
         table = {"description": OVER_TIME, "anyOf": [points, file]}
-        told, examples = f"{one['description']}, or {OVER_TIME}", [self.quantity.example]
-        return {"description": told, "examples": examples, "anyOf": [one, table]}
+        description, examples = f"{one['description']}, or {OVER_TIME}", [self.quantity.example]
+        return {"description": description, "examples": examples, "anyOf": [one, table]}
 
 
 def _numbers(given: object) -> list[float]:

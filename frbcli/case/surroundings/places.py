@@ -17,23 +17,23 @@ if TYPE_CHECKING:
 
 def places(case: Case) -> tuple[str, ...]:
     """The nodes of the machine of a case, as its runs name them."""
-    rotor, found = case.rotor, []
+    rotor, nodes = case.rotor, []
     if rotor.symmetric:
-        found += ["journal"] if rotor.kind == "rigid" else ["journal", "disk"]
+        nodes += ["journal"] if rotor.kind == "rigid" else ["journal", "disk"]
     else:
-        found += [f"journal_{bearing.name}" for bearing in case.placed_bearings]
-        found += [f"disk_{disk.name or number}" for number, disk in enumerate(case.disks, start=1)]
+        nodes += [f"journal_{bearing.name}" for bearing in case.placed_bearings]
+        nodes += [f"disk_{disk.name or number}" for number, disk in enumerate(case.disks, start=1)]
     for bearing in case.placed_bearings:
         if bearing.kind == "floating-ring":
-            found.append(f"ring_{bearing.name}".rstrip("_"))
+            nodes.append(f"ring_{bearing.name}".rstrip("_"))
         if bearing.damper is not None:
-            found.append(f"shell_{bearing.name}".rstrip("_"))
+            nodes.append(f"shell_{bearing.name}".rstrip("_"))
         if bearing.support is not None:
-            found.append(f"support_{bearing.name}".rstrip("_"))
+            nodes.append(f"support_{bearing.name}".rstrip("_"))
     if case.housing is not None:
-        found += () if case.housing.modes and not rotor.symmetric else ("housing",)
-        found += () if rotor.symmetric else [f"housing_{bearing.name}" for bearing in case.placed_bearings]
-    return tuple(found)
+        nodes += () if case.housing.modes and not rotor.symmetric else ("housing",)
+        nodes += () if rotor.symmetric else [f"housing_{bearing.name}" for bearing in case.placed_bearings]
+    return tuple(nodes)
 
 
 def node_at(case: Case, at: str) -> str:
@@ -53,10 +53,10 @@ def no_place(case: Case, at: str) -> tuple[str, str]:
 
 
 def table_breaches(path: Path, given: Model, table: OverTime, others: tuple[str, ...]) -> Iterator[Breach]:
-    """Rules of a table over time beside the other keys that say how a load changes."""
-    beside = [key for key in others if key in given.model_fields_set]
-    if beside:
-        yield Breach((*path, beside[0]), "is given beside file.", "Keep one of the two.")
+    """Rules of a table over time together with other keys that say how a load changes."""
+    extra = [key for key in others if key in given.model_fields_set]
+    if extra:
+        yield Breach((*path, extra[0]), "is given with file.", "Keep one of the two.")
     problem = over_time_problem(table.time, *table.both)
     if problem:
         yield Breach((*path, "over_time"), problem, "Order its rows by rising times.")

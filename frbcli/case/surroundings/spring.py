@@ -12,7 +12,10 @@ from frbcli.case.reading.lines import Path
 from frbcli.case.reading.tables import Breach
 from frbcli.case.surroundings.machine_table import MachineTable
 from frbcli.case.surroundings.places import no_place, node_at
-from frbcli.units import NUMBER
+from frbcli.nearest import did_you_mean
+from frbcli.rotor.own_laws import keys_of, own_laws
+from frbcli.rotor.port import ForceLaw
+from frbcli.units import NUMBER, ValueFault, quantity
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
@@ -40,10 +43,21 @@ class Spring(MachineTable):
         "rotation",
     )
 
+    law: Identifier = Field(
+        default="", description="replaces these: a force law from Python, by its name"
+    )
+    numbers: dict[str, float | str] = Field(default={}, description="of the law, by the names of its fields")
+
     @property
     def linear(self) -> bool:
         """Whether its force is proportional to the motion."""
-        return not (self.gap or self.cubic or self.friction)
+        return not (self.gap or self.cubic or self.friction or self.law)
+
+    @property
+    def own_law(self) -> ForceLaw:
+        """The force law of its name with its numbers in SI, once its rules hold."""
+        kind = own_laws()[self.law]
+        return kind(**{name: quantity(self.numbers[name], unit or NUMBER) for name, unit in keys_of(kind).items()})
 
     @property
     def ends(self) -> tuple[str, str]:
@@ -60,6 +74,11 @@ class Spring(MachineTable):
                 yield Breach((*path, "between" if self.between else "at"), *no_place(case, place))
         if self.between is not None and len({node_at(case, each) for each in self.between}) == 1:
             yield Breach((*path, "between"), "names one place twice.", "Name two places, or give at.")
+        if self.law:
+            yield from self._law_breaches(path)
+            return
+        if self.numbers:
+            yield Breach((*path, "numbers"), "has no effect without a law.", "Give the name of a law, or remove it.")
         if not (self.stiffness or self.cubic or (self.damping and self.linear)):
             yield Breach((*path, "stiffness"), "is missing.", "Give a stiffness, cubic or, without a gap, a damping.")
         if self.friction and not self.gap:
@@ -68,3 +87,29 @@ class Spring(MachineTable):
             )
         if self.radius is not None and not self.friction:
             yield Breach((*path, "radius"), "has no effect without friction.", "Give a friction, or remove it.")
+
+    def _law_breaches(self, path: Path) -> Iterator[Breach]:
+        """What is wrong with a law that was added from Python, or with its numbers."""
+        for key in sorted(self.model_fields_set - {"at", "between", "law", "numbers"}):
+            yield Breach((*path, key), "has no effect beside a law.", "Remove it.")
+        kind = own_laws().get(self.law)
+        if kind is None:
+            known = ", ".join(own_laws()) or "none"
+            remedy = f"Call frbcli.add_force_law in this process before the case is read; added so far: {known}."
+            yield Breach((*path, "law"), "is no force law of this process.", remedy)
+            return
+        keys = keys_of(kind)
+        for name in keys.keys() - self.numbers.keys():
+            yield Breach((*path, "numbers"), f"lacks {name}.", f"Give {', '.join(keys)}.")
+        for name, value in self.numbers.items():
+            if name not in keys:
+                yield Breach((*path, "numbers", name), "is no field of the law.", did_you_mean(name, keys))
+                continue
+            if keys[name] and not isinstance(value, str):
+                problem, remedy = "has no unit.", f'Write e.g. "{value:g} {keys[name]}".'
+                yield Breach((*path, "numbers", name), problem, remedy)
+                continue
+            try:
+                quantity(value, keys[name] or NUMBER)
+            except ValueFault as fault:
+                yield Breach((*path, "numbers", name), fault.problem, fault.remedy)

@@ -17,7 +17,7 @@ from frbcli.case.quantities import Damping, ShellMass, Stiffness
 
 
 def _both_directions(given: object) -> object:
-    """One quantity as that of both directions."""
+    """One quantity, used for both directions."""
     if isinstance(given, str | int | float) and not isinstance(given, bool):
         return [given, given]
     return given

@@ -35,40 +35,40 @@ def ball_sheet(
     elements = ross_files(ross, names) if ross is not None else {}
     places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
     with display(terminal) as shown:
-        found = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
-    _tell(terminal, found)
-    _write_ross(terminal, found, elements)
+        sheet = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
+    _show(terminal, sheet)
+    _write_ross(terminal, sheet, elements)
     terminal.emit(
         {
             "command": "bearing",
             "case": case.name,
-            "points": found.table().documents(),
-            **places.write(terminal, found),
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
             "ross": list(elements.values()) or None,
         }
     )
-    return None if any(not point.problem for point in found.points) else NotConverged.exit_code
+    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
 
 
-def _tell(terminal: Terminal, found: BallSheet) -> None:
+def _show(terminal: Terminal, sheet: BallSheet) -> None:
     from frbcli.columns import legend, table_of
     from frbcli.linear.rolling.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
 
-    for bearing in found.bearings:
-        name, states = " ".join(filter(None, (found.case.heading, bearing))), found.of(bearing)
+    for bearing in sheet.bearings:
+        name, states = " ".join(filter(None, (sheet.case.heading, bearing))), sheet.of(bearing)
         titles = {BALLS: f"{name}, balls", STIFFNESSES: "rings, um and N/um", FREQUENCIES: "frequencies, Hz"}
         for table, title in titles.items():
             terminal.show(title, table_of(BALL_SHEET, states), table)
     terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
-    problems = [point for point in found.points if point.problem]
+    problems = [point for point in sheet.points if point.problem]
     if problems:
-        terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
+        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
 
 
-def _write_ross(terminal: Terminal, found: BallSheet, elements: dict[str, Path]) -> None:
+def _write_ross(terminal: Terminal, sheet: BallSheet, elements: dict[str, Path]) -> None:
     from frbcli.results.export import write_ross
 
-    table = found.to_pandas().rename(columns={"bearing": "film"})
+    table = sheet.to_pandas().rename(columns={"bearing": "film"})
     for name, path in elements.items():
         write_ross(table[table["film"] == name], path, forced())
         terminal.result(f"ROSS: {path}")

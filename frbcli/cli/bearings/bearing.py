@@ -41,7 +41,7 @@ PRESSED = (
 @speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
 @click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
               help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
-              "[that of the rotor]")  # fmt: skip
+              "[the rotor's]")  # fmt: skip
 @click.option("--ross", metavar="FILE", type=OUTPUT,
               help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
 @click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
@@ -59,7 +59,7 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
-    """Resting position, coefficients, power loss, oil flow and pressure of every film of CASE."""
+    """Static equilibrium, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
     from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
     from frbcli.linear.film_state import heat_capacity
@@ -82,11 +82,11 @@ def command(
     places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
     with computing(terminal, case, kernels="rest") as shown:
         if over == "speed":
-            found = bearing_sheet(case, speeds or None, load, shown.counting())
+            sheet = bearing_sheet(case, speeds or None, load, shown.counting())
         else:
-            found = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
-    _tell(terminal, found, (film,) if film is not None else found.films, everything or film is not None)
-    _write_ross(terminal, found, elements)
+            sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
+    _show(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
+    _write_ross(terminal, sheet, elements)
     terminal.emit(
         {
             "command": "bearing",
@@ -94,12 +94,12 @@ def command(
             "over": over,
             "oil_density_kg_m3": case.oil.density,
             "oil_heat_capacity_J_kg_K": heat_capacity(case),
-            "points": found.table().documents(),
-            **places.write(terminal, found),
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
             "ross": list(elements.values()) or None,
         }
     )
-    return None if any(not point.problem for point in found.points) else NotConverged.exit_code
+    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
 
 
 def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ross: Path | None) -> None:
@@ -129,16 +129,16 @@ def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
     return ross_files(ross, [place.name for place in bearing_films(case)])
 
 
-def _write_ross(terminal: Terminal, found: BearingSheet, elements: dict[str, Path]) -> None:
+def _write_ross(terminal: Terminal, sheet: BearingSheet, elements: dict[str, Path]) -> None:
     from frbcli.results.export import write_ross
 
-    table = found.to_pandas()
+    table = sheet.to_pandas()
     for film, path in elements.items():
         write_ross(table[table["film"] == film], path, forced())
         terminal.result(f"ROSS: {path}")
 
 
-def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: bool) -> None:
+def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
     """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
     few of them."""
     from frbcli.columns import legend, table_of, with_speeds_in
@@ -146,34 +146,34 @@ def _tell(terminal: Terminal, found: BearingSheet, films: Sequence[str], full: b
     from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
     from frbcli.linear.film_state import heat_capacity
 
-    columns, points = with_speeds_in(terminal.speeds, found.columns), len(found.of(films[0]))
+    columns, points = with_speeds_in(terminal.speeds, sheet.columns), len(sheet.of(films[0]))
     full = full or points <= FEW_POINTS
     rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
-    for film, label in zip(found.films, found.labels, strict=True):
+    for film, label in zip(sheet.films, sheet.labels, strict=True):
         if film not in films:
             continue
-        name = " ".join(filter(None, (found.case.heading, film)))
-        warm = {} if found.case.heat is None else {WARM: "film when everything is warm"}
-        mixed = {MIXED: "mixed friction"} if found.case.contact.rough else {}
+        name = " ".join(filter(None, (sheet.case.heading, film)))
+        warm = {} if sheet.case.heat is None else {WARM: "film when everything is warm"}
+        mixed = {MIXED: "mixed friction"} if sheet.case.contact.rough else {}
         matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
-        states = table_of(columns, _spread(found.of(film), rows))
+        states = table_of(columns, _spread(sheet.of(film), rows))
         for table, title in ({FILMS: f"{name}, {label}"} | mixed | (warm | matrices if full else {})).items():
             terminal.show(title, states, table)
-    terminal.sentence(EXPLANATION.format(legend(columns, FILMS), found.case.oil.density, heat_capacity(found.case)))
-    if found.case.contact.rough:
+    terminal.sentence(EXPLANATION.format(legend(columns, FILMS), sheet.case.oil.density, heat_capacity(sheet.case)))
+    if sheet.case.contact.rough:
         terminal.sentence(f"{legend(columns, MIXED)}.")
     if not full:
-        one = f", --film {films[0]} those of one film" if len(films) > 1 else ""
+        one = f", --film {films[0]} one film" if len(films) > 1 else ""
         terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
-    if any(law_named(law).keeps_oil for law in found.laws):
+    if any(law_named(law).keeps_oil for law in sheet.laws):
         terminal.sentence(SETTLED)
-    if found.pressed:
-        state = max(found.pressed, key=lambda each: each.error)
+    if sheet.pressed:
+        state = max(sheet.pressed, key=lambda each: each.error)
         film = f"The film {state.film}" if state.film else "The film"
-        terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, found.case.contact.eccentricity))
-    problems = [point for point in found.points if point.problem]
+        terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, sheet.case.contact.eccentricity))
+    problems = [point for point in sheet.points if point.problem]
     if problems:
-        terminal.result(f"No state at {len(problems)} of {len(found.points)} points. The first: {problems[0].problem}")
+        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
 
 
 def _spread(states: Sequence[FilmState], rows: int) -> list[FilmState]:

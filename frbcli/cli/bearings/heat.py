@@ -21,15 +21,15 @@ def heat_document(warm: WarmMachine) -> dict[str, object]:
     return {"films": films, "rings": rings, **document(HEAT_BALANCE, warm.steady)}
 
 
-def tell_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
+def show_heat(terminal: Terminal, warm: WarmMachine, title: str) -> None:
     """The films and rings of a warm machine, and where its heat goes."""
     from frbcli.columns import table_of
     from frbcli.equilibrium.columns import WARM_RINGS
 
-    _tell_films(terminal, warm.films, title)
+    _show_films(terminal, warm.films, title)
     if warm.rings:
         terminal.show("rings", table_of(WARM_RINGS, warm.rings))
-    _tell_balance(terminal, warm.steady)
+    _show_balance(terminal, warm.steady)
 
 
 def film_document(steady: SteadyHeat) -> dict[str, object]:
@@ -41,22 +41,22 @@ def film_document(steady: SteadyHeat) -> dict[str, object]:
     return {"films": documents(WARM_FILMS, film_temperatures(steady, [""])), **document(HEAT_BALANCE, steady)}
 
 
-def tell_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
+def show_film(terminal: Terminal, steady: SteadyHeat, title: str) -> None:
     """A single film when it is warm, and where its heat goes."""
     from frbcli.equilibrium.warm_machine import film_temperatures
 
-    _tell_films(terminal, film_temperatures(steady, [""]), title)
-    _tell_balance(terminal, steady)
+    _show_films(terminal, film_temperatures(steady, [""]), title)
+    _show_balance(terminal, steady)
 
 
-def _tell_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str) -> None:
+def _show_films(terminal: Terminal, films: Sequence[FilmTemperature], title: str) -> None:
     from frbcli.columns import table_of
     from frbcli.equilibrium.columns import WARM_FILMS
 
     terminal.show(title, table_of(WARM_FILMS, films))
 
 
-def _tell_balance(terminal: Terminal, steady: SteadyHeat) -> None:
+def _show_balance(terminal: Terminal, steady: SteadyHeat) -> None:
     terminal.result(
         f"Heat: {steady.carried:.4g} W with the oil, {steady.given:.4g} W into shaft and housing, "
         f"unaccounted for {steady.balance:.0e}."

@@ -39,26 +39,26 @@ def command(
 
     places = outputs.check(here(case.name, "-thrust.png"))
     with display(terminal) as shown:
-        found = thrust_sheet(case, gaps or None, speeds or None, loads, shown.counting())
-    _tell(terminal, found)
+        sheet = thrust_sheet(case, gaps or None, speeds or None, loads, shown.counting())
+    _show(terminal, sheet)
     terminal.emit(
         {
             "command": "thrust",
             "case": case.name,
-            "points": found.table().documents(),
-            **places.write(terminal, found),
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
         }
     )
 
 
-def _tell(terminal: Terminal, found: ThrustSheet) -> None:
+def _show(terminal: Terminal, sheet: ThrustSheet) -> None:
     from frbcli.columns import legend, table_of
     from frbcli.linear.thrust.columns import FILMS, THRUST, TILT_DAMPING, TILT_STIFFNESS
 
     titles = {FILMS: "thrust bearing", TILT_STIFFNESS: "stiffness in tilt, N m", TILT_DAMPING: "damping in tilt, N m s"}
-    for bearing in found.bearings:
-        name = " ".join(filter(None, (found.case.heading, bearing)))
-        states = table_of(THRUST, found.of(bearing))
+    for bearing in sheet.bearings:
+        name = " ".join(filter(None, (sheet.case.heading, bearing)))
+        states = table_of(THRUST, sheet.of(bearing))
         for table, title in titles.items():
             terminal.show(f"{name}, {title}", states, table)
     terminal.sentence(f"{legend(THRUST, FILMS)}. Errors are the change from a mesh of half as many elements per side.")

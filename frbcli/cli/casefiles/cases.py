@@ -16,7 +16,7 @@ from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
 @click.option("--set", "settings", multiple=True, metavar="KEY=VALUE", shell_complete=complete_key,
               help=f"{SETTING} Repeatable. [the text with its comments]")
 @click.option("-o", "--output", type=OUTPUT, help="Copy the case to this file.")
-@click.option("--hard", is_flag=True, help="List the hard cases in place of the others.")
+@click.option("--hard", is_flag=True, help="List the hard cases instead of the others.")
 @force_option("Replace a file at -o.")
 @output_options
 def command(

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.bearings.heat import heat_document, tell_heat
+from frbcli.cli.bearings.heat import heat_document, show_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.machines.stability_table import reduction_document, tell_reduction
+from frbcli.cli.machines.stability_table import reduction_document, show_reduction
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.expected_error import ExpectedError
     from frbcli.scene.planning.planned import Decision, Plan
 
-TURNING_TOLD = 0.02  # of the gap
+LEAST_TURNING = 0.02  # of the gap
 UNTRIED = "; frb check measures it on the machine itself when its kernels are compiled (frb warm-up, or a run)"
 BY_CELLS_WITH_RINGS = "machines with rings have 0.1 to 8 times the error of their cells"
 
@@ -55,14 +55,14 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     if case.given_rotor is None and not case.bearings:
         _check_balls(case, listed, everything, terminal)
         return
-    found = findings(case)
-    _show_findings(case, found, terminal)
+    loads = findings(case)
+    _show_findings(case, loads, terminal)
     doubts = remarks(case)
     for doubt in doubts:
         terminal.sentence(f"Note: {doubt}")
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _tell_bare(listed, terminal)
+    bare = _show_bare(listed, terminal)
     films = operating_points(case)
     _show(films, terminal)
     kinematic = case.motion is not None and (case.given_rotor is None or case.given_speed is None)
@@ -76,8 +76,8 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         plan, profile = make_plan(case), run_up_profile(case)
         cost, error = cost_of_run(case, plan, profile), expected_error(plan)
         tried, remark = _tried(case, plan, profile, terminal)
-        told = (_about_error(case, plan, error, tried, remark), *_about_cost(cost, compile_B(case), bool(case.films)))
-        decisions, lines = plan.decisions, told
+        totals = (_about_error(case, plan, error, tried, remark), *_about_cost(cost, compile_B(case), bool(case.films)))
+        decisions, lines = plan.decisions, totals
         expected = {
             "eccentricity_error": error.eccentricity if tried is None else tried.error,
             "tried_until_s": None if tried is None else tried.until_s,
@@ -96,7 +96,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
     heat = None if kinematic or case.heat is None else _heat(case, terminal)
     terminal.emit(
         _document(case, listed, bare, decisions)
-        | {"findings": _told_findings(case, found), "remarks": doubts}
+        | {"findings": _findings_document(case, loads), "remarks": doubts}
         | {"films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
         | ({} if kinematic or case.axial is None else {"axial": _axial(case)})
@@ -110,7 +110,7 @@ def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, t
 
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _tell_bare(listed, terminal)
+    bare = _show_bare(listed, terminal)
     require_sheet(case)
     plan = thrust_plan(case)
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
@@ -124,14 +124,14 @@ def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, te
 
     if everything:
         terminal.table("values", ("key", "SI", "reads"), _values(listed))
-    bare = _tell_bare(listed, terminal)
+    bare = _show_bare(listed, terminal)
     plan = [Decision(*element.line) for element in BallBearingElement.of(case)]
     terminal.table("plan", ("choice", "value", "reason"), [(d.choice, d.value, d.reason) for d in plan])
     terminal.emit(_document(case, listed, bare, plan))
 
 
 def _axial(case: Case) -> dict[str, object]:
-    """The collar under its axial load at the top speed; the plan tells it to people."""
+    """The collar under its axial load at the top speed, for JSON; the plan shows it on the terminal."""
     from frbcli.linear.thrust.axial import axial_state
     from frbcli.linear.thrust.columns import AXIAL
     from frbcli.scene.gate.rule import run_omega
@@ -154,7 +154,7 @@ def _document(
     }
 
 
-def _tell_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[ListedValue]:
+def _show_bare(listed: Sequence[ListedValue], terminal: Terminal) -> list[ListedValue]:
     """The numbers without a unit, and how they were read."""
     bare = [value for value in listed if value.bare]
     for value in bare:
@@ -187,25 +187,25 @@ def _heat(case: Case, terminal: Terminal) -> dict[str, object]:
     except CompilationNeededError:
         terminal.sentence(
             "Steady temperatures at the top speed are solutions of the films, whose kernels are not compiled yet. "
-            "frb warm-up compiles all that this case needs, once; afterwards frb check tells the temperatures."
+            "frb warm-up compiles all that this case needs, once; afterwards frb check shows the temperatures."
         )
         return {}
-    tell_heat(terminal, warm, "heat at the top speed, when everything is warm")
+    show_heat(terminal, warm, "heat at the top speed, when everything is warm")
     return heat_document(warm)
 
 
-def _told_findings(case: Case, found: Findings) -> dict[str, object]:
+def _findings_document(case: Case, loads: Findings) -> dict[str, object]:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
     from frbcli.scene.shafts.table import shaft_of
 
     return {
-        "mass_kg": found.mass,
-        "natural_frequencies_Hz": found.frequencies_Hz,
-        "supported": found.supported,
-        "reduction": None if found.mass is None else reduction_document(shaft_of(case).reduction),
-        "films": documents(FILM_LOADS, found.films),
-        "tilts": documents(FILM_TILTS, found.tilts),
+        "mass_kg": loads.mass,
+        "natural_frequencies_Hz": loads.frequencies_Hz,
+        "supported": loads.supported,
+        "reduction": None if loads.mass is None else reduction_document(shaft_of(case).reduction),
+        "films": documents(FILM_LOADS, loads.films),
+        "tilts": documents(FILM_TILTS, loads.tilts),
     }
 
 
@@ -229,7 +229,7 @@ def _tried(case: Case, plan: Plan, profile: SpeedProfile, terminal: Terminal) ->
 
 
 def _about_error(case: Case, plan: Plan, error: ExpectedError, tried: TriedError | None, remark: str) -> Decision:
-    """The line of the expected error. remark: why a machine is not tried, "" where it need not be told."""
+    """The line of the expected error. remark: why a machine is not tried, "" without a remark."""
     from frbcli.scene.films import rings
     from frbcli.scene.planning.planned import Decision
 
@@ -255,32 +255,32 @@ def _about_cost(cost: ExpectedCost, compile_B: float, with_films: bool) -> tuple
 
     solved = f", {cost.film_solves} film solves" if with_films else ""
     solves = f"{cost.steps} steps{solved}, on the machine of docs/accuracy.md"
-    beside = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
+    parts = f"{clock(cost.before_s)} before the first step, {clock(cost.after_s)} for the error at the end"
     if cost.second_s:
-        beside += f", {clock(cost.second_s)} for the uncertainty of its events"
+        parts += f", {clock(cost.second_s)} for the uncertainty of its events"
     first = memory(max(cost.memory_B, compile_B))
     return (
         Decision("expected cost", f"{clock(cost.cpu_s)} of CPU time", solves),
-        Decision("before, after", clock(cost.total_s - cost.cpu_s), beside),
+        Decision("before, after", clock(cost.total_s - cost.cpu_s), parts),
         Decision("memory", memory(cost.memory_B), f"of the whole process; {first} where it compiles the kernels"),
     )
 
 
-def _show_findings(case: Case, found: Findings, terminal: Terminal) -> None:
+def _show_findings(case: Case, loads: Findings, terminal: Terminal) -> None:
     from frbcli.scene.machine.findings import FILM_LOADS
     from frbcli.scene.machine.shaft_tilt import FILM_TILTS
     from frbcli.scene.shafts.table import shaft_of
 
-    if found.mass is not None:
-        frequencies = ", ".join(f"{frequency:.1f}" for frequency in found.frequencies_Hz)
-        natural = f"; natural frequencies {found.supported}: {frequencies} Hz" if frequencies else ""
-        terminal.sentence(f"Rotor of {found.mass:.4g} kg{natural}.")
-        tell_reduction(terminal, shaft_of(case).reduction)
-    if found.films:
-        terminal.show("static loads, at the top speed", table_of(FILM_LOADS, found.films))
-    if found.tilts:
-        terminal.show("tilt of the journals", table_of(FILM_TILTS, found.tilts))
-    tilting = ", ".join(f"{film.film or 'the film'} by {film.change:.0%}" for film in found.tilts if film.matters)
+    if loads.mass is not None:
+        frequencies = ", ".join(f"{frequency:.1f}" for frequency in loads.frequencies_Hz)
+        natural = f"; natural frequencies {loads.supported}: {frequencies} Hz" if frequencies else ""
+        terminal.sentence(f"Rotor of {loads.mass:.4g} kg{natural}.")
+        show_reduction(terminal, shaft_of(case).reduction)
+    if loads.films:
+        terminal.show("static loads, at the top speed", table_of(FILM_LOADS, loads.films))
+    if loads.tilts:
+        terminal.show("tilt of the journals", table_of(FILM_TILTS, loads.tilts))
+    tilting = ", ".join(f"{film.film or 'the film'} by {film.change:.0%}" for film in loads.tilts if film.matters)
     if tilting:
         terminal.sentence(f"Note: as journals tilt, the gap at the ends changes, in {tilting}. {_about_tilt(case)}")
 
@@ -301,7 +301,7 @@ def _about_tilt(case: Case) -> str:
 
 
 def _values(listed: Sequence[ListedValue]) -> Iterator[tuple[str, str, str]]:
-    """The values under the tables that hold them, whose names would not fit beside them."""
+    """The values, each under the name of its table: the full names would be too wide."""
     table = ""
     for value in listed:
         holder, _, key = value.key.rpartition(".")
@@ -322,7 +322,7 @@ def _show(films: tuple[FilmOperation, ...], terminal: Terminal) -> None:
             f"Warning: Reynolds number {turbulent}, not below 2300: the flow is not laminar, as the Reynolds equation "
             "assumes."
         )
-    grown = [film for film in films if abs(film.turning) > TURNING_TOLD * film.clearance]
+    grown = [film for film in films if abs(film.turning) > LEAST_TURNING * film.clearance]
     if grown:
         changes = ", ".join(f"of {film.name} by {film.turning / film.clearance:+.0%}" for film in grown)
         terminal.sentence(

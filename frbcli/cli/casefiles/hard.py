@@ -23,10 +23,10 @@ HARD_CASE = (
 
 def list_hard(terminal: Terminal) -> None:
     """The table of all hard cases."""
-    found = table_of(HARD_CASE, hard_cases())
-    terminal.show("hard cases", found, LIST)
+    table = table_of(HARD_CASE, hard_cases())
+    terminal.show("hard cases", table, LIST)
     terminal.remark("`frb cases --hard NAME` prints one as a case file.")
-    terminal.emit({"command": "cases", "hard": found.documents()})
+    terminal.emit({"command": "cases", "hard": table.documents()})
 
 
 def hard_text(name: str) -> str:

@@ -16,8 +16,8 @@ from frbcli.cli.progress import display
 @click.option("--jobs", type=click.IntRange(min=1), metavar="N", help="Processes. [one for each core]")
 @output_options
 def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | None, terminal: Terminal) -> None:
-    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: those of run-ups, stability, bearing
-    sheets and kinematic tests."""
+    """Compile the kernels of CASE, or of all shipped cases, once, on all cores: for run-ups, stability, bearing sheets
+    and kinematic tests."""
     if settings and not sources:
         raise click.UsageError("--set is of a CASE.")
     with display(terminal) as shown:
@@ -26,21 +26,21 @@ def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | Non
         from frbcli.studies.kernels.warm_up import warm_up
 
         cases = [load_case(source, settings) for source in sources]
-        found = warm_up(cases, jobs or -1, lambda what, number, count: shown.line(f"{number} of {count}: {what}"))
-    if found.compiled:
-        terminal.show("compiled", found.table())
+        built = warm_up(cases, jobs or -1, lambda what, number, count: shown.line(f"{number} of {count}: {what}"))
+    if built.compiled:
+        terminal.show("compiled", built.table())
         terminal.result(
-            f"Compiled kernels: {found.functions} functions in {found.wall_s:.0f} s, {found.cpu_s:.0f} s of CPU time."
+            f"Compiled kernels: {built.functions} functions in {built.wall_s:.0f} s, {built.cpu_s:.0f} s of CPU time."
         )
     else:
         terminal.result("Nothing to compile: all kernels are on the disk.")
     terminal.emit(
         {
             "command": "warm-up",
-            "cases": found.cases,
-            "compiled": found.table().documents(),
-            "functions": found.functions,
-            "cpu_s": found.cpu_s,
-            "wall_s": found.wall_s,
+            "cases": built.cases,
+            "compiled": built.table().documents(),
+            "functions": built.functions,
+            "cpu_s": built.cpu_s,
+            "wall_s": built.wall_s,
         }
     )

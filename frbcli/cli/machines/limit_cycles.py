@@ -1,4 +1,4 @@
-"""`frb limit-cycles`: resting positions, Hopf points and branches of limit cycles over the rotor speed."""
+"""`frb limit-cycles`: static equilibria, Hopf points and branches of limit cycles over the rotor speed."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ KINDS = {"hopf": "Hopf points", "fold": "folds"}
 
 @dataclass(frozen=True)
 class Range:
-    """The numbers that are varied in place of the speed or beside it, see the options of the command."""
+    """The keys that are varied instead of the speed or in addition to it, see the options of the command."""
 
     over: str
     key: str | None
@@ -42,26 +42,26 @@ class Range:
 
     @property
     def second(self) -> tuple[str, str, str] | None:
-        """The key of --and with its range, which is that of --from and --to beside the speed."""
+        """The key of --and and its range; with the speed as the first variable, the range is --from and --to."""
         low, high = (self.low, self.high) if self.over == "speed" else (self.and_low, self.and_high)
         return None if self.key is None or low is None or high is None else (self.key, low, high)
 
 
 @click.command()
 @case_argument
-@speeds_option("those of the diagram; at given ones the cycles have their orbits")
+@speeds_option("those in the diagram; at given ones the cycles have their orbits")
 @click.option("--over", default="speed", metavar="KEY",
-              help="A number of the case in place of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
+              help="A number of the case instead of the speed; the speed is --speed or speed.to. [speed]")  # fmt: skip
 @click.option("--and", "key", metavar="KEY",
               help="Draw a map: curves of Hopf points and folds over --over and this key, "
                    "e.g. bearing.clearance.")  # fmt: skip
 @click.option("--from", "low", metavar="VALUE", help="Lowest value of --over or --and, with its unit, e.g. '30 um'.")
 @click.option("--to", "high", metavar="VALUE", help="Highest value of --over or --and.")
-@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and beside --over KEY.")
-@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and beside --over KEY.")
+@click.option("--and-from", "and_low", metavar="VALUE", help="Lowest value of --and, with --over KEY.")
+@click.option("--and-to", "and_high", metavar="VALUE", help="Highest value of --and, with --over KEY.")
 @click.option("--points", type=click.IntRange(2, 500), default=3,
-              help="Number of values of --and at which diagrams are computed; the curves begin at "
-                   "their points. [3]")  # fmt: skip
+              help="Number of values of --and at which starting diagrams are computed; the curves begin "
+                   "there. [3]")  # fmt: skip
 @click.option("--with-unbalance", is_flag=True,
               help="Compute, too, the whirls that lock in with the unbalance at half the speed.")  # fmt: skip
 @click.option("--runs", type=INPUTS, default=(), metavar="UP.h5,DOWN.h5",
@@ -78,10 +78,10 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> None:
-    """Resting positions of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
+    """Static equilibria of CASE over its speed, the Hopf points where a whirl begins, and the limit cycles from there.
 
-    Limit cycles, stable or not, are those without unbalance; the synchronous response with it stands beside them, and
-    with --with-unbalance the whirls that lock in with it.
+    Limit cycles, stable or not, are without unbalance. The synchronous response with unbalance is shown next to them,
+    and with --with-unbalance the whirls that lock in with it.
     """
     from frbcli.cycles.limit_cycles import limit_cycles
     from frbcli.cycles.over_key import limit_cycles_over
@@ -103,11 +103,11 @@ def command(
     tracks = [track for name in runs for track in _tracks(name)]
     with computing(terminal, case, kernels=_kernels(case)) as shown:
         if not along_speed and low is not None and high is not None:
-            found = limit_cycles_over(case, over, low, high, at, _showing(shown))
+            diagram = limit_cycles_over(case, over, low, high, at, _showing(shown))
         else:
-            found = limit_cycles(case, speeds, _showing(shown), with_unbalance)
-    _tell(terminal, found)
-    terminal.emit(_document(found) | places.write(terminal, found, picture=lambda: _figure(found, tracks)))
+            diagram = limit_cycles(case, speeds, _showing(shown), with_unbalance)
+    _show(terminal, diagram)
+    terminal.emit(_document(diagram) | places.write(terminal, diagram, picture=lambda: _figure(diagram, tracks)))
 
 
 def _kernels(case: Case) -> Kernels:
@@ -116,10 +116,10 @@ def _kernels(case: Case) -> Kernels:
     return "both" if by_shooting(case) else "loop"
 
 
-def _figure(found: LimitCycles, tracks: list[RunTrack]) -> Picture:
+def _figure(diagram: LimitCycles, tracks: list[RunTrack]) -> Picture:
     from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 
-    return limit_cycles_figure(found, tracks)
+    return limit_cycles_figure(diagram, tracks)
 
 
 def _check_range(varied: Range) -> None:
@@ -127,7 +127,7 @@ def _check_range(varied: Range) -> None:
     if (other or map_) != (varied.low is not None and varied.high is not None):
         raise click.UsageError("--over KEY and --and KEY go with --from VALUE and --to VALUE.")
     if (other and map_) != (varied.and_low is not None and varied.and_high is not None):
-        raise click.UsageError("--and-from and --and-to are the range of --and KEY beside --over KEY, both or none.")
+        raise click.UsageError("--and-from and --and-to are the range of --and KEY with --over KEY, both or none.")
 
 
 def _map(
@@ -143,56 +143,56 @@ def _map(
 
     across = None if first is None else Across(*first)
     with computing(terminal, case, kernels=_kernels(case)) as shown:
-        found = stability_map(case, *second, shown.counting(), across)
-    _tell_map(terminal, found)
+        chart = stability_map(case, *second, shown.counting(), across)
+    _show_map(terminal, chart)
     names = tuple(place.name for place in film_places(case))
-    written = places.write(terminal, found)
-    terminal.emit(_map_document(names, found) | written)
+    written = places.write(terminal, chart)
+    terminal.emit(_map_document(names, chart) | written)
 
 
-def _tell_map(terminal: Terminal, found: StabilityMap) -> None:
+def _show_map(terminal: Terminal, chart: StabilityMap) -> None:
     rows = [
-        (f"{row.value:.4g} {found.unit}".strip(), point.kind, f"{point.value:.6g}", f"{point.frequency_Hz:.2f}",
+        (f"{row.value:.4g} {chart.unit}".strip(), point.kind, f"{point.value:.6g}", f"{point.frequency_Hz:.2f}",
          point.criticality or "")
-        for row in found.rows
+        for row in chart.rows
         for point in row.special
     ]  # fmt: skip
     rows += [
-        (f"{point.value:.4g} {found.unit}".strip(), point.kind, f"{point.over:.6g}", f"{point.frequency_Hz:.2f}",
+        (f"{point.value:.4g} {chart.unit}".strip(), point.kind, f"{point.over:.6g}", f"{point.frequency_Hz:.2f}",
          "on a curve")
-        for point in found.special
+        for point in chart.special
     ]  # fmt: skip
-    columns = (found.key, "point", found.over_unit or found.over, "whirl Hz", "")
+    columns = (chart.key, "point", chart.over_unit or chart.over, "whirl Hz", "")
     if rows:
-        terminal.table(found.case.heading, columns, rows)
+        terminal.table(chart.case.heading, columns, rows)
     else:
-        terminal.sentence(f"{found.case.heading}: no whirl begins or ends between these values.")
-    for curve in found.curves:
+        terminal.sentence(f"{chart.case.heading}: no whirl begins or ends between these values.")
+    for curve in chart.curves:
         values = [point.value for point in curve.points]
-        told = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {found.unit}."
-        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}: {told}", *curve.notes]))
-    for row in found.rows:
+        extent = f"{len(values)} points from {min(values):.4g} to {max(values):.4g} {chart.unit}."
+        terminal.sentence(" ".join([f"Curve of {KINDS[curve.kind]}: {extent}", *curve.notes]))
+    for row in chart.rows:
         if row.problem:
-            terminal.sentence(f"{row.value:.4g} {found.unit}: {row.problem}")
+            terminal.sentence(f"{row.value:.4g} {chart.unit}: {row.problem}")
 
 
-def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, object]:
+def _map_document(names: tuple[str, ...], chart: StabilityMap) -> dict[str, object]:
     from frbcli.cycles.columns import map_point_columns, special_columns
 
     return {
         "command": "limit-cycles",
-        "case": found.case.name,
-        "over": found.over,
-        "over_unit": found.over_unit,
-        "and": found.key,
-        "unit": found.unit,
+        "case": chart.case.name,
+        "over": chart.over,
+        "over_unit": chart.over_unit,
+        "and": chart.key,
+        "unit": chart.unit,
         "rows": [
             {
                 "value": row.value,
                 "special": documents(special_columns(names), row.special),
                 "problem": row.problem or None,
             }
-            for row in found.rows
+            for row in chart.rows
         ],
         "curves": [
             {
@@ -200,9 +200,9 @@ def _map_document(names: tuple[str, ...], found: StabilityMap) -> dict[str, obje
                 "points": documents(map_point_columns(names), curve.points),
                 "notes": curve.notes,
             }
-            for curve in found.curves
+            for curve in chart.curves
         ],
-        "special": documents(map_point_columns(names), found.special),
+        "special": documents(map_point_columns(names), chart.special),
     }
 
 
@@ -220,112 +220,114 @@ def _showing(shown: Display) -> Callable[[int, float, float], None]:
     )
 
 
-def _tell(terminal: Terminal, found: LimitCycles) -> None:
+def _show(terminal: Terminal, diagram: LimitCycles) -> None:
     from frbcli.cycles.columns import special_columns
     from frbcli.cycles.result import SPEED
 
-    terminal.show(found.case.heading, table_of(special_columns(found.films, found.over, found.unit), found.special))
-    for number, branch in enumerate(found.branches):
+    terminal.show(
+        diagram.case.heading, table_of(special_columns(diagram.films, diagram.over, diagram.unit), diagram.special)
+    )
+    for number, branch in enumerate(diagram.branches):
         values = [point.value for point in branch.points]
         if not values:
             terminal.sentence(f"Branch {number + 1} has no cycles. {branch.note}")
             continue
         stable = sum(point.stable for point in branch.points)
-        span = f"{min(values):.4g} to {max(values):.4g} {found.unit}"
-        if found.over == SPEED:
+        span = f"{min(values):.4g} to {max(values):.4g} {diagram.unit}"
+        if diagram.over == SPEED:
             span = terminal.speeds.span(min(values), max(values))
-        told = f"{len(values)} cycles from {span}, {stable} stable."
-        terminal.sentence(f"Branch {number + 1}: {told} {branch.note}")
-    for number, branch in enumerate(found.branches):
+        extent = f"{len(values)} cycles from {span}, {stable} stable."
+        terminal.sentence(f"Branch {number + 1}: {extent} {branch.note}")
+    for number, branch in enumerate(diagram.branches):
         for point in branch.points:
             if point.kind == ASKED:
                 at = terminal.speeds.words(point.speed_Hz)
                 terminal.result(f"{at}, branch {number + 1}: {_in_words(point)}")
-    _tell_with_unbalance(terminal, found)
-    for note in (*found.notes, *_left_out(found)):
+    _show_with_unbalance(terminal, diagram)
+    for note in (*diagram.notes, *_left_out(diagram)):
         terminal.sentence(note)
-    terminal.result(f"{found.cost.cycles} cycles, {found.cost.cpu_s:.1f} CPU s")
+    terminal.result(f"{diagram.cost.cycles} cycles, {diagram.cost.cpu_s:.1f} CPU s")
 
 
 def _in_words(point: CyclePoint) -> str:
     """A cycle at a speed that was asked for, with the uncertainties in the last digits."""
     from frbcli.units import with_uncertainty
 
-    film, found = int(point.eccentricity_max.argmax()), point.eccentricity_max_uncertainty
+    film, uncertainties = int(point.eccentricity_max.argmax()), point.eccentricity_max_uncertainty
     frequency = with_uncertainty(point.frequency_Hz, point.frequency_uncertainty_Hz, 3)
-    uncertainty = None if found is None else float(found[film])
+    uncertainty = None if uncertainties is None else float(uncertainties[film])
     eccentricity = with_uncertainty(float(point.eccentricity_max[film]), uncertainty, 5)
     return f"{frequency} Hz, {'stable' if point.stable else 'unstable'}, eccentricity {eccentricity}"
 
 
-def _tell_with_unbalance(terminal: Terminal, found: LimitCycles) -> None:
+def _show_with_unbalance(terminal: Terminal, diagram: LimitCycles) -> None:
     """Where no whirl locks in with the unbalance and why, and a table of those that do."""
     from frbcli.cycles.columns import WHIRLS
 
-    for number, branch in enumerate(found.branches):
+    for number, branch in enumerate(diagram.branches):
         for reason in dict.fromkeys(missing.reason for missing in branch.missing):
             at = terminal.speeds.listed(missing.speed_Hz for missing in branch.missing if missing.reason == reason)
             terminal.sentence(f"Branch {number + 1} with unbalance, no whirl locks in at {at}: {reason}.")
-    whirls = [(number, whirl) for number, branch in enumerate(found.branches) for whirl in branch.with_unbalance]
+    whirls = [(number, whirl) for number, branch in enumerate(diagram.branches) for whirl in branch.with_unbalance]
     if whirls:
         terminal.show("Locked in with unbalance", table_of(WHIRLS, whirls))
 
 
-def _left_out(found: LimitCycles) -> list[str]:
+def _left_out(diagram: LimitCycles) -> list[str]:
     from frbcli.scene.changes import loss_note, step_times
     from frbcli.scene.gate.cycles import drives
 
     notes = []
-    if any(point.kind == "torus" for point in found.special):
+    if any(point.kind == "torus" for point in diagram.special):
         notes.append("Beyond a torus point the motion has a second frequency: a run (frb runup) shows it.")
-    if driven := " and ".join(drives(found.case)):
+    if driven := " and ".join(drives(diagram.case)):
         notes.append(f"Branches are those without {driven}; a run (frb runup) shows the whirl with it.")
-    if before := loss_note(found.case):
+    if before := loss_note(diagram.case):
         notes.append(f'{before}; with time = "0 s" it is that after it.')
-    if step_times(found.case):
+    if step_times(diagram.case):
         notes.append("The clearances are the initial ones; bearing.clearance_steps changes them during a run.")
     return notes
 
 
-def _document(found: LimitCycles) -> dict[str, object]:
+def _document(diagram: LimitCycles) -> dict[str, object]:
     from frbcli.cycles.columns import MISSING, equilibrium_columns, special_columns
 
-    films, heat = found.films, found.case.heat is not None
-    special = documents(special_columns(films, found.over), found.special)
+    films, heat = diagram.films, diagram.case.heat is not None
+    special = documents(special_columns(films, diagram.over), diagram.special)
     return {
         "command": "limit-cycles",
-        "case": found.case.name,
-        "over": found.over,
-        "unit": found.unit,
-        "equilibria": documents(equilibrium_columns(films, heat, found.tilts), found.equilibria),
+        "case": diagram.case.name,
+        "over": diagram.over,
+        "unit": diagram.unit,
+        "equilibria": documents(equilibrium_columns(films, heat, diagram.tilts), diagram.equilibria),
         "branches": [
             {
                 "from": None if branch.start is None else special[branch.start],
-                "points": [_cycle(found, point) for point in branch.points],
+                "points": [_cycle(diagram, point) for point in branch.points],
                 "note": branch.note,
-                "with_unbalance": [_whirl(found, whirl) for whirl in branch.with_unbalance],
+                "with_unbalance": [_whirl(diagram, whirl) for whirl in branch.with_unbalance],
                 "missing": documents(MISSING, branch.missing),
             }
-            for branch in found.branches
+            for branch in diagram.branches
         ],
-        "synchronous": [_cycle(found, point) for point in found.synchronous],
+        "synchronous": [_cycle(diagram, point) for point in diagram.synchronous],
         "special": special,
-        "notes": found.notes,
-        "cost": {"cpu_s": found.cost.cpu_s, "cycles": found.cost.cycles},
+        "notes": diagram.notes,
+        "cost": {"cpu_s": diagram.cost.cpu_s, "cycles": diagram.cost.cycles},
     }
 
 
-def _cycle(found: LimitCycles, point: CyclePoint) -> dict[str, object]:
+def _cycle(diagram: LimitCycles, point: CyclePoint) -> dict[str, object]:
     """A cycle in JSON, with its orbits where it was asked for."""
     from frbcli.cycles.columns import cycle_columns
 
-    orbits = {name: point.orbit(film) for film, name in enumerate(found.films)} if point.kind == ASKED else None
-    told = document(cycle_columns(found.films, found.case.heat is not None, found.tilts), point)
-    return told | ({} if orbits is None else {"orbits": orbits})
+    orbits = {name: point.orbit(film) for film, name in enumerate(diagram.films)} if point.kind == ASKED else None
+    row = document(cycle_columns(diagram.films, diagram.case.heat is not None, diagram.tilts), point)
+    return row | ({} if orbits is None else {"orbits": orbits})
 
 
-def _whirl(found: LimitCycles, whirl: UnbalancedWhirl) -> dict[str, object]:
+def _whirl(diagram: LimitCycles, whirl: UnbalancedWhirl) -> dict[str, object]:
     from frbcli.cycles.columns import line_columns, whirl_columns
 
-    told = document(whirl_columns(found.films, found.case.heat is not None), whirl)
-    return told | {"lines": documents(line_columns(found.films), whirl.lines)}
+    row = document(whirl_columns(diagram.films, diagram.case.heat is not None), whirl)
+    return row | {"lines": documents(line_columns(diagram.films), whirl.lines)}

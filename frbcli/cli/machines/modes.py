@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from frbcli.cli.machines.stability_table import tell_largest_error
+from frbcli.cli.machines.stability_table import show_largest_error
 from frbcli.cli.outputs import picture_of
 from frbcli.cli.progress import computing
 from frbcli.columns import document, documents, table_of
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from frbcli.linear.modes import Mode, Modes
 
 LONGEST_TABLE = 13  # rows of the text
-TOLD = 3  # slowest modes of each direction
+LISTED = 3  # slowest modes of each direction
 
 
 def emit_modes(terminal: Terminal, case: Case, stiffness: Any, speeds: Sequence[float], places: Outputs) -> None:
@@ -30,39 +30,39 @@ def emit_modes(terminal: Terminal, case: Case, stiffness: Any, speeds: Sequence[
     from frbcli.linear.modes import natural_modes
 
     on = None if stiffness == "free" else stiffness
-    found = [natural_modes(case, None, [0.0]), natural_modes(case, on, speeds or None)]
-    tell_free(terminal, found[0])
-    tell_held(terminal, found[1])
-    drawn = natural_modes(case, on) if len(speeds) == 1 else found[1]
-    written = places.write(terminal, found[1], "Natural modes", partial(picture_of, drawn))
+    tables = [natural_modes(case, None, [0.0]), natural_modes(case, on, speeds or None)]
+    show_free(terminal, tables[0])
+    show_held(terminal, tables[1])
+    drawn = natural_modes(case, on) if len(speeds) == 1 else tables[1]
+    written = places.write(terminal, tables[1], "Natural modes", partial(picture_of, drawn))
     terminal.emit(
         {
             "command": "stability",
             "case": case.name,
             "points": [],
             "threshold": None,
-            "natural_frequencies": [modes_document(modes) for modes in found],
+            "natural_frequencies": [modes_document(modes) for modes in tables],
             **written,
         }
     )
 
 
-def tell_modes(terminal: Terminal, modes: Modes) -> None:
+def show_modes(terminal: Terminal, modes: Modes) -> None:
     """The modes as text: of a free rotor its bending ones at rest, else a table."""
-    (tell_held if modes.stiffness_N_m else tell_free)(terminal, modes)
+    (show_held if modes.stiffness_N_m else show_free)(terminal, modes)
 
 
-def tell_free(terminal: Terminal, modes: Modes) -> None:
+def show_free(terminal: Terminal, modes: Modes) -> None:
     """The bending modes of the free rotor at rest, and what is not listed of it."""
-    bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:TOLD])
-    told = f"bending modes of {bending} Hz at rest" if bending else "it does not bend"
-    terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: {told}.")
+    bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:LISTED])
+    bending_modes = f"bending modes of {bending} Hz at rest" if bending else "it does not bend"
+    terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: {bending_modes}.")
     rings = sum(1 for given in modes.case.bearings if len(given.films) > 1)
     apart = f", and its {rings} rings are apart" if rings > 1 else ", and its ring is apart" if rings else ""
     terminal.sentence(f"Not listed: {modes.points[0].still} rigid-body motions of 0 Hz{apart}.")
 
 
-def tell_held(terminal: Terminal, modes: Modes) -> None:
+def show_held(terminal: Terminal, modes: Modes) -> None:
     """A table of the modes over the speed."""
     from frbcli.units import display
 
@@ -73,7 +73,7 @@ def tell_held(terminal: Terminal, modes: Modes) -> None:
          *_cells(point.directed("forward")), *_cells(point.directed("backward")))
         for point in modes.points[::every]
     ]  # fmt: skip
-    columns = (terminal.speeds.name, *("forward",) * TOLD, *("backward",) * TOLD)
+    columns = (terminal.speeds.name, *("forward",) * LISTED, *("backward",) * LISTED)
     on = f"on {springs}" if springs else "of the free rotor"
     title = f"Natural frequencies {on}: conical, cylindrical, bending"
     terminal.table(title, columns, rows)
@@ -86,8 +86,8 @@ def tell_held(terminal: Terminal, modes: Modes) -> None:
 def _cells(modes: Sequence[Mode]) -> list[str]:
     from frbcli.linear.columns import NATURAL_MODES
 
-    cells = [" ".join(row) for row in table_of(NATURAL_MODES, modes[:TOLD]).cells()]
-    return cells + [""] * (TOLD - len(cells))
+    cells = [" ".join(row) for row in table_of(NATURAL_MODES, modes[:LISTED]).cells()]
+    return cells + [""] * (LISTED - len(cells))
 
 
 def modes_document(modes: Modes) -> dict[str, object]:
@@ -110,13 +110,13 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
     from frbcli.linear.damped_modes import damped_modes
 
     with computing(terminal, case, kernels="rest"):
-        found = damped_modes(case, speed_Hz)
-    terminal.show(f"Damped modes at {terminal.speeds.words(speed_Hz)}", found.table())
-    if not found.modes:
+        shapes = damped_modes(case, speed_Hz)
+    terminal.show(f"Damped modes at {terminal.speeds.words(speed_Hz)}", shapes.table())
+    if not shapes.modes:
         terminal.result("No mode oscillates.")
         places = replace(places, picture=None)
-    tell_largest_error(terminal, [(found.coefficient_error, speed_Hz)])
-    modes, motions = found.table().documents(), [_motion(found.points, mode) for mode in found.modes]
+    show_largest_error(terminal, [(shapes.coefficient_error, speed_Hz)])
+    modes, motions = shapes.table().documents(), [_motion(shapes.points, mode) for mode in shapes.modes]
     terminal.emit(
         {
             "command": "stability",
@@ -124,9 +124,9 @@ def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs
             "points": [],
             "threshold": None,
             "speed_Hz": speed_Hz,
-            "error": {"coefficients_relative": found.coefficient_error},
+            "error": {"coefficients_relative": shapes.coefficient_error},
             "modes": [mode | {"motion": motion} for mode, motion in zip(modes, motions, strict=True)],
-            **places.write(terminal, found, "mode shapes"),
+            **places.write(terminal, shapes, "mode shapes"),
         }
     )
 

@@ -11,8 +11,8 @@ import click
 from frbcli.arrays import Array
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import INPUT, here
-from frbcli.cli.machines.stability_table import reduction_document, tell_coefficient_error, tell_reduction
-from frbcli.cli.machines.standards import grade_document, limits_document, tell_grade, tell_limits
+from frbcli.cli.machines.stability_table import reduction_document, show_coefficient_error, show_reduction
+from frbcli.cli.machines.standards import grade_document, limits_document, show_grade, show_limits
 from frbcli.cli.options import OPERATING_OPTION, GradeOption, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
@@ -83,46 +83,46 @@ def command(
     places = outputs.check(here(case.name, "-critical-map.png" if as_map else "-response.png"))
     run = None if run_file is None else read_run(run_file)
     with computing(terminal, case, kernels="rest") as shown:
-        found = response(case, speeds or None, shown.counting(), excitation, operating, after_loss)
-    tracks = () if run is None else _tracks(run, found.points, str(run_file))
-    reduced = own_reduction(case, found.resting)
-    _tell(terminal, found, reduced, bool(speeds))
-    limits = None if operating is None else vibration_limits(found, operating)
+        motion = response(case, speeds or None, shown.counting(), excitation, operating, after_loss)
+    tracks = () if run is None else _tracks(run, motion.points, str(run_file))
+    reduced = own_reduction(case, motion.resting)
+    _show(terminal, motion, reduced, bool(speeds))
+    limits = None if operating is None else vibration_limits(motion, operating)
     quality = None if grade is None else balance_quality(case, grade, operating[1] if operating else None)
     if limits is not None:
-        tell_limits(terminal, limits)
+        show_limits(terminal, limits)
     if quality is not None:
-        tell_grade(terminal, quality)
-    films = ((point, film) for point in found.resting for film in point.films)
+        show_grade(terminal, quality)
+    films = ((point, film) for point in motion.resting for film in point.films)
     terminal.emit(
         {
             "command": "response",
             "case": case.name,
             "excitation": excitation,
             **({"after_loss": after_loss} if after_loss or loss_times(case) else {}),
-            "points": found.table().documents(),
-            "forces": spread_table(RESPONSE_FORCES, found).documents(),
-            "films": spread_table(RESPONSE_FILMS, found).documents(),
+            "points": motion.table().documents(),
+            "forces": spread_table(RESPONSE_FORCES, motion).documents(),
+            "films": spread_table(RESPONSE_FILMS, motion).documents(),
             "coefficients": documents(RESPONSE_COEFFICIENTS, films),
             "reduction": reduction_document(reduced),
-            "critical_speeds_Hz": found.critical_speeds_Hz,
-            "critical_speeds": documents(PEAKS, found.critical_speeds),
+            "critical_speeds_Hz": motion.critical_speeds_Hz,
+            "critical_speeds": documents(PEAKS, motion.critical_speeds),
             **({} if limits is None else {"limits": limits_document(limits)}),
             **({} if quality is None else {"grade": grade_document(quality)}),
-            "error": {"critical_speeds_Hz": [peak.speed_uncertainty_Hz for peak in found.critical_speeds]},
-            **places.write(terminal, found, picture=lambda: _figure(found, tracks, as_map)),
+            "error": {"critical_speeds_Hz": [peak.speed_uncertainty_Hz for peak in motion.critical_speeds]},
+            **places.write(terminal, motion, picture=lambda: _figure(motion, tracks, as_map)),
         }
     )
 
 
-def _figure(found: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
+def _figure(motion: Response, tracks: tuple[OrderTrack, ...], as_map: bool) -> Picture:
     """The critical speed map, or the response with the synchronous motion of a run."""
     from frbcli.linear.critical_map import critical_map
     from frbcli.plot.machine.response import response_figure
 
     if as_map:
-        return picture_of(critical_map(found.case, None, found.resting))
-    return response_figure(found, tracks)
+        return picture_of(critical_map(motion.case, None, motion.resting))
+    return response_figure(motion, tracks)
 
 
 def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ...]:
@@ -141,85 +141,85 @@ def _tracks(run: Run, known: tuple[str, ...], name: str) -> tuple[OrderTrack, ..
     return tuple(order_track(run, 1.0, name) for name in named)
 
 
-def _tell(terminal: Terminal, found: Response, reduced: Reduction | None, every_speed: bool) -> None:
+def _show(terminal: Terminal, motion: Response, reduced: Reduction | None, every_speed: bool) -> None:
     import numpy as np
 
     from frbcli.columns import table_of
     from frbcli.linear.columns import PEAKS, RESPONSE
 
-    shown = found.points[:MOST_POINTS]
-    every = 1 if every_speed else math.ceil(len(found.speeds_Hz) / MOST_SPEEDS)
-    count, validity = len(found.points), found.validity
-    cells = found.table().with_speeds_in(terminal.speeds).cells(RESPONSE)
-    in_films, rows = bool(found.films), []
-    for i in range(every - 1, len(found.speeds_Hz), every):
+    shown = motion.points[:MOST_POINTS]
+    every = 1 if every_speed else math.ceil(len(motion.speeds_Hz) / MOST_SPEEDS)
+    count, validity = len(motion.points), motion.validity
+    cells = motion.table().with_speeds_in(terminal.speeds).cells(RESPONSE)
+    in_films, rows = bool(motion.films), []
+    for i in range(every - 1, len(motion.speeds_Hz), every):
         speed, _, _, growth, eccentricity = cells[i * count]
         motions = (f"{amplitude} {phase}" for _, amplitude, phase, *_ in cells[i * count : i * count + len(shown)])
         rows.append((speed, *motions, growth, *([f"{eccentricity}{MARKS[validity[i]]}"] if in_films else [])))
     named = [name.replace("_", " ") for name in shown]
     columns = (terminal.speeds.name, *(f"{name} um, deg" for name in named), "growth", *(["eps"] if in_films else []))
-    terminal.table(found.case.heading, columns, rows)
-    if len(found.points) > len(shown):
-        rest = ", ".join(name.replace("_", " ") for name in found.points[len(shown) :])
+    terminal.table(motion.case.heading, columns, rows)
+    if len(motion.points) > len(shown):
+        rest = ", ".join(name.replace("_", " ") for name in motion.points[len(shown) :])
         terminal.result(f"{rest}: in the picture, --csv and --json.")
     explanation = EXPLANATION if in_films else EXPLANATION.partition("; eps")[0] + "."
-    terminal.result(explanation.format(angle=found.angle))
-    tell_reduction(terminal, reduced)
-    for sentence in _excitation(found):
+    terminal.result(explanation.format(angle=motion.angle))
+    show_reduction(terminal, reduced)
+    for sentence in _excitation(motion):
         terminal.sentence(sentence)
-    for sentence in _doubts(found, terminal.speeds):
+    for sentence in _doubts(motion, terminal.speeds):
         terminal.sentence(sentence)
     unit = terminal.speeds
-    told = [unit.cell(peak.speed_Hz, peak.speed_uncertainty_Hz, 3) for peak in found.critical_speeds]
-    terminal.result(f"Peaks at {', '.join(told)} {unit.name}." if told else "No peak in the range.")
-    if told:
-        terminal.show("Critical speeds", table_of(PEAKS, found.critical_speeds), RESPONSE)
-    if any(peak.amplitude is None for peak in found.critical_speeds):
+    peaks = [unit.cell(peak.speed_Hz, peak.speed_uncertainty_Hz, 3) for peak in motion.critical_speeds]
+    terminal.result(f"Peaks at {', '.join(peaks)} {unit.name}." if peaks else "No peak in the range.")
+    if peaks:
+        terminal.show("Critical speeds", table_of(PEAKS, motion.critical_speeds), RESPONSE)
+    if any(peak.amplitude is None for peak in motion.critical_speeds):
         terminal.sentence("Without an amplitude: the mode is not damped, and nothing bounds the peak.")
-    tell_coefficient_error(terminal, found.resting)
-    largest = found.amplitude.max(axis=0)
-    known = (largest > 0.0) & np.isfinite(found.amplitude_error).all(axis=0)
+    show_coefficient_error(terminal, motion.resting)
+    largest = motion.amplitude.max(axis=0)
+    known = (largest > 0.0) & np.isfinite(motion.amplitude_error).all(axis=0)
     if known.any():
-        share = float((found.amplitude_error.max(axis=0)[known] / largest[known]).max())
+        share = float((motion.amplitude_error.max(axis=0)[known] / largest[known]).max())
         told_share = float(f"{100.0 * share:.1g}")
         terminal.sentence(f"Expected error of the amplitudes: up to {told_share:g} % of the largest of each point.")
 
 
-def _excitation(found: Response) -> list[str]:
+def _excitation(motion: Response) -> list[str]:
     """Sentences on the loads of the case, which do not excite together, and on its losses."""
     from frbcli.rotor.loads import BOW
     from frbcli.scene.changes import has_lost, loss_note
     from frbcli.scene.machine.elements import harmonics_of
 
-    loads = {load.name: load for load in harmonics_of(found.case)}
-    if found.excitation in loads:
-        return [f"Excited by {found.excitation} alone, {loads[found.excitation].turning}."]
-    if found.excitation == BOW:
+    loads = {load.name: load for load in harmonics_of(motion.case)}
+    if motion.excitation in loads:
+        return [f"Excited by {motion.excitation} alone, {loads[motion.excitation].turning}."]
+    if motion.excitation == BOW:
         return ["Excited by the bow alone."]
     others = ", ".join(name for name, load in loads.items() if not load.synchronous)
-    told = [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
-    if before := loss_note(found.case):
-        told.append(f"{before}; --after-loss takes that after it.")
-    return [*told, *(["With the unbalance after the loss."] if has_lost(found.case) else [])]
+    notes = [f"Not excited by {others}, of another frequency: --excitation shows the motion by it."] if others else []
+    if before := loss_note(motion.case):
+        notes.append(f"{before}; --after-loss takes that after it.")
+    return [*notes, *(["With the unbalance after the loss."] if has_lost(motion.case) else [])]
 
 
-def _doubts(found: Response, unit: SpeedUnit) -> list[str]:
+def _doubts(motion: Response, unit: SpeedUnit) -> list[str]:
     """Sentences on motions that linear coefficients do not describe."""
     from frbcli.linear.response import BEYOND_GAP, DOUBTFUL, DOUBTFUL_MOTION
 
     sentences = []
-    speeds, validity = found.speeds_Hz, found.validity
+    speeds, validity = motion.speeds_Hz, motion.validity
     doubtful, beyond = ([s for s, v in zip(speeds, validity, strict=True) if v == kind]
                         for kind in (DOUBTFUL_MOTION, BEYOND_GAP))  # fmt: skip
     if doubtful:
         sentences.append(
             f"?: doubtful at {_among(doubtful, speeds, unit)}. A journal moves over more than {DOUBTFUL:g} of the gap "
-            "that its resting position leaves: its amplitude may be wrong by more than 15 %."
+            "that its static equilibrium leaves: its amplitude may be wrong by more than 15 %."
         )
     if beyond:
         sentences.append(
             f"!: not possible at {_among(beyond, speeds, unit)}. The orbit of a journal leaves its gap, up to an "
-            f"eccentricity of {found.eccentricity_max.max():.3g}; a run-up with this unbalance computes the motion."
+            f"eccentricity of {motion.eccentricity_max.max():.3g}; a run-up with this unbalance computes the motion."
         )
     return sentences
 

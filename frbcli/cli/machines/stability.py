@@ -1,4 +1,4 @@
-"""`frb stability`: resting positions, linear coefficients, eigenvalues over speed, threshold speed."""
+"""`frb stability`: static equilibria, linear coefficients, eigenvalues over speed, threshold speed."""
 
 from __future__ import annotations
 
@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.bearings.heat import heat_document, tell_heat
+from frbcli.cli.bearings.heat import heat_document, show_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
-from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, tell_modes
+from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, show_modes
 from frbcli.cli.machines.stability_table import (
     reduction_document,
-    tell_coefficient_error,
-    tell_collar,
-    tell_points,
-    tell_reduction,
+    show_coefficient_error,
+    show_collar,
+    show_points,
+    show_reduction,
 )
 from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, speeds_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 @case_argument
 @speeds_option("60 over the range of CASE", REST_OPTION)
 @click.option("--threshold", "with_threshold", is_flag=True,
-              help="Seek the threshold over the range of CASE beside speeds of --speed, too.")  # fmt: skip
+              help="Seek the threshold over the range of CASE, in addition to the speeds of --speed.")  # fmt: skip
 @click.option("--modes", "--stiffness", "stiffness", type=STIFFNESS_OPTION, metavar="STIFFNESS",
               help='Only undamped natural frequencies of the rotor, from 0 Hz on: "free", on "bearings" of given '
                    'coefficients, or on a stiffness of e.g. "5e6 N/m".')  # fmt: skip
@@ -54,7 +54,7 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int | None:
-    """Resting positions, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
+    """Static equilibria, coefficients of the films and eigenvalues of CASE over speed, and the threshold of stability.
 
     For a turbocharger also the natural frequencies of its rotor, free and on springs as stiff as its films.
     """
@@ -74,89 +74,90 @@ def command(
         emit_modes(terminal, case, stiffness, speeds, places)
         return None
     with computing(terminal, case, kernels="rest") as shown:
-        found = stability(case, speeds or None, shown.counting(), with_threshold)
-        kind = None if found.threshold is None else threshold_kind(case, found.threshold.speed_Hz)
-    reduced = own_reduction(case, found.points)
-    _tell(terminal, found, kind, reduced, bool(speeds))
-    written = places.write(terminal, found, "Campbell diagram")
-    natural = [natural_modes(case, springs, [at]) for springs, at in _springs(found)]
+        analysis = stability(case, speeds or None, shown.counting(), with_threshold)
+        kind = None if analysis.threshold is None else threshold_kind(case, analysis.threshold.speed_Hz)
+    reduced = own_reduction(case, analysis.points)
+    _show(terminal, analysis, kind, reduced, bool(speeds))
+    written = places.write(terminal, analysis, "Campbell diagram")
+    natural = [natural_modes(case, springs, [at]) for springs, at in _springs(analysis)]
     for modes in natural:
-        tell_modes(terminal, modes)
-    if natural and _beside_bearings(found):
-        terminal.result("On supports, the modes are those of the whole machine: frb stability --shapes SPEED.")
-    elif len(natural) == 1 and found.points[-1].rests:
-        at = terminal.speeds.words(found.points[-1].speed_Hz)
+        show_modes(terminal, modes)
+    if natural and _beside_bearings(analysis):
+        terminal.result("On supports, the modes belong to the whole machine: frb stability --shapes SPEED.")
+    elif len(natural) == 1 and analysis.points[-1].rests:
+        at = terminal.speeds.words(analysis.points[-1].speed_Hz)
         terminal.result(f"No natural frequencies on films at {at}: one has no direct stiffness.")
     terminal.emit(
         {
             "command": "stability",
             "case": case.name,
-            "points": [_point(point) for point in found.points],
-            "threshold": found.threshold and asdict(found.threshold) | {"whirl_ratio": found.threshold.whirl_ratio},
+            "points": [_point(point) for point in analysis.points],
+            "threshold": analysis.threshold
+            and asdict(analysis.threshold) | {"whirl_ratio": analysis.threshold.whirl_ratio},
             "threshold_kind": None if kind is None else {"criticality": kind.criticality, "fold_Hz": kind.fold_Hz},
-            "note": found.note,
+            "note": analysis.note,
             "reduction": reduction_document(reduced),
             **written,
         }
         | ({"natural_frequencies": [modes_document(modes) for modes in natural]} if natural else {})
     )
-    return None if any(point.rests for point in found.points) else NotConverged.exit_code
+    return None if any(point.rests for point in analysis.points) else NotConverged.exit_code
 
 
-def _tell(
-    terminal: Terminal, found: Stability, kind: ThresholdKind | None, reduced: Reduction | None, every_speed: bool
+def _show(
+    terminal: Terminal, analysis: Stability, kind: ThresholdKind | None, reduced: Reduction | None, every_speed: bool
 ) -> None:
     from frbcli.scene.changes import step_times
     from frbcli.scene.supply import unfed_films
 
-    tell_points(terminal, found, every_speed)
-    tell_coefficient_error(terminal, found.points)
-    terminal.sentence(_sentence(found, terminal.speeds))
-    tell_reduction(terminal, reduced)
-    tell_collar(terminal, found)
-    warmest = found.points[-1]
+    show_points(terminal, analysis, every_speed)
+    show_coefficient_error(terminal, analysis.points)
+    terminal.sentence(_sentence(analysis, terminal.speeds))
+    show_reduction(terminal, reduced)
+    show_collar(terminal, analysis)
+    warmest = analysis.points[-1]
     if warmest.warm is not None:
-        tell_heat(terminal, warmest.warm, f"heat at {terminal.speeds.words(warmest.speed_Hz)}")
+        show_heat(terminal, warmest.warm, f"heat at {terminal.speeds.words(warmest.speed_Hz)}")
     if kind is not None:
         terminal.sentence(_character(kind, terminal.speeds))
-    for film in unfed_films(found.case):
+    for film in unfed_films(analysis.case):
         terminal.sentence(film.remark)
-    if step_times(found.case):
+    if step_times(analysis.case):
         terminal.sentence(
             "Note: the clearances are the initial ones; bearing.clearance_steps changes them during a run."
         )
 
 
-def _springs(found: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
+def _springs(analysis: Stability) -> list[tuple[tuple[float, ...] | None, float]]:
     """Stiffness of the bearings and speed in Hz at which the modes of a turbocharger's rotor are of interest."""
     from frbcli.linear.modes import film_springs
 
-    if found.case.rotor.symmetric:
+    if analysis.case.rotor.symmetric:
         return []
     wanted: list[tuple[tuple[float, ...] | None, float]] = [(None, 0.0)]
-    if _beside_bearings(found):
+    if _beside_bearings(analysis):
         return wanted
-    for point in found.points[-1:]:
-        springs = film_springs(found.case, point.films) if point.films else ()
-        if springs or (point.rests and not found.case.bearings):
+    for point in analysis.points[-1:]:
+        springs = film_springs(analysis.case, point.films) if point.films else ()
+        if springs or (point.rests and not analysis.case.bearings):
             wanted.append((springs, point.speed_Hz))
     return wanted
 
 
-def _beside_bearings(found: Stability) -> bool:
+def _beside_bearings(analysis: Stability) -> bool:
     from frbcli.scene.machine.elements import beside_bearings
 
-    return bool(beside_bearings(found.case))
+    return bool(beside_bearings(analysis.case))
 
 
-def _sentence(found: Stability, unit: SpeedUnit) -> str:
-    threshold = found.threshold
+def _sentence(analysis: Stability, unit: SpeedUnit) -> str:
+    threshold = analysis.threshold
     if threshold is None:
-        return found.note
+        return analysis.note
     return (
         f"Threshold of stability: above {unit.words(threshold.speed_Hz, 1)} the rotor whirls, initially with "
         f"{threshold.frequency_Hz:.1f} Hz, {threshold.whirl_ratio:.3f} times its speed"
-        f"{_uncertain(threshold, unit)}.{found.note}"
+        f"{_uncertain(threshold, unit)}.{analysis.note}"
     )
 
 
@@ -187,19 +188,19 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
     from frbcli.linear.columns import FILM, MODES, POINT, film_columns
     from frbcli.linear.thrust.columns import AXIAL
 
-    told, films = document(POINT, point), documents(film_columns(point.films), point.films)
-    errors = told.pop("error") | (films[0]["error"] if films else {})
-    told |= (films[0] if films else dict.fromkeys(keys(FILM))) | {"error": errors}
+    row, films = document(POINT, point), documents(film_columns(point.films), point.films)
+    errors = row.pop("error") | (films[0]["error"] if films else {})
+    row |= (films[0] if films else dict.fromkeys(keys(FILM))) | {"error": errors}
     if len(films) > 1:
         named = zip(point.films, films, strict=True)
-        told["films"] = [{"film": film.name} | values for film, values in named]
+        row["films"] = [{"film": film.name} | values for film, values in named]
     if point.ring_speeds_Hz:
-        told["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
+        row["ring_speeds_Hz"] = list(point.ring_speeds_Hz)
     if point.warm is not None:
-        told["thermal"] = heat_document(point.warm)
+        row["thermal"] = heat_document(point.warm)
     if point.axial is not None:
-        told["axial"] = document(AXIAL, point.axial)
+        row["axial"] = document(AXIAL, point.axial)
     if point.problem:
-        told["problem"] = point.problem
-    told["modes"] = documents(MODES, point.modes_with_errors)
-    return told | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
+        row["problem"] = point.problem
+    row["modes"] = documents(MODES, point.modes_with_errors)
+    return row | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}

@@ -1,5 +1,5 @@
-"""The table of `frb stability` in 80 columns: resting positions and, for each speed, the modes with the least damping;
-and the error of the coefficients that static results are made of.
+"""The table of `frb stability` in 80 columns: static equilibria and, for each speed, the least damped modes; and the
+error of the coefficients that static results are made of.
 
 All growing modes are listed, then the least damped ones.
 """
@@ -22,31 +22,31 @@ if TYPE_CHECKING:
     from frbcli.rotor.reduction import Reduction
 
 MOST_SPEEDS, MOST_LINES = 20, 40  # of the table; JSON and the picture have every speed
-MODES_TOLD = 2  # in the one line of a single film
-NONE = "none"  # no resting position, or no coefficients there
+IN_LINE = 2  # in the one line of a single film
+NONE = "none"  # no static equilibrium, or no coefficients there
 
 
-def tell_points(terminal: Terminal, found: Stability, every_speed: bool) -> None:
+def show_points(terminal: Terminal, analysis: Stability, every_speed: bool) -> None:
     """The table, and the speeds without modes, with the reason at the first of them. every_speed: show all speeds."""
-    several = max((len(point.films) for point in found.points), default=0) > 1
-    films = max(1, *(len(point.films) for point in found.points))
+    several = max((len(point.films) for point in analysis.points), default=0) > 1
+    films = max(1, *(len(point.films) for point in analysis.points))
     most = min(MOST_SPEEDS, max(1, MOST_LINES // films))
-    every = 1 if every_speed else math.ceil(len(found.points) / most)
-    shown = found.points[every - 1 :: every]
+    every = 1 if every_speed else math.ceil(len(analysis.points) / most)
+    shown = analysis.points[every - 1 :: every]
     lines, unit = _film_lines if several else _lines, terminal.speeds
     rows = [line for point in shown for line in lines(point, unit.number(point.speed_Hz))]
     place, mode = (heads(columns, STABILITY) for columns in (FILM, MODES))
-    columns = (unit.name, "film", *place, *mode) if several else (unit.name, *place, *mode[:2] * MODES_TOLD, *mode[2:])
-    terminal.table(found.case.heading, columns, rows)
+    columns = (unit.name, "film", *place, *mode) if several else (unit.name, *place, *mode[:2] * IN_LINE, *mode[2:])
+    terminal.table(analysis.case.heading, columns, rows)
     if several:
         terminal.result("Modes of the machine: all that grow (damping below 0), then the least damped.")
     if every > 1:
-        told = f"{len(shown)} of {len(found.points)} speeds"
-        terminal.result(f"{told}; --json gives all, --speed the given ones.")
-    _tell_problems(terminal, found.points)
+        extent = f"{len(shown)} of {len(analysis.points)} speeds"
+        terminal.result(f"{extent}; --json gives all, --speed the given ones.")
+    _show_problems(terminal, analysis.points)
 
 
-def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None:
+def _show_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None:
     missing = [point for point in points if point.problem]
     if len(missing) > 1:
         speeds = [point.speed_Hz for point in missing]
@@ -59,21 +59,21 @@ def _tell_problems(terminal: Terminal, points: Sequence[StabilityPoint]) -> None
 def _lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
     """A line of a single film; further ones hold what else grows."""
     if not point.rests:
-        return [(speed, NONE, *[""] * (2 * MODES_TOLD + 2))]
-    modes = point.modes_with_errors[: max(MODES_TOLD, len(point.growing))]
+        return [(speed, NONE, *[""] * (2 * IN_LINE + 2))]
+    modes = point.modes_with_errors[: max(IN_LINE, len(point.growing))]
     cells = table_of(MODES, modes).cells(STABILITY)
     place = (table_of(FILM, point.films[:1]).cells(STABILITY) or [("-", "-")])[0]
     lines = []
-    for start in range(0, max(1, len(cells)), MODES_TOLD):
-        pairs = [cell for mode in cells[start : start + MODES_TOLD] for cell in mode[:2]]
+    for start in range(0, max(1, len(cells)), IN_LINE):
+        pairs = [cell for mode in cells[start : start + IN_LINE] for cell in mode[:2]]
         fastest = cells[start][2] if cells else "-"
         head = (speed, *place) if start == 0 else ("",) * 3
-        lines.append((*head, *pairs, *[""] * (2 * MODES_TOLD - len(pairs)), fastest))
+        lines.append((*head, *pairs, *[""] * (2 * IN_LINE - len(pairs)), fastest))
     return lines
 
 
 def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
-    """A line for each film, and beside them one for each mode."""
+    """A line for each film, with one mode in each."""
     if not point.rests:
         return [(speed, NONE, *[""] * 5)]
     count = max(len(point.films), len(point.growing))
@@ -86,36 +86,36 @@ def _film_lines(point: StabilityPoint, speed: str) -> list[tuple[str, ...]]:
     return [(head, *film, *mode) for head, film, mode in zip(speeds, films, modes, strict=True)]
 
 
-def tell_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
+def show_coefficient_error(terminal: Terminal, points: Iterable[StabilityPoint]) -> None:
     """The largest error of the coefficients of some points."""
-    tell_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
+    show_largest_error(terminal, ((film.error, point.speed_Hz) for point in points for film in point.films))
 
 
-def tell_reduction(terminal: Terminal, found: Reduction | None) -> None:
+def show_reduction(terminal: Terminal, reduction: Reduction | None) -> None:
     """What the reduction of a shaft keeps, and what that changes."""
-    if found is not None:
-        terminal.sentence(f"Reduction of the shaft to {found.words}.")
+    if reduction is not None:
+        terminal.sentence(f"Reduction of the shaft to {reduction.words}.")
 
 
-def reduction_document(found: Reduction | None) -> dict[str, float] | None:
+def reduction_document(reduction: Reduction | None) -> dict[str, float] | None:
     """The same in JSON, None for a shaft that is not reduced."""
-    if found is None:
+    if reduction is None:
         return None
-    static = len(found.modes.frequencies) - found.free
-    changes = {"frequency_relative": found.frequency, "amplitude_relative": found.amplitude}
-    return {"free_modes": found.free, "static_modes": static, **changes}
+    static = len(reduction.modes.frequencies) - reduction.free
+    changes = {"frequency_relative": reduction.frequency, "amplitude_relative": reduction.amplitude}
+    return {"free_modes": reduction.free, "static_modes": static, **changes}
 
 
-def tell_collar(terminal: Terminal, found: Stability) -> None:
+def show_collar(terminal: Terminal, analysis: Stability) -> None:
     """Where the collar of the thrust bearing rests at the fastest speed, and what its films are there."""
-    at_rest = [point for point in found.points if point.axial is not None]
+    at_rest = [point for point in analysis.points if point.axial is not None]
     for point in at_rest[-1:]:
         cells = dict(zip(heads(AXIAL, STABILITY), table_of(AXIAL, [point.axial]).cells(STABILITY)[0], strict=True))
-        told = ", ".join(f"{head} {cell}" for head, cell in cells.items())
-        terminal.sentence(f"Collar of the thrust bearing at {terminal.speeds.words(point.speed_Hz)}: {told}.")
+        state = ", ".join(f"{head} {cell}" for head, cell in cells.items())
+        terminal.sentence(f"Collar of the thrust bearing at {terminal.speeds.words(point.speed_Hz)}: {state}.")
 
 
-def tell_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]) -> None:
+def show_largest_error(terminal: Terminal, errors: Iterable[tuple[float, float]]) -> None:
     """The largest of some errors of coefficients, each with its speed in Hz; NaN is not known."""
     known = [(error, speed) for error, speed in errors if not math.isnan(error)]
     if known:

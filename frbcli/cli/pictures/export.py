@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, force_option, forced
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, force_option, forced, next_to
 from frbcli.cli.progress import WRITING, display
 
 
@@ -34,7 +34,7 @@ def command(run_file: Path, table_format: str, output: Path | None, terminal: Te
     to_stdout = output == Path("-")
     if to_stdout and (table_format != "csv" or terminal.json):
         raise click.UsageError("Only CSV goes to stdout, and not together with --json.")
-    target = output or beside(run_file, f".{table_format}")
+    target = output or next_to(run_file, f".{table_format}")
     if not to_stdout:
         check_outputs((target, TABLES[table_format]))
     if to_stdout:

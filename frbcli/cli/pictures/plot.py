@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.files import INPUT, beside, check_outputs, force_option, forced, here
+from frbcli.cli.files import INPUT, check_outputs, force_option, forced, here, next_to
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import TIME_OPTION, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
@@ -97,7 +97,7 @@ def command(
         raise click.UsageError("--signal belongs to --what displacement.")
     if over != "time" and what not in CURVES:
         raise click.UsageError(f"--over belongs to --what {', '.join(CURVES)}.")
-    target = output or beside(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
+    target = output or next_to(run_files[0], f"-{what}.gif" if animate else f"-{what}.png")
     if animate:
         _animate(run_files[0], target, span.both, what, film, terminal)
         return
@@ -125,11 +125,11 @@ def _animate(
     check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
     run = read_run(run_file)
     with display(terminal, "Drawing.") as shown:
-        tell = shown.counting("frame ")
+        observe = shown.counting("frame ")
         if what == "film":
-            animate_films(run, target, film, *span, observe=tell, force=forced())
+            animate_films(run, target, film, *span, observe=observe, force=forced())
         else:
-            animate_orbits(run, target, *span, observe=tell, force=forced())
+            animate_orbits(run, target, *span, observe=observe, force=forced())
     terminal.result(f"{what}: {target}")
     terminal.emit({"command": "plot", "run": run_file, "output": target, "what": what})
 

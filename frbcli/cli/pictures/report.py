@@ -7,7 +7,7 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, OUTPUT, beside, check_outputs, force_option, forced
+from frbcli.cli.files import INPUT, OUTPUT, check_outputs, force_option, forced, next_to
 from frbcli.cli.options import signal_option, speeds_option
 from frbcli.cli.progress import drawing
 
@@ -15,9 +15,9 @@ from frbcli.cli.progress import drawing
 @click.command()
 @click.argument("run_file", metavar="RUN.h5", type=INPUT)
 @click.option("-o", "--output", metavar="PAGE.html", type=OUTPUT, help="Page. [RUN-report.html]")
-@speeds_option("those of the events, and the last; orbits and spectra are drawn there")
+@speeds_option("speeds at the events, and the last; orbits and spectra are drawn there")
 @signal_option()
-@click.option("--author", default="", metavar="NAME", help="Name on top of the page, beside date and version.")
+@click.option("--author", default="", metavar="NAME", help="Name on top of the page, next to date and version.")
 @click.option("--both-units", is_flag=True,
               help="Rotor speeds in Hz and rpm. [rpm where the case gives them so, else Hz]")  # fmt: skip
 @force_option()
@@ -31,7 +31,7 @@ def command(
     from frbcli.results.files.kinds import PAGE
     from frbcli.results.store import read_run
 
-    target = output or beside(run_file, "-report.html")
+    target = output or next_to(run_file, "-report.html")
     check_outputs((target, PAGE))
     with drawing(terminal):
         from frbcli.report.page import write_report

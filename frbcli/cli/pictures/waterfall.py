@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.files import INPUT, beside, check_outputs, force_option
+from frbcli.cli.files import INPUT, check_outputs, force_option, next_to
 from frbcli.cli.looks import Span, look_options
 from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
@@ -46,7 +46,7 @@ class View:
 @picture_option("RUN-waterfall.png")
 @signal_option()
 @click.option("--order", "orders", metavar="1,0.5", type=Numbers(),
-              help="Amplitudes by order in place of spectra; exact also in a ramp of the speed.")  # fmt: skip
+              help="Amplitudes by order instead of spectra; exact also in a ramp of the speed.")  # fmt: skip
 @over_option(None)
 @click.option("--cascade", is_flag=True, help="Curves behind each other, in 3-D.")
 @click.option("--window", type=TIME_OPTION, help="Length of one spectrum. [from the ramp, up to 0.2 s]")
@@ -59,8 +59,8 @@ class View:
 )
 @click.option("--log", is_flag=True, help="Logarithmic frequency axis; with --order logarithmic amplitudes.")
 @click.option("--levels", type=Span(), metavar="A,B", help="Range of the colours in dB, with --linear in um. [-60,0]")
-@click.option("--linear", is_flag=True, help="Amplitudes in um in place of levels in dB.")
-@click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [those of free whirls]")
+@click.option("--linear", is_flag=True, help="Amplitudes in um instead of levels in dB.")
+@click.option("--lines", type=Numbers(), metavar="1,0.5", help="Orders whose lines are drawn. [orders of free whirls]")
 @click.option("--list", "listed", is_flag=True, help="List the columns of a measurement, with shapes and units.")
 @measured_options
 @force_option()
@@ -94,41 +94,42 @@ def command(
         raise click.UsageError("--cascade and --window belong to spectra, not to --order.")
     if orders is not None and (view.levels is not None or view.linear or view.lines is not None):
         raise click.UsageError("--levels, --linear and --lines belong to spectra, not to --order.")
-    target = output or beside(run_file, "-waterfall.png" if orders is None else "-orders.png")
+    target = output or next_to(run_file, "-waterfall.png" if orders is None else "-orders.png")
     check_outputs(picture=target)
     with display(terminal, READING):
         run = run_of(run_file, measurement, terminal, relative=orders is None and not view.linear)
     terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
-    axis: Over = view.over or ("time" if orders is None else "speed")
     if orders is None:
-        told = _spectra(terminal, run, signal, axis, view, target)
+        drawn = _spectra(terminal, run, signal, view, target)
     else:
-        told = _orders(terminal, run, signal, orders, axis, view, target)
+        drawn = _orders(terminal, run, signal, orders, view.over or "speed", view, target)
     if measurement is not None:
-        told["events"] = run.events
+        drawn["events"] = run.events
         if run.events:
             terminal.show("events", table_of(EVENTS, with_whirl_names(run.events)))
             for sentence in about_critical_speeds(run, run.events, terminal.speeds):
                 terminal.sentence(sentence)
-    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal, "over": axis}
-    terminal.emit({**document, "direction": view.direction, **told})
+    document = {"command": "waterfall", "run": run_file, "output": target, "signal": signal}
+    terminal.emit({**document, "direction": view.direction, **drawn})
 
 
-def _spectra(terminal: Terminal, run: Run, signal: str, axis: Over, view: View, target: Path) -> dict[str, Any]:
+def _spectra(terminal: Terminal, run: Run, signal: str, view: View, target: Path) -> dict[str, Any]:
     """Draw spectra, and return their part of the JSON document."""
-    from frbcli.plot.spectra.waterfall import LevelScale, reading, run_spectra, waterfall_figure
+    from frbcli.plot.spectra.waterfall import LevelScale, natural_axis, reading, run_spectra, waterfall_figure
 
     with display(terminal):
-        found = run_spectra(run, signal, view.window, view.direction)
-    scale = LevelScale(view.linear, view.levels, view.lines)
+        levels = run_spectra(run, signal, view.window, view.direction)
+    scale, axis = LevelScale(view.linear, view.levels, view.lines), view.over or natural_axis(levels)
     draw_wanted(
         terminal,
-        lambda: waterfall_figure(run, axis, signal, view.cascade, view.window, view.direction, view.log, found, scale),
+        lambda: waterfall_figure(
+            run, axis, signal, view.cascade, view.window, view.direction, view.log, levels, scale, terminal.speeds
+        ),
         target,
         "waterfall",
     )
-    terminal.result(reading(found))
-    return {"window_s": found.window_s, "synchronous_low_dB": float(found.low_dB.max())}
+    terminal.result(reading(levels))
+    return {"over": axis, "window_s": levels.window_s, "synchronous_low_dB": float(levels.low_dB.max())}
 
 
 def _orders(
@@ -145,7 +146,7 @@ def _orders(
     for row in rows:
         most = f"{MICRO * row['amplitude_max_m']:.3g} um at {terminal.speeds.words(row['speed_Hz'], 1)}"
         terminal.result(f"order {row['order']:g}: at most {most}, {row['t_s']:.3f} s")
-    return {"orders": rows}
+    return {"over": axis, "orders": rows}
 
 
 def _largest(track: OrderTrack, direction: Direction) -> dict[str, float]:

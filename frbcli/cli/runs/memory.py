@@ -1,8 +1,8 @@
 """Too little memory: reported in one line, whatever error a library raises.
 
 Where a process may use little memory (`ulimit -v`), libraries do not load, the compiler aborts, and linear algebra
-waits forever for its buffers. So what takes less than a usual run is told before any of them is loaded; what happens
-later, with an error of some kind of theirs, after it.
+waits forever for its buffers. So too small a limit is reported before any of them is loaded; what happens later, with
+an error of a library's own kind, is reported after it.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ def shortage(error: BaseException) -> OutOfMemory | None:
     if not isinstance(error, MemoryError) and _allowed() > SUSPECT * _enough():
         return None
     reason = " ".join(str(error).split())[:LONGEST_REASON]
-    told = f"out of memory ({reason})." if reason else "out of memory."
+    cause = f"out of memory ({reason})." if reason else "out of memory."
     remedy = "Allow more, or ask for less: fewer cells (accuracy.mesh), fewer samples (output.step)."
-    return OutOfMemory(f"{told}{_limits()} {remedy}")
+    return OutOfMemory(f"{cause}{_limits()} {remedy}")
 
 
 def _limits() -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
-from frbcli.cli.files import OUTPUT, beside, check_outputs, force_option, here
+from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
 from frbcli.cli.looks import look_options
 from frbcli.cli.options import gathered
 from frbcli.cli.outputs import draw, picture_switch
@@ -33,7 +33,7 @@ Transient = Callable[..., "Run"]
 EXIT_CODES = {"finished": 0, "standstill": 0, "input-error": 2, "interrupted": 130}
 ENDED_EARLY = 3  # for any other reason, which is named
 SUMMARY = "-summary.png"
-TOLD_s, TOLD_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
+SHOWN_s, SHOWN_BEFORE_s = 30.0, 5.0  # CPU time from which on it is said before a run, and of it before the first step
 SLOW_AFTER_s, SLOWER = 5.0, 3.0  # CPU time after which a run may be called slow, and times its plan's that is
 
 
@@ -54,7 +54,7 @@ def run_options(function: Function) -> Function:
     """Give a command the options of a run; it receives `options: RunOptions`."""
     output = click.option("-o", "--output", type=OUTPUT, metavar="RUN.h5", help="Run file. [CASE.h5, here]")
     resume = click.option("--resume", is_flag=True, help="Resume an interrupted run in the run file.")
-    force = force_option("Replace the run in the run file, and a picture that frb did not write.", told=True)
+    force = force_option("Replace the run in the run file, and a picture that frb did not write.", exposed=True)
     verify = click.option(
         "--verify", is_flag=True, help="Run again with half the tolerance and step size, and report the change."
     )
@@ -73,7 +73,7 @@ def run_options(function: Function) -> Function:
 @run_options
 @output_options
 def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
-    """Run the rotor of CASE up and write the run to a file, with a summary picture beside it."""
+    """Run the rotor of CASE up and write the run to a file, with a summary picture next to it."""
     from frbcli.runs import run
 
     return transient("runup", run.runup, case, options, terminal)
@@ -84,7 +84,7 @@ def runup(case: Case, options: RunOptions, terminal: Terminal) -> int:
 @run_options
 @output_options
 def rundown(case: Case, options: RunOptions, terminal: Terminal) -> int:
-    """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture beside it."""
+    """Run the rotor of CASE up, hold it, and run it down again; write the run to a file, with a picture next to it."""
     from frbcli.runs import run
 
     return transient("rundown", run.rundown, case, options, terminal)
@@ -100,13 +100,13 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     path = options.output or here(case.name, ".h5")
     check_output(path)
     if options.picture:
-        check_outputs(picture=beside(path, SUMMARY))
+        check_outputs(picture=next_to(path, SUMMARY))
     standing = standing_run(command, case, path, options.resume, options.force)
-    told = not options.uncertainty or (standing is not None and SECOND_RUN in standing.cost)
-    if standing is not None and standing.status != INTERRUPTED and told:
+    complete = not options.uncertainty or (standing is not None and SECOND_RUN in standing.cost)
+    if standing is not None and standing.status != INTERRUPTED and complete:
         terminal.remark(f"{path} holds this run already; --force computes it again.")
     cost = run_cost(command, case, options.uncertainty)
-    if cost.total_s > TOLD_s:
+    if cost.total_s > SHOWN_s:
         terminal.remark(cost_line(cost))
     with computing(terminal, case) as shown:
         run = run_case(
@@ -131,7 +131,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     if options.picture and len(run) > 1:
         from frbcli.plot.run.summary import summary_figure
 
-        draw(terminal, lambda: summary_figure(run), beside(path, SUMMARY))
+        draw(terminal, lambda: summary_figure(run), next_to(path, SUMMARY))
     interrupted = verified is not None and verified["status"] == "interrupted"
     return exit_code("interrupted" if interrupted else run.status)
 
@@ -141,7 +141,7 @@ def cost_line(cost: ExpectedCost) -> str:
     from frbcli.scene.costs.cost import clock
     from frbcli.scene.costs.limits import memory
 
-    before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > TOLD_BEFORE_s else ""
+    before = f", {clock(cost.before_s)} of it before the first step" if cost.before_s > SHOWN_BEFORE_s else ""
     return f"This takes about {clock(cost.total_s)} of CPU time{before}, and {memory(cost.memory_B)} of memory."
 
 
@@ -176,26 +176,26 @@ def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
 
     try:
         with display(terminal) as shown:
-            found = verify(case, run, lambda progress: shown.redraw(f"again\n{progress_line(progress, shown.speeds)}"))
+            change = verify(case, run, lambda progress: shown.redraw(f"again\n{progress_line(progress, shown.speeds)}"))
     except KeyboardInterrupt:
         terminal.remark("Interrupted before the end of the verification.")
         return {"status": "interrupted"}
-    moved = terminal.speeds.words(abs(found.onset_Hz))
-    onset = "" if math.isnan(found.onset_Hz) else f", and the onset of whirl by {moved}"
+    moved = terminal.speeds.words(abs(change.onset_Hz))
+    onset = "" if math.isnan(change.onset_Hz) else f", and the onset of whirl by {moved}"
     what = "eccentricity changes" if case.films else "displacements change, over their length,"
     terminal.result(
-        f"verified: with half the tolerance and step size the {what} by {found.eccentricity:.1e}\n"
-        f"until {found.until_s:.3g} s{onset} ({found.status}, {found.cpu_s:.3g} s of CPU time)."
+        f"verified: with half the tolerance and step size the {what} by {change.eccentricity:.1e}\n"
+        f"until {change.until_s:.3g} s{onset} ({change.status}, {change.cpu_s:.3g} s of CPU time)."
     )
-    if found.coupling is not None:
-        terminal.result(f"with rotor and films solved together it changes by {found.coupling:.1e}.")
+    if change.coupling is not None:
+        terminal.result(f"with rotor and films solved together it changes by {change.coupling:.1e}.")
     return {
-        "status": found.status,
-        "eccentricity": found.eccentricity,
-        "quiet_until_s": found.until_s,
-        "onset_speed_Hz": found.onset_Hz,
-        "coupling": found.coupling,
-        "cpu_s": found.cpu_s,
+        "status": change.status,
+        "eccentricity": change.eccentricity,
+        "quiet_until_s": change.until_s,
+        "onset_speed_Hz": change.onset_Hz,
+        "coupling": change.coupling,
+        "cpu_s": change.cpu_s,
     }
 
 
@@ -206,12 +206,12 @@ def _explained(case: Case, run: Run, terminal: Terminal) -> tuple[str, ...]:
 
     try:
         with computing(terminal, case):
-            told = explanations(limit_cycles(case), run.events)
+            sentences = explanations(limit_cycles(case), run.events)
     except FrbError as error:
-        told = (f"Not explained: {error}",)
-    for sentence in told:
+        sentences = (f"Not explained: {error}",)
+    for sentence in sentences:
         terminal.sentence(sentence)
-    return told
+    return sentences
 
 
 def exit_code(status: str) -> int:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 @click.command()
 @case_argument
-@click.option("--until", type=TIME_OPTION, metavar="TIME", help='End of the run, e.g. "2 s". [that of CASE]')
+@click.option("--until", type=TIME_OPTION, metavar="TIME", help='End of the run, e.g. "2 s". [as in CASE]')
 @theory_option("all that apply")
 @coupling_option
 @outputs_options("CASE-accuracy.png, here")
@@ -40,64 +40,64 @@ def command(
 
     places = outputs.check(here(case.name, "-accuracy.png"))
     with computing(terminal, case, by_theory(case, theory)) as shown:
-        tell = shown.of_runs()
-        found = accuracy(case, until, theory, coupling, lambda rung, *rest: tell(rung.name, *rest))
-    _report(found, terminal)
-    terminal.emit(_document(found))
-    if not found.ladder:
+        observe = shown.of_runs()
+        ladder = accuracy(case, until, theory, coupling, lambda rung, *rest: observe(rung.name, *rest))
+    _report(ladder, terminal)
+    terminal.emit(_document(ladder))
+    if not ladder.ladder:
         places = replace(places, picture=None)
-    places.write(terminal, found)
-    return 0 if found.complete else INTERRUPTED
+    places.write(terminal, ladder)
+    return 0 if ladder.complete else INTERRUPTED
 
 
-def _document(found: AccuracyLadder) -> dict[str, Any]:
+def _document(ladder: AccuracyLadder) -> dict[str, Any]:
     from frbcli.studies.ladder import RESULT, RUNG
 
-    (coarser,), (reference,) = documents(RUNG, [found.coarser]), documents(RESULT, [found.reference])
-    reference |= _stated(found.reference) | {"compared_with": coarser, "change": reference.pop("error")}
-    rungs = zip(found.table().documents(), found.ladder, strict=True)
-    ended = zip(documents(RUNG, [rung for rung, _ in found.failed]), found.failed, strict=True)
-    failed = [told | {"message": problem} for told, (_, problem) in ended]
+    (coarser,), (reference,) = documents(RUNG, [ladder.coarser]), documents(RESULT, [ladder.reference])
+    reference |= _stated(ladder.reference) | {"compared_with": coarser, "change": reference.pop("error")}
+    rungs = zip(ladder.table().documents(), ladder.ladder, strict=True)
+    ended = zip(documents(RUNG, [rung for rung, _ in ladder.failed]), ladder.failed, strict=True)
+    failed = [row | {"message": problem} for row, (_, problem) in ended]
     return {
         "command": "accuracy",
-        "case": found.case.name,
-        **({} if found.complete else {"status": "interrupted"}),
-        "until_s": found.until_s,
+        "case": ladder.case.name,
+        **({} if ladder.complete else {"status": "interrupted"}),
+        "until_s": ladder.until_s,
         "reference": reference,
-        "ladder": [told | _stated(item) for told, item in rungs],
-        **({"failed": failed} if found.failed else {}),
+        "ladder": [row | _stated(item) for row, item in rungs],
+        **({"failed": failed} if ladder.failed else {}),
     }
 
 
-def _report(found: AccuracyLadder, terminal: Terminal) -> None:
-    table = found.table()
+def _report(ladder: AccuracyLadder, terminal: Terminal) -> None:
+    table = ladder.table()
     rows = table.cells()
-    if len({item.rung.coupling for item in found.ladder}) > 1:
+    if len({item.rung.coupling for item in ladder.ladder}) > 1:
         rows = [(mark, "\n".join((film, item.rung.coupling.replace("-", "-\n"))), *rest)
-                for item, (mark, film, *rest) in zip(found.ladder, rows, strict=True)]  # fmt: skip
-    terminal.table(f"{found.case.heading}, first {found.until_s:g} s", table.heads(), rows)
+                for item, (mark, film, *rest) in zip(ladder.ladder, rows, strict=True)]  # fmt: skip
+    terminal.table(f"{ladder.case.heading}, first {ladder.until_s:g} s", table.heads(), rows)
     terminal.sentence(f"* choice of the plan, + on Pareto's front; {table.legend()}.")
-    reference, change = found.reference.rung, found.reference.error
+    reference, change = ladder.reference.rung, ladder.reference.error
     coarser = "" if reference.mesh is None else "on a coarser mesh and "
     terminal.sentence(
         f"reference: {reference.name}; {coarser}with "
         f"twice the tolerance it changes by {short_number(change.eccentricity_largest)} (max) and "
         f"{short_number(change.eccentricity_rms)} (rms)."
     )
-    for item in (item for item in found.ladder if item.planned):
+    for item in (item for item in ladder.ladder if item.planned):
         stated = item.stated.get("eccentricity")
-        told = "" if stated is None else f", its stated error is {short_number(stated)}"
-        terminal.sentence(f"the choice of the plan costs {found.above_front():.2g} times Pareto's front{told}.")
-    ended = {item.error.until_s for item in found.ladder} - {found.until_s}
+        quoted = "" if stated is None else f", its stated error is {short_number(stated)}"
+        terminal.sentence(f"the choice of the plan costs {ladder.above_front():.2g} times Pareto's front{quoted}.")
+    ended = {item.error.until_s for item in ladder.ladder} - {ladder.until_s}
     if ended:
         terminal.result(f"errors of the eccentricity until {min(ended):.4g} s, where a whirl begins to grow.")
-    for item in found.ladder:
+    for item in ladder.ladder:
         if item.status != "finished":
             terminal.result(f"{item.rung.name}: {item.status}")
-    for rung, problem in found.failed:
+    for rung, problem in ladder.failed:
         terminal.result(f"{rung.name}: did not begin: {problem}")
-    if not found.complete:
-        terminal.result(f"Interrupted: {len(found.ladder)} rungs are done, without thresholds.")
+    if not ladder.complete:
+        terminal.result(f"Interrupted: {len(ladder.ladder)} rungs are done, without thresholds.")
 
 
 def _stated(item: RungResult) -> dict[str, Any]:

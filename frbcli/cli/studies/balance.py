@@ -54,7 +54,7 @@ class TrialOption(click.ParamType[tuple[str, Path, float, float]]):
 @click.command()
 @click.argument("run_file", metavar="RUN", type=INPUT)
 @click.option("--planes", type=Names(), default=(), metavar="A,B",
-              help="Disks where masses can be added. [those of --trial]")  # fmt: skip
+              help="Disks where masses can be added. [as in --trial]")  # fmt: skip
 @click.option("--trial", "trials", multiple=True, type=TrialOption(), metavar="PLANE=FILE:UNBALANCE@ANGLE",
               help=f"A run with a trial unbalance in a plane, e.g. {EXAMPLE}. Repeatable. "
                    "[coefficients are computed for the case of RUN]")  # fmt: skip
@@ -95,17 +95,17 @@ def command(
     if run.case_text:
         terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
     with _progress(terminal, run, tried):
-        found = balance(run, planes, speeds or None, points or None, tried, triggered)
-    _tell(terminal, found)
+        balancing = balance(run, planes, speeds or None, points or None, tried, triggered)
+    _show(terminal, balancing)
     if csv is not None:
         from frbcli.results.files.write import write_table
 
-        write_table(found.to_pandas(), csv, forced())
+        write_table(balancing.to_pandas(), csv, forced())
         terminal.result(f"table: {csv}")
-    terminal.emit(document(found, run_file) | {"csv": csv})
+    terminal.emit(document(balancing, run_file) | {"csv": csv})
 
 
-def document(found: Balancing, run_file: Path) -> dict[str, object]:
+def document(balancing: Balancing, run_file: Path) -> dict[str, object]:
     """As JSON."""
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import documents
@@ -113,14 +113,14 @@ def document(found: Balancing, run_file: Path) -> dict[str, object]:
     return {
         "command": "balance",
         "run": run_file,
-        "status": found.status,
-        "influence": "trials" if found.trials else "computed",
-        "planes": found.table().documents(),
-        "residual": found.residual,
-        "condition": found.condition,
-        "speeds_Hz": found.speeds_Hz,
-        "points": documents(POINTS, found.points),
-        "doubts": found.doubts,
+        "status": balancing.status,
+        "influence": "trials" if balancing.trials else "computed",
+        "planes": balancing.table().documents(),
+        "residual": balancing.residual,
+        "condition": balancing.condition,
+        "speeds_Hz": balancing.speeds_Hz,
+        "points": documents(POINTS, balancing.points),
+        "doubts": balancing.doubts,
     }
 
 
@@ -131,14 +131,14 @@ def _recorded(path: Path, measurement: Measurement | None, terminal: Terminal) -
     across, up = ([] if text is None else [name.strip() for name in text.split(",")]
                   for text in ((None, None) if measurement is None else (measurement.x, measurement.y)))  # fmt: skip
     if path.suffix.lower() not in READERS or measurement is None or len(across) < 2 or not path.exists():
-        computed = path.suffix.lower() not in READERS  # a trial run of frb beside measurements has no columns
+        computed = path.suffix.lower() not in READERS  # a computed trial run among measurements has no columns
         return run_of(path, None if computed else measurement, terminal, relative=False)
     if up and len(up) != len(across):
         raise click.UsageError(f"--x has {len(across)} columns and --y {len(up)}: give one for each probe, or no --y.")
     from frbcli.analysis.measured import measured_probes
 
-    beside: list[str | None] = [*up] if up else [None] * len(across)
-    run = measured_probes(path, measurement, list(zip(across, beside, strict=True)))
+    upward: list[str | None] = [*up] if up else [None] * len(across)
+    run = measured_probes(path, measurement, list(zip(across, upward, strict=True)))
     for remark in run.remarks:
         terminal.remark(remark)
     return run
@@ -153,26 +153,27 @@ def _progress(terminal: Terminal, run: Run, trials: Sequence[TrialRun]) -> Any:
     return computing(terminal, load_case_text(run.case_text, name=run.case_name), kernels="rest")
 
 
-def _tell(terminal: Terminal, found: Balancing) -> None:
+def _show(terminal: Terminal, balance: Balancing) -> None:
     from frbcli.balancing.balance import POINTS
     from frbcli.columns import table_of
 
-    for doubt in found.doubts:
+    for doubt in balance.doubts:
         terminal.sentence(f"Doubtful: {doubt}")
-    terminal.show(f"{found.run.title}: {'doubtful ' if found.doubts else ''}corrections", found.table())
-    zero = "the trial unbalances" if found.trials else "`phase` of a disk"
+    terminal.show(f"{balance.run.title}: {'doubtful ' if balance.doubts else ''}corrections", balance.table())
+    zero = "the trial unbalances" if balance.trials else "`phase` of a disk"
     terminal.sentence(
         "Add the correction: it is opposite to the unbalance. Angles are on the rotor, in the sense of rotation, from "
         f"the zero of {zero}."
     )
-    rows = found.points
+    rows = balance.points
     table = table_of(POINTS, rows[-MOST_ROWS:])
     terminal.show("Synchronous amplitudes, and as expected with the corrections", table)
     if len(rows) > MOST_ROWS:
         terminal.result(f"The last {MOST_ROWS} of {len(rows)}: --json has all.")
     vectors = 2 * len(rows)
-    by = "trial runs" if found.trials else "the linear response of the case"
+    by = "trial runs" if balance.trials else "the linear response of the case"
     terminal.sentence(
-        f"Residual {100.0 * found.residual:.2g} % of {vectors} vectors at {terminal.speeds.listed(found.speeds_Hz)}; "
-        f"condition number {found.condition:.3g}; influence coefficients of {by}."
+        f"Residual {100.0 * balance.residual:.2g} % of {vectors} vectors at "
+        f"{terminal.speeds.listed(balance.speeds_Hz)}; condition number {balance.condition:.3g}; "
+        f"influence coefficients of {by}."
     )

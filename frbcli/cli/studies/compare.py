@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from frbcli.cli.common import Terminal, case_or_run_argument, output_options
-from frbcli.cli.files import INPUT, OUTPUT_FOLDER, beside, here
+from frbcli.cli.files import INPUT, OUTPUT_FOLDER, here, next_to
 from frbcli.cli.options import (
     cavitation_option,
     coupling_option,
@@ -47,14 +47,14 @@ class Models:
 @click.command()
 @case_or_run_argument
 @cavitation_option
-@theory_option("that of CASE")
+@theory_option("as in CASE")
 @coupling_option
 @thermal_option
 @click.option("--test", default="runup", show_default=True, metavar="TEST",
               help="The scene: runup, rundown, rotation, squeeze, whirl.")  # fmt: skip
 @click.option("--keep", metavar="DIR", type=OUTPUT_FOLDER, help="Keep the run files in this directory.")
 @click.option("--measured", "file", metavar="FILE", type=INPUT,
-              help="A measured run-up to set beside RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
+              help="A measured run-up to compare with RUN.h5: CSV, WAV or MAT, see --x.")  # fmt: skip
 @signal_option()
 @measured_options
 @outputs_options("CASE-compare.png, here")
@@ -71,8 +71,8 @@ def command(
     outputs: OutputOptions,
     terminal: Terminal,
 ) -> int:
-    """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or set a
-    measurement beside RUN.h5.
+    """Run CASE with several models of its films: events, deviations and cost in one table and one picture; or compare
+    RUN.h5 with a measurement.
 
     Without --cavitation, --theory and --coupling CASE is compared with all models of low cost whose films keep
     neither oil nor gas.
@@ -83,7 +83,7 @@ def command(
 
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
-            raise click.UsageError("A measurement stands beside a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
+            raise click.UsageError("Compare a measurement with a run: frb compare RUN.h5 --measured FILE --x COLUMN.")
         beside_measured(terminal, case, file, measurement, signal, outputs)
         return 0
     if test in TESTS:
@@ -91,23 +91,23 @@ def command(
     places = outputs.check(here(case.name, "-compare.png"))
     others = (with_model(case, law) for law in models.cavitation)  # asked for after their names are checked
     with computing(terminal, case, others) as shown:
-        tell = shown.of_runs()
-        found = compare(
-            case, models.cavitation, models.theory, test, keep, lambda variant, *rest: tell(variant.name, *rest),
+        observe = shown.of_runs()
+        compared = compare(
+            case, models.cavitation, models.theory, test, keep, lambda variant, *rest: observe(variant.name, *rest),
             models.coupling, models.thermal,
         )  # fmt: skip
-    _report(found, bool(models.coupling), terminal)
-    warm = table_of(HEAT, found.results)
+    _report(compared, bool(models.coupling), terminal)
+    warm = table_of(HEAT, compared.results)
     if models.thermal:
         terminal.show("at the end", warm)
-    results = [told | (heat if heat["thermal"] else {})
-               for told, heat in zip(found.table().documents(), warm.documents(), strict=True)]  # fmt: skip
-    whole = {} if found.status == "finished" else {"status": found.status, "message": found.message}
-    terminal.emit({"command": "compare", "case": case.name, "test": found.test, **whole, "results": results})
-    if not all(len(result.run) > 1 for result in found.results):
+    results = [row | (heat if heat["thermal"] else {})
+               for row, heat in zip(compared.table().documents(), warm.documents(), strict=True)]  # fmt: skip
+    whole = {} if compared.status == "finished" else {"status": compared.status, "message": compared.message}
+    terminal.emit({"command": "compare", "case": case.name, "test": compared.test, **whole, "results": results})
+    if not all(len(result.run) > 1 for result in compared.results):
         places = replace(places, picture=None)
-    places.write(terminal, found)
-    return max(exit_code(status) for status in (found.status, *(result.run.status for result in found.results)))
+    places.write(terminal, compared)
+    return max(exit_code(status) for status in (compared.status, *(result.run.status for result in compared.results)))
 
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
@@ -122,28 +122,25 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
     ):
         if given:
             raise input_error(case.name, option, ",".join(given), problem, "Leave it out.")
-    if case.film.bearing_model:
-        problem = f"is one model in a {test}: there is nothing to compare it with."
-        raise input_error(case.name, "film.theory", case.film.bearing_model, problem, f"Call `frb {test}`.")
     models = wanted.cavitation or names(law for law in laws() if law.cavitates)
     return run_test(case, test, models, outputs, terminal, compared=True) or 0
 
 
-def _report(found: Comparison, couplings: bool, terminal: Terminal) -> None:
+def _report(comparison: Comparison, couplings: bool, terminal: Terminal) -> None:
     from frbcli.studies.comparison_columns import COUPLINGS, MODELS
 
-    name, table = COUPLINGS if couplings else MODELS, found.table().with_speeds_in(terminal.speeds)
+    name, table = COUPLINGS if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
     rows = table.cells(name)
-    if couplings and len({(result.variant.cavitation, result.variant.theory) for result in found.results}) > 1:
+    if couplings and len({(result.variant.cavitation, result.variant.theory) for result in comparison.results}) > 1:
         rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{coupling}", *rest)
-                for result, (coupling, *rest) in zip(found.results, rows, strict=True)]  # fmt: skip
-    terminal.table(found.case.heading, table.heads(name), rows)
+                for result, (coupling, *rest) in zip(comparison.results, rows, strict=True)]  # fmt: skip
+    terminal.table(comparison.case.heading, table.heads(name), rows)
     terminal.sentence(f"{table.legend(name)}.")
-    for result in found.results:
+    for result in comparison.results:
         if result.run.status != "finished":
             terminal.result(f"{result.variant.name}: {result.run.status} at {result.run.t_end_s:.4g} s")
-    if found.status != "finished":
-        terminal.result(f"Not all models were run: {' '.join(found.message.split()) or found.status}")
+    if comparison.status != "finished":
+        terminal.result(f"Not all models were run: {' '.join(comparison.message.split()) or comparison.status}")
 
 
 def beside_measured(
@@ -155,35 +152,35 @@ def beside_measured(
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 
-    places = outputs.check(beside(run_file, "-measured.png"))
+    places = outputs.check(next_to(run_file, "-measured.png"))
     with display(terminal):
         run = read_run(run_file)
-        found = against_measured(run, run_of(file, measurement, terminal), signal)
+        comparison = against_measured(run, run_of(file, measurement, terminal), signal)
     terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
-    _tell(terminal, found)
+    _show(terminal, comparison)
     terminal.emit(
         {
             "command": "compare",
             "run": run_file,
             "measured": file,
-            "events": {"computed": found.computed_events, "measured": found.measured_events},
-            "deviations": documents(DEVIATIONS, found.deviations()),
-            **places.write(terminal, found),
+            "events": {"computed": comparison.computed_events, "measured": comparison.measured_events},
+            "deviations": documents(DEVIATIONS, comparison.deviations()),
+            **places.write(terminal, comparison),
         }
     )
 
 
-def _tell(terminal: Terminal, found: AgainstMeasured) -> None:
+def _show(terminal: Terminal, comparison: AgainstMeasured) -> None:
     from frbcli.studies.against import DEVIATIONS
 
     rows = []
     for kind in KINDS:
         speeds = [
             next((event["speed_Hz"] for event in events if event["kind"] == kind), None)
-            for events in (found.computed_events, found.measured_events)
+            for events in (comparison.computed_events, comparison.measured_events)
         ]
         if any(speed is not None for speed in speeds):
             rows.append((kind, *("-" if speed is None else terminal.speeds.words(speed, 1) for speed in speeds)))
-    where = found.point.replace("_", " ")
+    where = comparison.point.replace("_", " ")
     terminal.table(f"first events of the {where}, rotor speed", ("event", "computed", "measured"), rows)
-    terminal.show("ridges", table_of(DEVIATIONS, found.deviations()))
+    terminal.show("ridges", table_of(DEVIATIONS, comparison.deviations()))

@@ -65,35 +65,35 @@ def command(
     with computing(terminal, case) as shown:
 
         def watch(number: int, tried: Mapping[str, float]) -> None:
-            told = (f"{key} {with_unit(float(f'{value:.5g}'), units.get(key, ''))}" for key, value in tried.items())
-            shown.redraw(f"run {number}: {', '.join(told)}")
+            numbers = (f"{key} {with_unit(float(f'{value:.5g}'), units.get(key, ''))}" for key, value in tried.items())
+            shown.redraw(f"run {number}: {', '.join(numbers)}")
 
-        found = fit(case, measured, vary, limits, signal, watch)
-    _tell(terminal, found)
+        fitted = fit(case, measured, vary, limits, signal, watch)
+    _show(terminal, fitted)
     if save is not None:
         from frbcli.results.files.write import write
 
-        write(save, NEW, found.case.source_text, forced())
+        write(save, NEW, fitted.case.source_text, forced())
         terminal.result(f"case: {save}")
     terminal.emit(
         {
             "command": "fit",
             "case": case.name,
-            "numbers": found.table().documents(),
-            "correlation": found.correlation,
-            "chi": found.chi,
-            "runs": found.runs,
+            "numbers": fitted.table().documents(),
+            "correlation": fitted.correlation,
+            "chi": fitted.chi,
+            "runs": fitted.runs,
             "case_file": save,
-            **places.write(terminal, found),
+            **places.write(terminal, fitted),
         }
     )
 
 
-def _tell(terminal: Terminal, found: Fit) -> None:
-    terminal.show(found.case.heading, found.table())
+def _show(terminal: Terminal, fitted: Fit) -> None:
+    terminal.show(fitted.case.heading, fitted.table())
     terminal.sentence(EXPLANATION)
-    terminal.result(f"{found.runs} runs; residuals of {found.chi:.2g} times the scatter of the measurement.")
-    if found.chi > POOR:
+    terminal.result(f"{fitted.runs} runs; residuals of {fitted.chi:.2g} times the scatter of the measurement.")
+    if fitted.chi > POOR:
         terminal.result("They are larger than the scatter: the case does not describe all of what was measured.")
 
 
@@ -101,7 +101,7 @@ def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]
     """Bounds by keys, in SI: each is read as a value of the case."""
     from frbcli.case.reading.listing import values
 
-    found = {}
+    bounds_of = {}
     for text in given:
         key, _, span = text.partition("=")
         low, comma, high = span.partition(",")
@@ -113,5 +113,5 @@ def _bounds(case: Case, given: tuple[str, ...]) -> dict[str, tuple[float, float]
             read.append(next((v.value for v in values(changed) if v.key == key), None))
         if not all(isinstance(value, float) for value in read):
             raise click.UsageError(f"--bounds {text}: {key} is no number of the case.")
-        found[key.strip()] = (float(read[0] or 0.0), float(read[1] or 0.0))
-    return found
+        bounds_of[key.strip()] = (float(read[0] or 0.0), float(read[1] or 0.0))
+    return bounds_of

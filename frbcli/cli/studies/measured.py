@@ -1,4 +1,4 @@
-"""Options that say where a motion stands in the file of a measurement, and the run that it makes."""
+"""Options that say which columns of a measurement hold a motion, and the run that it makes."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ def measured_options(function: Function) -> Function:
         "time-unit": ({"type": _UNITS["time"]}, "Unit of the times. [of the file, or 1 s]"),
         "speed-unit": ({"type": _UNITS["speed"]}, "Unit of the rotor speed. [of the file, or 1 Hz]"),
     }
-    told: Any = function
-    told = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
-                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(told)  # fmt: skip
+    command: Any = function
+    command = click.option("--clearance", "measurement", metavar="LENGTH", type=LENGTH_OPTION, callback=_measurement,
+                        help='Bearing clearance, to which levels and events refer, e.g. "35 um".')(command)  # fmt: skip
     for name, (kind, meaning) in reversed(named.items()):  # read before the clearance, which makes one of all
         kind |= {"is_eager": True, "expose_value": False, "callback": _remember}
-        told = click.option(f"--{name}", help=meaning, **kind)(told)
-    return told  # type: ignore[no-any-return]
+        command = click.option(f"--{name}", help=meaning, **kind)(command)
+    return command  # type: ignore[no-any-return]
 
 
 def show_columns(path: Path, terminal: Terminal) -> None:
@@ -90,7 +90,7 @@ def _measurement(context: click.Context, _: click.Parameter, clearance: float | 
     for names in EITHER:
         several = [f"--{name.replace('_', '-')}" for name in names if given[name] is not None]
         if len(several) > 1:
-            raise click.UsageError(f"{' and '.join(several)} tell the same of the measurement: give one of them.")
+            raise click.UsageError(f"{' and '.join(several)} state the same quantity: give one of them.")
     return Measurement(
         x=given["x"],
         clearance=clearance,

@@ -59,12 +59,12 @@ class Machines:
     below: float | None
 
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
-        """The machines. others: keys with several values, or a list of points, beside which nothing can scatter. Raises
+        """The machines. others: keys with several values, or a list of points, with which nothing can scatter. Raises
         InputError."""
         from frbcli.studies.sweep.distributions import read_correlation, samples
 
         if others:
-            problem, remedy = "gives several values beside keys that scatter.", "Sweep each of its values by itself."
+            problem, remedy = "gives several values while other keys scatter.", "Sweep each of its values by itself."
             raise input_error("sweep", "--set", "", problem, remedy)
         correlations = dict(map(read_correlation, self.correlations))
         return samples(distributions, self.samples, correlations, self.seed)
@@ -87,7 +87,7 @@ class Machines:
 @click.option("--list", "list_file", type=INPUT, metavar="POINTS.csv",
               help="Points one by one: keys in the first line, values below.")  # fmt: skip
 @click.option("-o", "--output", type=OUTPUT_FOLDER, metavar="DIR", help="Directory of all results. [CASE-sweep, here]")
-@click.option("--stability", is_flag=True, help="Compute the threshold speed alone, in place of a run-up.")
+@click.option("--stability", is_flag=True, help="Compute the threshold speed alone, instead of a run-up.")
 @click.option("--no-runs", is_flag=True, help="Keep no run files.")
 @click.option("--format", "table_format", default="csv", show_default=True, metavar="FORMAT",
               help="Format of the table, csv or parquet; parquet needs the extra frbcli[parquet].")  # fmt: skip
@@ -130,17 +130,17 @@ def command(
     method = "stability" if stability else "runup"
     workers = Workers(pool.backend, pool.jobs, pool.scheduler)
     with display(terminal) as shown:
-        found = sweep(case, points, folder, method, not kept.no_runs, workers, _progress(shown))
-    _report(found, terminal)
-    write_table(found, table, kept.table_format, forced())
+        swept = sweep(case, points, folder, method, not kept.no_runs, workers, _progress(shown))
+    _report(swept, terminal)
+    write_table(swept, table, kept.table_format, forced())
     terminal.result(f"table: {table}")
-    document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": found.table().documents()}
-    if distributions and any(point.status != "interrupted" for point in found.points):
-        document["scatter"], drawn = of_machines(found, machines.below, target if kept.picture else None, terminal)
+    document: dict[str, Any] = {"command": "sweep", "case": case.name, "points": swept.table().documents()}
+    if distributions and any(point.status != "interrupted" for point in swept.points):
+        document["scatter"], drawn = of_machines(swept, machines.below, target if kept.picture else None, terminal)
     else:
-        drawn = _picture(found, target, terminal) if kept.picture else None
+        drawn = _picture(swept, target, terminal) if kept.picture else None
     terminal.emit({**document, "table": table, "picture": drawn})
-    return _exit_code(found)
+    return _exit_code(swept)
 
 
 def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
@@ -148,17 +148,17 @@ def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
     from frbcli.studies.sweep.distributions import read_distribution
 
     others: list[str] = []
-    found: dict[str, Distribution] = {}
+    distributions: dict[str, Distribution] = {}
     for setting in settings:
         key, _, text = setting.partition("=")
         distribution = read_distribution(key.strip(), text)
         if distribution is None:
             others.append(setting)
-        elif key.strip() in found:
+        elif key.strip() in distributions:
             raise input_error("sweep", "--set", setting, "sets a key a second time.", "Give it one distribution.")
         else:
-            found[key.strip()] = distribution
-    return others, list(found.values())
+            distributions[key.strip()] = distribution
+    return others, list(distributions.values())
 
 
 def _check_places(table: Path, picture: Path | None) -> None:
@@ -214,14 +214,14 @@ def _progress(shown: Display) -> Callable[[SweepPoint, int, int], None]:
     began = time.monotonic()
     before: list[int] = []  # its first entry: the points that an earlier call had computed
 
-    def tell(point: SweepPoint, done: int, whole: int) -> None:
+    def observe(point: SweepPoint, done: int, whole: int) -> None:
         before.append(done - 1)
         computed = done - before[0]
         left = (time.monotonic() - began) / computed * (whole - done)
-        told = point.message or _result(point, shown.speeds)
-        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {told}")
+        outcome = point.message or _result(point, shown.speeds)
+        shown.line(f"{done}/{whole}  {left:.0f} s left  {_named(point)}: {outcome}")
 
-    return tell
+    return observe
 
 
 def _named(point: SweepPoint) -> str:
@@ -233,43 +233,43 @@ def _result(point: SweepPoint, unit: SpeedUnit) -> str:
     return point.status if event is None else f"{event['kind']} {unit.words(event['speed_Hz'], 1)}"
 
 
-def _report(found: Sweep, terminal: Terminal) -> None:
-    table = found.table().with_speeds_in(terminal.speeds)
-    terminal.table(found.case.heading, table.heads(), table.cells()[:LONGEST_TABLE])
-    if len(found.points) > LONGEST_TABLE:
-        terminal.result(f"{LONGEST_TABLE} of {len(found.points)} points; the table's file and --json give all.")
-    failed = [point for point in found.points if point.status not in WHOLE]
+def _report(swept: Sweep, terminal: Terminal) -> None:
+    table = swept.table().with_speeds_in(terminal.speeds)
+    terminal.table(swept.case.heading, table.heads(), table.cells()[:LONGEST_TABLE])
+    if len(swept.points) > LONGEST_TABLE:
+        terminal.result(f"{LONGEST_TABLE} of {len(swept.points)} points; the table's file and --json give all.")
+    failed = [point for point in swept.points if point.status not in WHOLE]
     if any(point.status == "interrupted" for point in failed):
         terminal.remark("Interrupted; the same command resumes the sweep.")
     elif failed:
         terminal.result(
-            f"{len(failed)} of {len(found.points)} points did not finish; the table's file has the reasons."
+            f"{len(failed)} of {len(swept.points)} points did not finish; the table's file has the reasons."
         )
 
 
-def _picture(found: Sweep, target: Path, terminal: Terminal) -> Path | None:
+def _picture(swept: Sweep, target: Path, terminal: Terminal) -> Path | None:
     from frbcli.plot.studies.sweep import can_draw, sweep_figure
 
-    if not can_draw(found):
+    if not can_draw(swept):
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
         return None
-    return draw(terminal, lambda: sweep_figure(found), target)
+    return draw(terminal, lambda: sweep_figure(swept), target)
 
 
-def _exit_code(found: Sweep) -> int:
-    statuses = {point.status for point in found.points}
+def _exit_code(swept: Sweep) -> int:
+    statuses = {point.status for point in swept.points}
     if "interrupted" in statuses:
         return EXIT_CODES["interrupted"]
     return 0 if statuses <= set(WHOLE) else ENDED_EARLY
 
 
 def of_machines(
-    found: Sweep, below_Hz: float | None, target: Path | None, terminal: Terminal
+    swept: Sweep, below_Hz: float | None, target: Path | None, terminal: Terminal
 ) -> tuple[dict[str, Any], Path | None]:
     """Tables and picture of the scatter, and its part of the JSON document."""
     from frbcli.studies.sweep.scatter import scatter
 
-    seen, unit = scatter(found, below_Hz), terminal.speeds
+    seen, unit = scatter(swept, below_Hz), terminal.speeds
     rows = [(f"{percent:g} %", _within(speed, unit)) for percent, speed in seen.percentiles]
     terminal.table(f"{seen.count} machines", ("share", "whirl at or below"), rows)
     if seen.sensitivities:
@@ -278,15 +278,15 @@ def of_machines(
         ])
         terminal.result(f"A linear model explains {100.0 * seen.explained:.0f} % of the variance of the speed.")
     low, high = (100.0 * limit for limit in seen.interval)
-    told = f"{100.0 * seen.share:.1f} % of the machines whirl below {unit.words(seen.below_Hz)}"
-    terminal.result(f"{told} (95 % interval {low:.1f} to {high:.1f} %).")
+    share = f"{100.0 * seen.share:.1f} % of the machines whirl below {unit.words(seen.below_Hz)}"
+    terminal.result(f"{share} (95 % interval {low:.1f} to {high:.1f} %).")
     if seen.left_out:
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
     drawn = None
     if target is not None:
         from frbcli.plot.studies.sweep import scatter_figure
 
-        drawn = draw(terminal, lambda: scatter_figure(found.case.heading, seen), target)
+        drawn = draw(terminal, lambda: scatter_figure(swept.case.heading, seen), target)
     percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]
     document = asdict(seen) | {"percentiles": percentiles}
     del document["speeds_Hz"]

@@ -1,7 +1,7 @@
 """Curves of Hopf points and of folds in a plane of two numbers, see planes.py.
 
-Both are curves of solutions as in continuation.py, with one equation more than the resting positions or the cycles
-that lie on them. That a matrix A is singular is asked by g = 0 of
+Both are curves of solutions as in continuation.py, with one equation more than the static equilibria or the cycles that
+lie on them. That a matrix A is singular is asked by g = 0 of
 
     [A  b; c^H 0] [v; g] = [0; 1],
 
@@ -9,8 +9,7 @@ which is regular on the curve if b and c are near to the vectors that A has no p
 Bifurcations of Dynamical Equilibria, 2000). Of a Hopf point A = 1 - T_1 (dg/du + i nu dg/du' + kappa), as small as the
 films; of a fold, the derivative of the harmonic balance by the motion and its frequency at a constant speed.
 
-The unknowns end with both numbers over their largest values; that of the speed is the pace.
-"""
+The unknowns end with both numbers over their largest values, which for the speed is the pace. """
 
 from __future__ import annotations
 
@@ -132,11 +131,11 @@ def fold_equations(plane: MapPlane, y: Array) -> Equations:
 def _nearly_null(matrix: Array) -> Array:
     """The unit vector of which a nearly singular matrix makes least, by inverse iteration."""
     factors = lu_factor(matrix)
-    found = np.ones(len(matrix))
-    for side in (1, 0, 1, 0):  # of the transposed matrix and of its own: that of the smallest singular value
-        found = lu_solve(factors, found, trans=side)
-        found /= np.linalg.norm(found)
-    return np.asarray(found)
+    vector = np.ones(len(matrix))
+    for side in (1, 0, 1, 0):  # of the transposed matrix and of its own, for the smallest singular value
+        vector = lu_solve(factors, vector, trans=side)
+        vector /= np.linalg.norm(vector)
+    return np.asarray(vector)
 
 
 def follow_both(
@@ -169,38 +168,38 @@ def _followed(
     fitted: Callable[[Place], Place | None],
     ends: Callable[[Place], str],
 ) -> tuple[list[Place], str]:
-    found: list[Place] = []
+    places: list[Place] = []
     length = STRIDES.first
     for _ in range(STRIDES.points):
         stepped = partial(_stepped, equations, place, fitted)
         there, length = halved_until(stepped, length, STRIDES.shortest)
         if there is None:
-            return found, "The steps became too short."
+            return places, "The steps became too short."
         if not (np.all(there.y[-2:] >= corners[0]) and np.all(there.y[-2:] <= corners[1])):
-            return [*found, _on_border(equations, there, corners)], ""
-        found.append(there)
+            return [*places, _on_border(equations, there, corners)], ""
+        places.append(there)
         if note := ends(there):
-            return found, note
+            return places, note
         if len(place.y) == len(there.y):
             length = next_length(length, STRIDES, place, there)
         place = there
-    return found, f"It was followed over {STRIDES.points} points and goes on."
+    return places, f"It was followed over {STRIDES.points} points and goes on."
 
 
 def _on_border(equations: Callable[[Array], Equations], there: Place, corners: tuple[Array, Array]) -> Place:
     """The place next to one outside of the rectangle in which the curve leaves it."""
     at, limits = there.y[-2:], np.clip(there.y[-2:], *corners)
     number = int(np.argmax(np.abs(at - limits))) - 2
-    found = at_value(equations(there.y), there, limits[number], number)
-    return there if found is None else found
+    border = at_value(equations(there.y), there, limits[number], number)
+    return there if border is None else border
 
 
 def _stepped(
     equations: Callable[[Array], Equations], place: Place, fitted: Callable[[Place], Place | None], length: float
 ) -> Place | None:
     try:
-        found = step_from(equations(place.y), place, length)
-        return None if found is None else fitted(oriented(found, place.tangent))
+        ahead = step_from(equations(place.y), place, length)
+        return None if ahead is None else fitted(oriented(ahead, place.tangent))
     except Unreachable:
         return None
 
@@ -214,8 +213,8 @@ def fitted(plane: MapPlane, equations: Callable[[Array], Equations], place: Plac
             return place
         more = min(MOST_HARMONICS, harmonics + max(2, harmonics // 3))
         y, tangent = (with_harmonics(vector, machine.size, more, 3) for vector in (place.y, place.tangent))
-        found = corrected(equations(y), y, tangent / np.linalg.norm(tangent))
-        if found is None:
+        solved = corrected(equations(y), y, tangent / np.linalg.norm(tangent))
+        if solved is None:
             return None
-        place = oriented(found, tangent)
+        place = oriented(solved, tangent)
     return place

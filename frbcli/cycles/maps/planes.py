@@ -27,7 +27,7 @@ FAMILIES = 8  # that are kept, of values of the second number
 class MapPlane(ABC):
     """over, unit: name and unit of the first number, which times `scale` is in it; second: the machines over the second
     number; corners: the lowest and the highest of both numbers; by_difference: places of the numbers from the end that
-    derivatives are differences by; shaded: values of the second number at which the growth at rest is told."""
+    derivatives are differences by; shaded: values of the second number at which the growth at rest is computed."""
 
     by_difference: ClassVar[tuple[int, ...]]
     shaded: ClassVar[int]
@@ -41,7 +41,7 @@ class MapPlane(ABC):
 
     @abstractmethod
     def cycle(self, y: Array) -> Array:
-        """The unknowns with the speed of the rotor over the pace in place of both numbers."""
+        """The unknowns with the speed of the rotor over the pace instead of both numbers."""
 
     @abstractmethod
     def walk(self, share: float) -> Walk:
@@ -83,7 +83,7 @@ class KeyPlane(MapPlane):
     def __init__(self, first: Family, second: Family, lowest: tuple[float, float]) -> None:
         super().__init__(first.over, first.unit, first.high, second, (np.array(lowest), np.ones(2)))
         self._omega, self._lowest = first.speed, lowest[0]
-        self._family = lru_cache(FAMILIES)(lambda share: first.beside(second.setting(share)))
+        self._family = lru_cache(FAMILIES)(lambda share: first.with_setting(second.setting(share)))
 
     def machine(self, y: Array) -> Machine:
         """See MapPlane."""

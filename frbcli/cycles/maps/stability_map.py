@@ -1,5 +1,5 @@
 """A stability map: the curves of Hopf points and of folds over two numbers, the rotor speed and one of the case or two
-of the case, and where the resting position is unstable."""
+of the case, and where the static equilibrium is unstable."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ from frbcli.html import Tabular
 BAUTIN, CUSP = "bautin", "cusp"
 ACROSS = 200  # values of the first number at which the growth at rest is evaluated
 KNOWN = 4e-3  # distance in the plane, over its size, and of the frequency: a point lies on a curve that is known
-SMALL = 0.04  # amplitude over the clearance below which a curve of folds has come to that of Hopf points
+SMALL = 0.04  # amplitude over the clearance below which a curve of folds has reached the curve of Hopf points
 SHARP = 1e-6  # of a step: how closely a cusp or a change of the criticality is located
 MET = "It meets the curve of Hopf points."
 
@@ -81,7 +81,7 @@ class MapRow:
 @dataclass(frozen=True)
 class Growth:
     """values: (V,) of the second number; over: (S,) of the first; rate: (V, S) 1/s, of the whirl that grows fastest at
-    rest, NaN where no resting position is known."""
+    rest, NaN where no static equilibrium is known."""
 
     values: Array
     over: Array
@@ -117,8 +117,8 @@ class StabilityMap(Tabular):
 
 @dataclass(frozen=True)
 class Across:
-    """A first number of a map in place of the speed: a key from `low` to `high`, text with units, above zero, at a
-    speed of the rotor in Hz."""
+    """A first number of a map instead of the speed: a key from `low` to `high`, text with units, above zero, at a speed
+    of the rotor in Hz."""
 
     key: str
     low: str
@@ -150,7 +150,7 @@ def stability_map(
     observe : callable, optional
         Called with the number of each of them and their number.
     across : Across, optional
-        Another number, in place of the speed.
+        Another number, instead of the speed.
 
     Returns
     -------
@@ -219,7 +219,7 @@ def _row(plane: MapPlane, share: float, begun: _Begun) -> MapRow:
     try:
         walk = plane.walk(share)
     except (NotConverged, Unreachable) as error:
-        return MapRow(value, (), str(error) or "The resting positions could not be followed.")
+        return MapRow(value, (), str(error) or "The static equilibria could not be followed.")
     special: list[SpecialPoint] = []
     for number, hopf in enumerate(walk.resting.hopf):
         here = hopf.equilibrium
@@ -258,32 +258,32 @@ def _new_curve(plane: MapPlane, known: Sequence[MapCurve], kind: str, start: Arr
         return MET if kind == FOLD and amplitude(plane.machine(place.y), plane.cycle(place.y)) < SMALL else ""
 
     if kind == HOPF:
-        found = follow_both(equations, start, plane.corners)
+        both = follow_both(equations, start, plane.corners)
     else:
-        found = follow_both(equations, start, plane.corners, partial(fitted, plane, equations), met)
-    if found is None:
+        both = follow_both(equations, start, plane.corners, partial(fitted, plane, equations), met)
+    if both is None:
         return []
-    points = [_point(plane, kind, place.y) for place in found.places]
+    points = [_point(plane, kind, place.y) for place in both.places]
     between = [
         _special_between(plane, equations, kind, pair, ends)
-        for pair, ends in zip(itertools.pairwise(found.places), itertools.pairwise(points), strict=True)
+        for pair, ends in zip(itertools.pairwise(both.places), itertools.pairwise(points), strict=True)
     ]
-    told = [points[0]]
+    members = [points[0]]
     for special, point in zip(between, points[1:], strict=True):
-        told += [*special, point]
-    return [MapCurve(kind, tuple(told), tuple(filter(None, found.notes)))]
+        members += [*special, point]
+    return [MapCurve(kind, tuple(members), tuple(filter(None, both.notes)))]
 
 
 def _point(plane: MapPlane, kind: str, y: Array) -> MapPoint:
     machine, here = plane.machine(y), plane.cycle(y)
     nu, omega = float(here[-2] * machine.pace), float(here[-1] * machine.pace)
-    told = (float(y[-2] * plane.scale), float(y[-1] * plane.second.high), hertz(omega), hertz(nu))
+    position = (float(y[-2] * plane.scale), float(y[-1] * plane.second.high), hertz(omega), hertz(nu))
     if kind == FOLD:
-        return MapPoint(*told, eccentricities(machine, here))
+        return MapPoint(*position, eccentricities(machine, here))
     rest = settled(MachineCourse(machine), here[:-2], here[-1])
-    found = lyapunov_coefficient(hopf_at(rest, True, nu))
+    lyapunov = lyapunov_coefficient(hopf_at(rest, True, nu))
     d = rest.u[: 2 * machine.film_count].reshape(-1, 2)
-    return MapPoint(*told, np.hypot(d[:, 0], d[:, 1]), criticality_of(found), found.value.real)
+    return MapPoint(*position, np.hypot(d[:, 0], d[:, 1]), criticality_of(lyapunov), lyapunov.value.real)
 
 
 def _special_between(
@@ -298,27 +298,27 @@ def _special_between(
     if kind == HOPF:
         if not ends[0].lyapunov * ends[1].lyapunov < 0.0:
             return []
-        found = _zero(equations, pair, lambda one: _point(plane, HOPF, one.y).lyapunov)
+        zero = _zero(equations, pair, lambda one: _point(plane, HOPF, one.y).lyapunov)
         named = BAUTIN
     else:
         along = place.tangent[-2:]
         if len(place.y) != len(other.y) or not float(along @ other.tangent[-2:]) < 0.0:
             return []
-        found = _zero(equations, pair, lambda one: float(along @ one.tangent[-2:]))
+        zero = _zero(equations, pair, lambda one: float(along @ one.tangent[-2:]))
         named = CUSP
-    if found is None:
+    if zero is None:
         return []
-    return [replace(_point(plane, kind, found.y), criticality=None, lyapunov=math.nan, kind=named)]
+    return [replace(_point(plane, kind, zero.y), criticality=None, lyapunov=math.nan, kind=named)]
 
 
 def _zero(
-    equations: Callable[[Array], Equations], pair: tuple[Place, Place], told: Callable[[Place], float]
+    equations: Callable[[Array], Equations], pair: tuple[Place, Place], criterion: Callable[[Place], float]
 ) -> Place | None:
     """Where a number of the places between two changes its sign."""
     place, other = pair
     length = float((other.y - place.y) @ place.tangent)
-    known = {0.0: told(place), length: told(other)}
-    return located(equations(place.y), place, length, told, SHARP * abs(length), known)
+    known = {0.0: criterion(place), length: criterion(other)}
+    return located(equations(place.y), place, length, criterion, SHARP * abs(length), known)
 
 
 def _lies_on(plane: MapPlane, curve: MapCurve, point: MapPoint) -> bool:

@@ -109,7 +109,7 @@ def loads_along(machine: Machine, motion: Complex, nu: float, omega: float) -> t
 
 
 def left_out(machine: Machine, y: Array) -> float:
-    """What the harmonics beyond those of y would have: the largest that one of the next four gets from the loads."""
+    """Largest amplitude that the loads give to one of the four harmonics after the last one of y."""
     c, h = machine.size, (len(y) - 2) // machine.size // 2
     nu, omega = float(y[-2] * machine.pace), float(y[-1] * machine.pace)
     motion = unpacked(y[:-2], c)
@@ -133,8 +133,8 @@ def _derivative(loads: Loads, h: int, nu: float) -> Complex:
     by_u, by_v = _both_signs(loads.by_u, 2 * h), _both_signs(loads.by_v, 2 * h)
     k, order = np.arange(h + 1)[:, None], np.arange(-h, h + 1)[None, :]
     place = k - order + 2 * h
-    found = by_u[place] + (1j * nu * order)[..., None, None] * by_v[place]
-    return np.ascontiguousarray(found.transpose(0, 2, 1, 3))
+    tensor = by_u[place] + (1j * nu * order)[..., None, None] * by_v[place]
+    return np.ascontiguousarray(tensor.transpose(0, 2, 1, 3))
 
 
 def _both_signs(samples: Array, h: int) -> Complex:

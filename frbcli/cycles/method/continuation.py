@@ -91,10 +91,10 @@ def corrected(equations: Equations, guess: Array, tangent: Array) -> Place | Non
 
 def reached(equations: Equations, guess: Array, tangent: Array) -> Place:
     """As corrected. Raises Unreachable where the point is not found."""
-    found = corrected(equations, guess, tangent)
-    if found is None:
+    place = corrected(equations, guess, tangent)
+    if place is None:
         raise Unreachable
-    return found
+    return place
 
 
 def unit_vector(size: int, number: int = -1) -> Array:
@@ -114,10 +114,10 @@ def oriented(place: Place, direction: Array) -> Place:
 def step_from(equations: Equations, place: Place, length: float, guess: Array | None = None) -> Place | None:
     """The point at a length along the tangent; None if it is not found, if the curve turns too much on the way, or if
     the step has come to another part of the curve that passes close by. guess: of it, at this length."""
-    found = corrected(equations, place.y + length * place.tangent if guess is None else guess, place.tangent)
-    if found is None or (found.side * place.side < 0 and length > CLOSEST):
+    ahead = corrected(equations, place.y + length * place.tangent if guess is None else guess, place.tangent)
+    if ahead is None or (ahead.side * place.side < 0 and length > CLOSEST):
         return None
-    return found if abs(found.tangent @ place.tangent) >= SHARPEST else None
+    return ahead if abs(ahead.tangent @ place.tangent) >= SHARPEST else None
 
 
 def halved_until(
@@ -125,11 +125,11 @@ def halved_until(
 ) -> tuple[Found | None, float]:
     """The place that a step reaches, and the length of the step, which is halved until it reaches one or is not above
     `shortest`."""
-    found = stepped(length)
-    while found is None and length > shortest:
+    place = stepped(length)
+    while place is None and length > shortest:
         length *= 0.5
-        found = stepped(length)
-    return found, length
+        place = stepped(length)
+    return place, length
 
 
 def next_length(length: float, strides: Strides, before: Place, after: Place) -> float:
@@ -145,17 +145,17 @@ def follow(equations: Equations, start: Place, strides: Strides) -> Iterator[tup
     or there are enough of them."""
     place, length = start, strides.first
     for _ in range(strides.points):
-        found, length = halved_until(partial(step_from, equations, place), length, strides.shortest)
-        if found is None:
+        ahead, length = halved_until(partial(step_from, equations, place), length, strides.shortest)
+        if ahead is None:
             return
-        yield found, length
-        length = next_length(length, strides, place, found)
-        place = found
+        yield ahead, length
+        length = next_length(length, strides, place, ahead)
+        place = ahead
 
 
-def _between(found: dict[float, Place | None], at: float) -> Array | None:
+def _between(places: dict[float, Place | None], at: float) -> Array | None:
     """On the chord between the nearest points on both sides: of the same length along the tangent."""
-    known = {one: place.y for one, place in found.items() if place is not None}
+    known = {one: place.y for one, place in places.items() if place is not None}
     below = max((one for one in known if one < at), default=None)
     above = min((one for one in known if one > at), default=None)
     if below is None or above is None:
@@ -167,32 +167,32 @@ def located(
     equations: Equations,
     place: Place,
     length: float,
-    told: Callable[[Place], float],
+    criterion: Callable[[Place], float],
     tolerance: float,
     known: Mapping[float, float] = MappingProxyType({}),
 ) -> Place | None:
-    """The place within a step of `length` from one at which a number that is told of places changes its sign, known to
-    a length `tolerance` along the tangent. known: the number at some lengths. None where it does not change its sign,
-    or the curve cannot be followed."""
+    """The place within a step of `length` from one at which `criterion` changes its sign, known to a length `tolerance`
+    along the tangent. known: the criterion at some lengths. None where it does not change its sign, or the curve cannot
+    be followed."""
     from scipy.optimize import brentq
 
-    found: dict[float, Place | None] = {0.0: place}
+    places: dict[float, Place | None] = {0.0: place}
     numbers = dict(known)
 
     def at(along: float) -> Place:
-        if along not in found:
+        if along not in places:
             other = step_from(equations, place, along)
-            if other is None and (near := _between(found, along)) is not None:
+            if other is None and (near := _between(places, along)) is not None:
                 other = step_from(equations, place, along, near)
-            found[along] = None if other is None else oriented(other, place.tangent)
-        there = found[along]
+            places[along] = None if other is None else oriented(other, place.tangent)
+        there = places[along]
         if there is None:
             raise Unreachable
         return there
 
     def number(along: float) -> float:
         if along not in numbers:
-            numbers[along] = told(at(along))
+            numbers[along] = criterion(at(along))
         return numbers[along]
 
     try:
@@ -214,5 +214,5 @@ def at_value(equations: Equations, near: Place, value: float, number: int = -1) 
     found."""
     guess = near.y + (value - near.y[number]) / near.tangent[number] * near.tangent
     guess[number] = value
-    found = corrected(equations, guess, unit_vector(len(guess), number))
-    return None if found is None else oriented(found, near.tangent)
+    place = corrected(equations, guess, unit_vector(len(guess), number))
+    return None if place is None else oriented(place, near.tangent)

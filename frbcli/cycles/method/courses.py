@@ -1,9 +1,8 @@
 """What rest and cycles of a machine are followed over: the speed of its rotor, or another number of the case.
 
-The unknowns of rest are y = (u, share), those of a cycle y = (motion, nu / pace, share), with the number over its
-largest value as the share. Equations are those of one machine; a course makes of them the equations over its number,
-along which the machine may change.
-"""
+The unknowns of rest are y = (u, share), of a cycle y = (motion, nu / pace, share); the share is the number over its
+largest value. Equations hold for one machine; a course turns them into equations over its number, along which the
+machine may change. """
 
 from __future__ import annotations
 
@@ -25,18 +24,18 @@ MachineAt = Callable[[float], Machine]  # by the share
 AtItsHeat = Callable[[Array, Array, float], Machine]
 
 # Unknowns of a cycle up to which harmonics are added for the trivial multiplier alone, of one film and of several; the
-# same at a fold, beside which a film may be nearly at rest for a moment.
+# same at a fold, next to which a film may be nearly at rest for a moment.
 MOST_UNKNOWNS, MOST_AT_FOLD = (1100, 450), (2400, 450)
 DIFFERENCE = 1e-5  # of the share, which is of the order of 1
-NEAR = 1e-3  # of it: between the three machines that stand for all next to a value
+NEAR = 1e-3  # of it: between the three machines that represent all near a value
 KEPT = 64  # machines
 
 
 class MachineCourse:
-    """The speed of a rotor, over which the machine stays the same. over, unit: name and unit of the number;
-    machine_at: the machine at a share, as far as it is that of the number alone; at_its_heat: gives the machine at the
-    temperatures that moments of a motion balance, u and its rate (n, c), at a speed in rad/s, None without heat;
-    most_at_fold: see MOST_AT_FOLD."""
+    """The speed of a rotor, over which the machine stays the same. over, unit: name and unit of the number; machine_at:
+    the machine at a share, as far as the number alone determines it; at_its_heat: gives the machine at the temperatures
+    that moments of a motion balance, u and its rate (n, c), at a speed in rad/s, None without heat; most_at_fold: see
+    MOST_AT_FOLD."""
 
     over, unit = SPEED, "Hz"
     at_its_heat: AtItsHeat | None = None
@@ -87,13 +86,13 @@ class MachineCourse:
         return self._states
 
     def seen_states(self, _machine: Machine) -> StateSpace:
-        """Those of its states whose multipliers those of its cycles are."""
+        """The states whose multipliers are the multipliers of its cycles."""
         return self._seen_states
 
-    def multipliers(self, found: Multipliers, _y: Array, _slope: Callable[[Machine], Array]) -> Multipliers:
-        """The multipliers of a cycle y with those of what follows its mean, as temperatures do. slope: (n, n) of a
-        machine, that of its equations by the motion."""
-        return found
+    def multipliers(self, fast: Multipliers, _y: Array, _slope: Callable[[Machine], Array]) -> Multipliers:
+        """The multipliers of a cycle y, with the ones of states that follow its mean, such as temperatures. slope:
+        gives the derivative (n, n) of a machine's equations by the motion."""
+        return fast
 
     @cached_property
     def _states(self) -> StateSpace:
@@ -130,11 +129,11 @@ class Changing(MachineCourse):
         return at
 
     def equations_at(self, of: EquationsOf, near: Array) -> Equations:
-        """See MachineCourse: those of one machine."""
+        """Equations of one machine, see MachineCourse."""
         return self.staying(of, float(near[-1]))
 
     def equations_near(self, of: EquationsOf, near: Array) -> Equations:
-        """See MachineCourse: parabolas through those of three machines, at the value and on both sides."""
+        """Parabolas through the equations of three machines, at the value and on both sides, see MachineCourse."""
         last = float(near[-1])
         staying = [self.staying(of, last + off) for off in (-NEAR, 0.0, NEAR)]
 
@@ -158,7 +157,7 @@ class Changing(MachineCourse):
         return state_space(machine)
 
     def staying(self, of: EquationsOf, share: float) -> Equations:
-        """The equations while the machine is that of a share."""
+        """The equations of the machine at a fixed share."""
         asked = of(self.machine_at(share))
 
         def at(y: Array) -> tuple[Array, Array]:

@@ -46,7 +46,7 @@ class Lyapunov:
 
     @property
     def sign(self) -> int:
-        """1: subcritical, -1: supercritical, 0: that cannot be told."""
+        """1: subcritical, -1: supercritical, 0: uncertain."""
         real = self.value.real
         return 0 if abs(real) <= self.uncertainty else 1 if real > 0.0 else -1
 
@@ -59,9 +59,9 @@ def lyapunov_coefficient(hopf: HopfPoint) -> Lyapunov:
     d = hopf.equilibrium.u[: 2 * machine.film_count].reshape(-1, 2)
     gap = 1.0 - float(np.max(np.hypot(d[:, 0], d[:, 1])))
     if not smooth:
-        found = [_at_radius(hopf, radius * gap) for radius in TABULATED]
-        real = [value.real for value in found]
-        return Lyapunov(found[len(found) // 2], max(real) - min(real))
+        values = [_at_radius(hopf, radius * gap) for radius in TABULATED]
+        real = [value.real for value in values]
+        return Lyapunov(values[len(values) // 2], max(real) - min(real))
     rows = [_at_radius(hopf, SMOOTH * gap * 0.5**level) for level in range(LEVELS)]
     changed = 0.0
     while len(rows) > 1:  # errors go with r^2, r^4, ...

@@ -1,4 +1,4 @@
-"""Resting positions over a number as a curve, the eigenvalues there, and the Hopf points where a whirl is born.
+"""Static equilibria over a number as a curve, the eigenvalues there, and the Hopf points where a whirl is born.
 
 As in frbcli/linear, but with the rings' speeds as unknowns of their own, and as states that the whirl moves.
 """
@@ -37,8 +37,8 @@ SHARP = 1e-12  # relative tolerance of the number at a Hopf point
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A resting position. machine: which rests; u: (c,) see machine.py; omega: speed of the rotor, rad/s; eigenvalues:
-    (N,) 1/s; value: of the number that the curve goes over, over its largest one."""
+    """A static equilibrium. machine: which rests; u: (c,) see machine.py; omega: speed of the rotor, rad/s;
+    eigenvalues: (N,) 1/s; value: of the number that the curve goes over, over its largest one."""
 
     machine: Machine
     u: Array
@@ -71,7 +71,7 @@ class HopfPoint:
 
 @dataclass(frozen=True)
 class Resting:
-    """The curve of resting positions, ascending in the number; its Hopf points; why it ends before the lowest value."""
+    """The curve of static equilibria, ascending in the number; its Hopf points; why it ends before the lowest value."""
 
     points: tuple[Equilibrium, ...]
     hopf: tuple[HopfPoint, ...]
@@ -79,7 +79,7 @@ class Resting:
 
 
 def equations(machine: Machine) -> Equations:
-    """Equations of a resting position y = (u, Omega / pace), see continuation.py."""
+    """Equations of a static equilibrium y = (u, Omega / pace), see continuation.py."""
     passing = transfer(machine, np.zeros(1), machine.pace)  # at rest nothing depends on the speed but the films
     through, kappa = passing.values[0].real, passing.kappa[0].real
 
@@ -94,13 +94,13 @@ def equations(machine: Machine) -> Equations:
 
 
 def resting_curve(system: System, machine: Machine, slowest: float, fastest: float) -> Resting:
-    """Resting positions between two speeds in rad/s, from the fastest on downwards. Raises NotConverged without one."""
+    """Static equilibria between two speeds in rad/s, from the fastest on downwards. Raises NotConverged without one."""
     near = at_rest(machine, resting_position(system, fastest))
     return resting_along(MachineCourse(machine), near, slowest / machine.pace, fastest / machine.pace)
 
 
 def resting_along(course: MachineCourse, near: Array, lowest: float, highest: float = 1.0) -> Resting:
-    """Resting positions along a course, between two shares; near: (c,) u near to the one at the highest. Raises
+    """Static equilibria along a course, between two shares; near: (c,) u near to the one at the highest. Raises
     Unreachable."""
     asked = course.equations(equations)
     down = -unit_vector(len(near) + 1)
@@ -117,19 +117,19 @@ def resting_along(course: MachineCourse, near: Array, lowest: float, highest: fl
         places[-1] = end
     else:
         lost = f"{places[-1].y[-1] * course.scale:.4g} {course.unit}".rstrip()
-        note = f"The resting positions could not be followed below {lost}."
+        note = f"The static equilibria could not be followed below {lost}."
     points = tuple(equilibrium(course, place) for place in reversed(places))
     return Resting(points, hopf_points(course, points), note)
 
 
 def at_rest(machine: Machine, position: RestingPosition) -> Array:
-    """(c,) u of a resting position, see machine.py."""
+    """(c,) u of a static equilibrium, see machine.py."""
     places = machine.places @ position.displacements[: machine.rotor.size]
     return np.concatenate([places, position.ring_speeds / machine.pace])
 
 
 def equilibrium(course: MachineCourse, place: Place) -> Equilibrium:
-    """The resting position at a place of its curve."""
+    """The static equilibrium at a place of its curve."""
     machine, y = course.machine(place.y), course.with_speed(place.y)
     u, omega = y[:-1], float(y[-1] * machine.pace)
     loads = film_loads(machine, u[None], np.zeros((1, len(u))), omega)
@@ -138,19 +138,19 @@ def equilibrium(course: MachineCourse, place: Place) -> Equilibrium:
 
 
 def settled(course: MachineCourse, near: Array, value: float) -> Equilibrium:
-    """The resting position at a value near to u (c,). Raises Unreachable."""
+    """The static equilibrium at a value near to u (c,). Raises Unreachable."""
     guess = np.append(near, value)
     return equilibrium(course, reached(course.equations_at(equations, guess), guess, unit_vector(len(guess))))
 
 
 def hopf_points(course: MachineCourse, points: Sequence[Equilibrium]) -> tuple[HopfPoint, ...]:
-    """The Hopf points between resting positions in the order of their course. Raises Unreachable."""
-    found = hopf.hopf_points(partial(_between, course), points, SHARP)
-    return tuple(hopf_at(each.here, each.rising) for each in found)
+    """The Hopf points between static equilibria in the order of their course. Raises Unreachable."""
+    crossings = hopf.hopf_points(partial(_between, course), points, SHARP)
+    return tuple(hopf_at(each.here, each.rising) for each in crossings)
 
 
 def _between(course: MachineCourse, low: Equilibrium, high: Equilibrium, value: float) -> Equilibrium:
-    """The resting position at a value between two."""
+    """The static equilibrium at a value between two."""
     share = (value - low.value) / (high.value - low.value)
     return settled(course, low.u + share * (high.u - low.u), value)
 

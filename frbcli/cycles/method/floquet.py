@@ -21,8 +21,8 @@ from frbcli.rotor.loads import largest_first
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])
 FEWEST_INTERVALS, INTERVALS_PER_HARMONIC, MOST_INTERVALS = 48, 4, 768
 TRIVIAL = 1e-6  # error of the trivial multiplier from which on intervals are halved
-HELPS, ALIKE = 0.5, 2.0  # shares of an error: below which finer ones have helped, up to which it is that of nearby
-FAR = 5.0  # times the error aimed at, from which on that of nearby is taken for it without another try
+HELPS, ALIKE = 0.5, 2.0  # shares of an error: below which finer ones have helped, up to which it equals a nearby one
+FAR = 5.0  # times the error aimed at, above which a nearby one is used without another try
 NEUTRAL = 1e-7  # beyond 1: a multiplier that grows
 DOUBLE = 0.01  # distance of a second multiplier from 1 below which the motion decides which of them is trivial
 
@@ -44,7 +44,7 @@ class Multipliers:
 
     @property
     def relaxed(self) -> Multipliers:
-        """These multipliers for the search of those of a cycle near by, which tries double intervals first."""
+        """These multipliers as a start for a cycle near by, which tries double intervals first."""
         return replace(self, intervals=self.intervals // 2)
 
     @property
@@ -68,9 +68,8 @@ def multipliers(
 ) -> Multipliers:
     """Multipliers of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
 
-    space: all states or those that films see (states.py); near: those of a cycle close by, or
-    of the same with fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried.
-    """
+    space: all states or those that films see (states.py); near: multipliers of a cycle close by, or of the same with
+    fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried. """
     harmonics = (len(y) - 2) // machine.size // 2
     count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
     floor = 0.0
@@ -82,15 +81,15 @@ def multipliers(
         matrix = monodromy(machine, space, y, intervals)
         return replace(_parted(_sorted(matrix), matrix, machine, space, y), intervals=intervals, floor=floor)
 
-    found = at(count)
-    known = FAR * TRIVIAL < floor < ALIKE * found.defect and found.defect < ALIKE * floor
-    while not known and found.defect > enough and 2 * count <= MOST_INTERVALS:
+    result = at(count)
+    known = FAR * TRIVIAL < floor < ALIKE * result.defect and result.defect < ALIKE * floor
+    while not known and result.defect > enough and 2 * count <= MOST_INTERVALS:
         count *= 2
         finer = at(count)
-        if finer.defect > HELPS * found.defect:  # not of the integration, but of the harmonics
-            return replace(finer, intervals=found.intervals, floor=finer.defect)
-        found = finer
-    return found
+        if finer.defect > HELPS * result.defect:  # not of the integration, but of the harmonics
+            return replace(finer, intervals=result.intervals, floor=finer.defect)
+        result = finer
+    return result
 
 
 def monodromy(machine: Machine, space: StateSpace, y: Array, count: int) -> Array:
@@ -148,23 +147,23 @@ def _sorted(matrix: Array) -> Multipliers:
     return Multipliers(np.concatenate([values[trivial : trivial + 1], others]), float(abs(values[trivial] - 1.0)))
 
 
-def _parted(found: Multipliers, matrix: Array, machine: Machine, space: StateSpace, y: Array) -> Multipliers:
-    """The multipliers with a pair about 1 told by its sum and by what becomes of the motion along the cycle.
+def _parted(fast: Multipliers, matrix: Array, machine: Machine, space: StateSpace, y: Array) -> Multipliers:
+    """The multipliers, with a pair near 1 computed from its sum and from the image of the motion along the cycle.
 
     At a fold two multipliers are 1, with one disturbance for both: an error of the matrix then enters each with its
     root, and their sum as it is.
     """
-    if len(found.others) == 0:
-        return found
-    near = int(np.argmin(np.abs(found.others - 1.0)))
-    if abs(found.others[near] - 1.0) > DOUBLE:
-        return found
+    if len(fast.others) == 0:
+        return fast
+    near = int(np.argmin(np.abs(fast.others - 1.0)))
+    if abs(fast.others[near] - 1.0) > DOUBLE:
+        return fast
     along = _along(machine, space, y)
     trivial = float(along @ (matrix @ along))
-    other = found.values[0] + found.others[near] - trivial
+    other = fast.values[0] + fast.others[near] - trivial
     if abs(other.imag) > TRIVIAL:
-        return found
-    others = np.concatenate([np.delete(found.others, near), [other.real]])
+        return fast
+    others = np.concatenate([np.delete(fast.others, near), [other.real]])
     others = others[largest_first(others)]
     return Multipliers(np.concatenate([[trivial + 0.0j], others]), float(np.linalg.norm(matrix @ along - along)))
 

@@ -61,28 +61,28 @@ class Follower:
 
     def cycle(self, place: Place, kind: str = "", near: Cycle | None = None) -> Cycle:
         """A point of the branch with its results. near: one close by."""
-        found = self.multipliers(place, None if near is None else near.multipliers.relaxed)
+        spectrum = self.multipliers(place, None if near is None else near.multipliers.relaxed)
         halved = True  # whether finer intervals have been tried
-        while found.defect > TRIVIAL:
+        while spectrum.defect > TRIVIAL:
             finer = self.with_more(place, self.course.most_at_fold if kind == FOLD else MOST_UNKNOWNS)
             if finer is None:
-                found = found if halved else self.multipliers(place, found)
+                spectrum = spectrum if halved else self.multipliers(place, spectrum)
                 break
-            enough = HELPS * found.defect
-            place, found = finer, self.multipliers(finer, found, enough)
-            halved = found.defect > enough
+            enough = HELPS * spectrum.defect
+            place, spectrum = finer, self.multipliers(finer, spectrum, enough)
+            halved = spectrum.defect > enough
         machine, y = self.course.machine(place.y), self.course.with_speed(place.y)
-        return Cycle(place, machine, y, eccentricities(machine, y), found, kind)
+        return Cycle(place, machine, y, eccentricities(machine, y), spectrum, kind)
 
     def multipliers(self, place: Place, near: Multipliers | None = None, enough: float = TRIVIAL) -> Multipliers:
         """Multipliers of the cycle at a place. near, enough: see floquet.py."""
         machine, y = self.course.machine(place.y), self.course.with_speed(place.y)
-        found = self.fast_multipliers(machine, y, near, max(TRIVIAL, enough))
+        fast = self.fast_multipliers(machine, y, near, max(TRIVIAL, enough))
         if not self.moves(y):
-            return found
+            return fast
         motion = self.motion(place)
         size = len(y) - (1 if self.free else 2)
-        return self.course.multipliers(found, y, lambda machine: motion(machine)(y)[1][:size, :size])
+        return self.course.multipliers(fast, y, lambda machine: motion(machine)(y)[1][:size, :size])
 
     def fast_multipliers(self, machine: Machine, y: Array, near: Multipliers | None, enough: float) -> Multipliers:
         """Multipliers of a cycle y while its machine stays. near, enough: see floquet.py."""
@@ -125,8 +125,8 @@ class Follower:
         more = resized(place, c, harmonics + harmonics // 2)
         if len(more.y) > most[self.machine.film_count > 1]:
             return None
-        found = corrected(self.equations(more), more.y, more.tangent)
-        return None if found is None else oriented(found, more.tangent)
+        finer = corrected(self.equations(more), more.y, more.tangent)
+        return None if finer is None else oriented(finer, more.tangent)
 
     def refitted(self, place: Place, share: float = 1.0) -> Place | None:
         """The place with as many harmonics as it needs for a share of the tail; None if that does not converge, or if
@@ -143,37 +143,37 @@ class Follower:
             if harmonics >= MOST_HARMONICS:
                 return place if tail < LOOSE * allowed else None
             place = resized(place, c, min(MOST_HARMONICS, harmonics + max(2, harmonics // 3)))
-            found = corrected(self.equations(place), place.y, place.tangent)
-            if found is None or found.side * place.side < 0:  # of another part of the branch that passes close by
+            solved = corrected(self.equations(place), place.y, place.tangent)
+            if solved is None or solved.side * place.side < 0:  # of another part of the branch that passes close by
                 return None
-            place = oriented(found, place.tangent)
+            place = oriented(solved, place.tangent)
         return None
 
     def as_fine(self, place: Place, other: Place) -> Place:
         """The place with as many harmonics as another, taken anew: on which side of the curve a place lies, by the sign
         of a determinant, is not the same with more of them."""
         near = resized_like(place, other, self.machine.size)
-        found = place if near is place else corrected(self.equations(near), near.y, near.tangent)
-        return near if found is None else oriented(found, near.tangent)
+        renewed = place if near is place else corrected(self.equations(near), near.y, near.tangent)
+        return near if renewed is None else oriented(renewed, near.tangent)
 
     def fold(self, place: Place, length: float) -> Place | None:
         """The refitted fold within a step from a place."""
-        found = None
+        fold = None
         for _ in range(REFITS):
-            found = fold_between(self.equations(place), place, length)
-            fitted = None if found is None else self.refitted(found, self.tail_of_folds)
-            if found is None or fitted is None or len(fitted.y) <= len(place.y):
+            fold = fold_between(self.equations(place), place, length)
+            fitted = None if fold is None else self.refitted(fold, self.tail_of_folds)
+            if fold is None or fitted is None or len(fitted.y) <= len(place.y):
                 break
             place = self.as_fine(place, fitted)
-        return found
+        return fold
 
     def stepped(self, place: Place, length: float) -> Place | None:
         """The refitted place behind a step."""
         narrow = 1.0 - largest(self.machine, place.y + length * place.tangent)
         if narrow < NARROWER * (1.0 - largest(self.machine, place.y)):
             return None
-        found = step_from(self.equations(place), place, length)
-        return None if found is None else self.refitted(oriented(found, place.tangent))
+        ahead = step_from(self.equations(place), place, length)
+        return None if ahead is None else self.refitted(oriented(ahead, place.tangent))
 
 
 class FoldFollower(Follower):
@@ -193,5 +193,5 @@ def at_speed(follower: Follower, place: Place, beyond: Place, speed: float) -> P
     near = resized_like(place, beyond, follower.machine.size)
     share = (speed - near.y[-1]) / (beyond.y[-1] - near.y[-1])
     guess = near.y + share * (beyond.y - near.y)
-    found = corrected(follower.equations(beyond), guess, unit_vector(len(guess)))
-    return None if found is None else oriented(found, beyond.tangent)
+    there = corrected(follower.equations(beyond), guess, unit_vector(len(guess)))
+    return None if there is None else oriented(there, beyond.tangent)

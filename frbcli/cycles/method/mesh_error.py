@@ -3,9 +3,8 @@ mesh, from those on the own one, by Newton's method. A share of the difference i
 
 A cycle is compared with the one at the same speed, or value of the number that the branch goes over. Next to a fold the
 other films may have none there: their branch turns back before. The error is then not known. Folds are compared with
-each other, in this number, too. The error of a Hopf point follows from the eigenvalues of the resting position of the
-other films at its value, and from how the eigenvalue changes with the number.
-"""
+each other, in this number, too. The error of a Hopf point follows from the eigenvalues of the static equilibrium of the
+other films at its value, and from how the eigenvalue changes with the number. """
 
 from __future__ import annotations
 
@@ -76,7 +75,7 @@ def why_no_error(plan: Plan) -> str:
         return ""
     if plan.form.solved:
         return f"{UNKNOWN} means over the angle of openings that turn are tabulated, and others would cost as much."
-    return f"{UNKNOWN} that of a bearing model added from Python is not known."
+    return f"{UNKNOWN} the error of a bearing model added from Python is not known."
 
 
 Seek = Callable[[Equations, Place], Place | None]
@@ -113,18 +112,18 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
     number. own: the follower of its branch."""
     here = np.array([*cycle.place.y[[-1, -2]], *cycle.eccentricity_max])
     errors = [LEAST * here]
-    for found in _found_again(own, [mesh.follower for mesh in meshes], cycle):
-        if found is None:
+    for place in _found_again(own, [mesh.follower for mesh in meshes], cycle):
+        if place is None:
             return CycleError(np.nan, np.nan, np.full(cycle.machine.film_count, np.nan))
-        there = np.array([*found.y[[-1, -2]], *eccentricities(cycle.machine, found.y)])
+        there = np.array([*place.y[[-1, -2]], *eccentricities(cycle.machine, place.y)])
         errors.append(meshes[len(errors) - 1].share * np.abs(there - here))
     last, frequency, *eccentricity = np.max(errors, axis=0)
     return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
 
 def hopf_error(own: MachineCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:
-    """The errors of a Hopf point, as those of a cycle: of the value of its course and of its frequency in rad/s, NaN
-    if another mesh has no resting position there. To first order in the eigenvalues on the other meshes."""
+    """The errors of a Hopf point: of the value of its course and of its frequency in rad/s, NaN if another mesh has no
+    static equilibrium there. To first order in the eigenvalues on the other meshes."""
     value = hopf.equilibrium.value
     errors = [(LEAST * value, LEAST * hopf.nu)]
     try:
@@ -159,16 +158,16 @@ def _found_again(own: Follower, followers: Sequence[Follower], cycle: Cycle) -> 
 
 
 def _in_stages(seek: Seek, here: Equations, there: Equations, near: Place, machine: Machine) -> Place | None:
-    """The sought place on other films. Films that differ much, such as those of two theories, are changed into each
+    """The sought place on other films. Films that differ much, such as films of two theories, are changed into each
     other in stages."""
     for stages in (1, STAGES):
-        found: Place | None = near
+        place: Place | None = near
         for stage in range(1, stages + 1):
-            if found is not None:
-                before, found = found, seek(_between(here, there, stage / stages), found)
-                found = None if found is None or passed_rest(machine, before, found) else found
-        if found is not None:
-            return found
+            if place is not None:
+                before, place = place, seek(_between(here, there, stage / stages), place)
+                place = None if place is None or passed_rest(machine, before, place) else place
+        if place is not None:
+            return place
     return None
 
 
@@ -192,8 +191,8 @@ def _with_side(equations: Equations, place: Place) -> Place:
 
 
 def _same_speed(equations: Equations, near: Place) -> Place | None:
-    found = corrected(equations, near.y, unit_vector(len(near.y)))
-    return found if found is not None and found.side == near.side else None
+    place = corrected(equations, near.y, unit_vector(len(near.y)))
+    return place if place is not None and place.side == near.side else None
 
 
 def _fold(equations: Equations, near: Place) -> Place | None:
@@ -202,7 +201,7 @@ def _fold(equations: Equations, near: Place) -> Place | None:
         return None
     for reach in REACHES:
         for along in (near.tangent, -near.tangent):
-            found = fold_between(equations, oriented(start, along), reach, LOCATED)
-            if found is not None:
-                return found
+            fold = fold_between(equations, oriented(start, along), reach, LOCATED)
+            if fold is not None:
+                return fold
     return None

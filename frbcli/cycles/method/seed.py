@@ -1,8 +1,7 @@
 """A cycle to begin with where a course has no Hopf point: the rotor whirls at all of its values.
 
-Its films get springs and dashpots beside them (machine.py) in the share a. With enough of them the rotor rests; as a
-falls a whirl is born at a Hopf point in a, and its cycles are followed to a = 0.
-"""
+Springs and dashpots act parallel to its films (machine.py) in the share a. With enough of them the rotor rests; as a
+falls a whirl is born at a Hopf point in a, and its cycles are followed to a = 0. """
 
 from __future__ import annotations
 
@@ -24,7 +23,7 @@ MOST = 50.0  # share up to which springs and dashpots are added
 
 
 class _WithoutMultipliers(FoldFollower):
-    """Follows cycles as closely as those of a diagram, without their multipliers and past folds."""
+    """Follows cycles as closely as for a diagram, but without multipliers and past folds."""
 
     tail = Follower.tail
 
@@ -34,7 +33,7 @@ class _WithoutMultipliers(FoldFollower):
 
 
 class _Stiffening(Changing):
-    """The share of springs and dashpots beside the films of a machine, at a speed of its rotor in rad/s."""
+    """The share of springs and dashpots parallel to the films of a machine, at a speed of its rotor in rad/s."""
 
     def __init__(self, machine: Machine, omega: float) -> None:
         super().__init__(lambda share: replace(machine, stiffened=share), omega)
@@ -55,7 +54,7 @@ class _Stiffening(Changing):
 
 
 def seed_cycle(resting: Equilibrium) -> Array | None:
-    """A cycle, see balance.py, at the speed of an unstable resting position; None if none was found."""
+    """A cycle, see balance.py, at the speed of an unstable static equilibrium; None if none was found."""
     course = _Stiffening(resting.machine, resting.omega)
     try:
         hopf = _stabilised(course, resting)
@@ -75,8 +74,8 @@ def _stabilised(course: _Stiffening, resting: Equilibrium) -> HopfPoint | None:
     for place, _ in follow(asked, start, RISE):
         high = equilibrium(course, place)
         if high.growth_of(0) < 0.0:
-            found = hopf_points(course, (low, high))
-            return found[-1] if found else None
+            crossings = hopf_points(course, (low, high))
+            return crossings[-1] if crossings else None
         if high.value > MOST:
             return None
         low = high

@@ -202,24 +202,24 @@ def _flow(machine: Machine, f: int, end: EndFlow | MeanEndFlow, at: _Moments) ->
 @compiled(makes_arrays=True)
 def _end_flows(flow: EndFlow, motions: Array, scale: float) -> Array:
     """(k,) of end_flow in motions (k, 4) of d and w."""
-    found = np.empty(motions.shape[0])
+    flows = np.empty(motions.shape[0])
     for i in range(motions.shape[0]):
-        found[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], scale)
-    return found
+        flows[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], scale)
+    return flows
 
 
 def _loads_by_scale(machine: Machine, f: int, at: _Moments) -> Array:
     """(n, c): the derivative of all loads by the logarithm of the viscosity of one film, see film_loads."""
-    found, own = np.zeros((len(at.d), machine.size)), slice(2 * f, 2 * f + 2)
-    found[:, own] = _force_by_scale(at)
+    by_scale, own = np.zeros((len(at.d), machine.size)), slice(2 * f, 2 * f + 2)
+    by_scale[:, own] = _force_by_scale(at)
     factor, _ = drag_factor(at.d)
     couette = -machine.drags[f] * machine.scales[f] * factor * at.slip
-    moment = -0.5 * machine.moment * machine.clearances[f] * _moment_of(at.d, found[:, own])
+    moment = -0.5 * machine.moment * machine.clearances[f] * _moment_of(at.d, by_scale[:, own])
     for body, sign in zip(machine.bodies[f].tolist(), (1.0, -1.0), strict=True):
         if body >= 0:
             scale = 1.0 / (machine.held[body] * machine.pace)
-            found[:, 2 * machine.film_count + body] += scale * (sign * couette + moment)
-    return found
+            by_scale[:, 2 * machine.film_count + body] += scale * (sign * couette + moment)
+    return by_scale
 
 
 def _by_motion(machine: Machine, f: int, rate: _Rate, motion_rate: Array, nu: float, h: int) -> Array:

@@ -7,9 +7,8 @@ For a harmonic u_k exp(i k nu t) and the loads g_k of the films,
     u_k = T_k (g_k + kappa_k u_k) + rest (k = 0),      T_k = P Z_k^-1 P^T m,
     Z_k = K - (k nu)^2 M + i k nu (D + Omega G) + P^T m kappa_k P,
 
-is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot beside each film, added on both
-sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies.
-"""
+is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot parallel to each film, added on
+both sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies. """
 
 from __future__ import annotations
 
@@ -33,7 +32,7 @@ from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
 
-NEAR = 0.1  # eccentricity at which the dashpots beside the films are taken from these
+NEAR = 0.1  # eccentricity at which the dashpots parallel to the films are taken from these
 
 
 class OutOfGap(Unreachable):
@@ -181,14 +180,14 @@ def make_machine(system: System, top: float) -> Machine:
 
 def _cones(system: System) -> tuple[Cone, ...]:
     """Forces on the journals that do the work of the gyroscopic moments of cartridges, in shells that are fixed."""
-    rotor, found = system.rotor, []
+    rotor, cones = system.rotor, []
     seen = rotor.journals.reshape(-1, rotor.size)
     for spin, cone in rotor.cones:
         x, y = np.linalg.lstsq(seen.T, cone.T)[0].T
         pulls = np.outer(x, y) - np.outer(y, x)
         moved, many = np.repeat(system.clearances, 2), np.repeat(rotor.multiplicity, 2)[:, None]
-        found.append(Cone(spin - system.spins[0], pulls * moved / many))
-    return tuple(found)
+        cones.append(Cone(spin - system.spins[0], pulls * moved / many))
+    return tuple(cones)
 
 
 def turning_loads(rotor: LinearRotor) -> tuple[Harmonic, ...]:
@@ -222,11 +221,11 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
         shares = machine.turning[f, 0]
         rate = scale * np.ascontiguousarray(v[:, own])  # s times the viscosity has the force of s times the velocities
         thicker = at_viscosity(film, scale)
-        found = film_samples(thicker, np.ascontiguousarray(d[:, f]), rate, scale * (speeds @ shares))
-        by_omega = scale * found[:, BY_OMEGA:]
-        values[:, own] = found[:, FORCE:BY_D]
-        by_u[:, own, own] = found[:, BY_D:BY_V].reshape(n, 2, 2)
-        by_v[:, own, own] = scale * found[:, BY_V:BY_OMEGA].reshape(n, 2, 2)
+        samples = film_samples(thicker, np.ascontiguousarray(d[:, f]), rate, scale * (speeds @ shares))
+        by_omega = scale * samples[:, BY_OMEGA:]
+        values[:, own] = samples[:, FORCE:BY_D]
+        by_u[:, own, own] = samples[:, BY_D:BY_V].reshape(n, 2, 2)
+        by_v[:, own, own] = scale * samples[:, BY_V:BY_OMEGA].reshape(n, 2, 2)
         by_u[:, own, 2 * films :] = machine.pace * by_omega[:, :, None] * shares[1:]
         by_speed[:, own] = by_omega * shares[0]
     loads = Loads(values, by_u, by_v, by_speed, drive)
@@ -266,21 +265,21 @@ def _add_summits(machine: Machine, asperities: Asperities, u: Array, v: Array, s
         own, c = slice(2 * f, 2 * f + 2), float(machine.clearances[f])
         total, slip = machine.turning[f]
         shares = np.array([slip, 0.5 * (total - slip)])  # of rotor and rings in slip and speed of the shell
-        found = rub_slopes(asperities, f, c, np.column_stack([c * u[:, own], c * v[:, own], speeds @ shares.T]))
-        by_bodies = found[:, :, BY_SLIP:] @ shares
+        rubs = rub_slopes(asperities, f, c, np.column_stack([c * u[:, own], c * v[:, own], speeds @ shares.T]))
+        by_bodies = rubs[:, :, BY_SLIP:] @ shares
         rows: list[tuple[slice, slice, float]] = [(own, slice(F_X, F_Y + 1), 1.0)]
         for body, pulled in zip(machine.bodies[f].tolist(), (ON_JOURNAL, ON_SHELL), strict=True):
             if body >= 0:
                 ring, held = first + body, float(machine.held[body] * machine.pace)
                 rows.append((slice(ring, ring + 1), slice(pulled, pulled + 1), 1.0 / held))
         for row, side, scale in rows:
-            loads.values[:, row] += scale * found[:, side, VALUE]
-            loads.by_u[:, row, own] += scale * c * found[:, side, BY_X:BY_V_X]
-            loads.by_v[:, row, own] += scale * c * found[:, side, BY_V_X:BY_SLIP]
+            loads.values[:, row] += scale * rubs[:, side, VALUE]
+            loads.by_u[:, row, own] += scale * c * rubs[:, side, BY_X:BY_V_X]
+            loads.by_v[:, row, own] += scale * c * rubs[:, side, BY_V_X:BY_SLIP]
             loads.by_u[:, row, first:] += scale * machine.pace * by_bodies[:, side, 1:]
             loads.by_speed[:, row] += scale * by_bodies[:, side, 0]
         if machine.bodies[f, 0] == ROTOR:
-            loads.drive[:] -= found[:, ON_JOURNAL, VALUE]
+            loads.drive[:] -= rubs[:, ON_JOURNAL, VALUE]
 
 
 def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> None:

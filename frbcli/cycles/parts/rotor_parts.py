@@ -21,11 +21,11 @@ INDEPENDENT = 1e-13  # share of the largest singular value above which a directi
 
 @dataclass(frozen=True)
 class Part:
-    """matrices: (4, n, n) mass, damping, gyroscopic and stiffness of the part, with the dashpots and springs beside the
-    films; basis (n, b): of all directions in which films see and load it, shapes (2 F, n) = seen (2 F, b) basis^T and
-    pulls (n, 2 F) = basis given (b, 2 F), see transfer of machine.py; others: (n, l) what else loads it; symmetric:
-    whether all matrices are;
-    planes: the degrees of freedom (n,) of x and of y that it is made of, None of the whole rotor."""
+    """matrices: (4, n, n) mass, damping, gyroscopic and stiffness of the part, with the dashpots and springs parallel
+    to the films; basis (n, b): of all directions in which films see and load it, shapes (2 F, n) = seen (2 F, b)
+    basis^T and pulls (n, 2 F) = basis given (b, 2 F), see transfer of machine.py; others: (n, l) what else loads it;
+    symmetric: whether all matrices are; planes: the degrees of freedom (n,) of x and of y that it is made of, None of
+    the whole rotor."""
 
     matrices: Complex
     basis: Complex
@@ -49,19 +49,19 @@ class Part:
 
 
 def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array, loads: Complex) -> tuple[Part, ...]:
-    """The whole rotor, or both of its parts. springs, dashpots: (n, n) beside the films; loads: (n, 2 F + l), those of
-    the films first."""
+    """The whole rotor, or both of its parts. springs, dashpots: (n, n) parallel to the films; loads: (n, 2 F + l), the
+    film forces first."""
     matrices = (rotor.mass, rotor.damping + dashpots, rotor.gyroscopic, rotor.stiffness + springs)
     planes = _planes(shapes, matrices) if rotor.size >= SMALLEST else None
     if planes is None:
         return (_part(np.array(matrices, dtype=complex), shapes, loads),)
     x, y = planes
-    found = []
+    parts = []
     for turn in (1j, -1j):
         own = np.array([matrix[np.ix_(x, x)] - turn * matrix[np.ix_(x, y)] for matrix in matrices])
         seen, given = shapes[:, x] - turn * shapes[:, y], loads[x] + turn * loads[y]
-        found.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
-    return tuple(found)
+        parts.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
+    return tuple(parts)
 
 
 def _part(

@@ -1,1 +1,1 @@
-"""Limit cycles of films that keep their oil, by shooting on the time loop."""
+"""Limit cycles of mass-conserving films, by shooting on the time loop."""

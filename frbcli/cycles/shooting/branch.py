@@ -42,29 +42,29 @@ def follow_shots(
     lowest, highest = (math.log(speed / shooting.unit) for speed in speeds)
     while len(shots) < MOST_POINTS:
         shot = shots[-1]
-        found, length = halved_until(partial(_next, shooting, shot, along), length, SHORTEST)
-        if found is None:  # the last step has passed a bend: on along the tangent
+        ahead, length = halved_until(partial(_next, shooting, shot, along), length, SHORTEST)
+        if ahead is None:  # the last step has passed a bend: on along the tangent
             along = shot.tangent
-            found, length = halved_until(partial(_next, shooting, shot, along), FIRST, SHORTEST)
-        if found is None:
+            ahead, length = halved_until(partial(_next, shooting, shot, along), FIRST, SHORTEST)
+        if ahead is None:
             note = f"It could not be followed beyond {shooting.speed_Hz(shot):.4g} Hz: the steps became too short."
             return with_folds(shooting, shots), note
         if observe is not None:
-            observe(found)
-        if not lowest <= found.p[1] <= highest:
-            limit_speed = speeds[0] if found.p[1] < lowest else speeds[1]
-            end = shooting.at_speed(shot, found, limit_speed)
+            observe(ahead)
+        if not lowest <= ahead.p[1] <= highest:
+            limit_speed = speeds[0] if ahead.p[1] < lowest else speeds[1]
+            end = shooting.at_speed(shot, ahead, limit_speed)
             if end is None and length > SHORTEST:  # a straight line to it is too far
                 length *= 0.5
                 continue
             shots += [] if end is None else [*special_shots(shooting, shot, end, asked), end]
             return with_folds(shooting, shots), LEFT
-        shots += [*special_shots(shooting, shot, found, asked), found]
-        if shooting.free and found.amplitude < SMALL:
+        shots += [*special_shots(shooting, shot, ahead, asked), ahead]
+        if shooting.free and ahead.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
-        if found.eccentricity_max.max() > limit:
+        if ahead.eccentricity_max.max() > limit:
             return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
-        before, along = along, shooting.direction(shot, found)
+        before, along = along, shooting.direction(shot, ahead)
         straight = float(before @ along)
         if straight > STRAIGHT:
             length = min(LONGER * length, LONGEST)
@@ -80,8 +80,8 @@ def synchronous_shots(
     asked: Sequence[float] = (),
     observe: Callable[[Shot], None] | None = None,
 ) -> tuple[tuple[Shot, ...], str]:
-    """The synchronous motions beside resting positions by falling speed, from the fastest one beside which such a
-    motion is found both ways, and why they end; the rest as for follow_shots."""
+    """The synchronous motions near static equilibria by falling speed, from the fastest one near which such a motion is
+    found both ways, and why they end; the rest as for follow_shots."""
     for rest in reversed(rests):
         start = shooting.with_unbalance(rest)
         if start is None:
@@ -91,14 +91,14 @@ def synchronous_shots(
             return down, note
         up, end = follow_shots(shooting, replace(start, tangent=-start.tangent), speeds, asked, observe)
         return (*reversed(up[1:]), *down), " ".join(dict.fromkeys((end, note)))
-    return (), "No synchronous motion was found beside a resting position."
+    return (), "No synchronous motion was found near a static equilibrium."
 
 
 def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:
     """The cycles of a branch with its folds: where its speed turns back by more than places of the cells differ in."""
     speeds = np.array([float(shot.mean_p[1]) for shot in shots])
     blur = np.array([float(shot.blur[1]) for shot in shots])
-    found = list(shots)
+    folded = list(shots)
     side, extreme = 0, 0  # which way the speed goes, and where it went furthest
     for i in range(1, len(shots)):
         gone = speeds[i] - speeds[extreme]
@@ -106,9 +106,9 @@ def with_folds(shooting: Shooting, shots: Sequence[Shot]) -> tuple[Shot, ...]:
             clear = side != 0 or abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR)
             side, extreme = (int(np.sign(gone)), i) if clear else (side, extreme)
         elif abs(gone) > CLEAR * max(blur[i], blur[extreme], BLUR):
-            found[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme], side)
+            folded[extreme] = _fold(shooting, shots[max(extreme - 1, 0) : extreme + 2], shots[extreme], side)
             side, extreme = -side, i
-    return tuple(found)
+    return tuple(folded)
 
 
 def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot, side: int) -> Shot:
@@ -124,7 +124,7 @@ def _fold(shooting: Shooting, around: Sequence[Shot], furthest: Shot, side: int)
 
 def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[float]) -> list[Shot]:
     """Flips, torus points and cycles at speeds asked for within a step."""
-    found: list[Shot] = []
+    special: list[Shot] = []
     change = abs(after.multipliers.unstable - shot.multipliers.unstable)
     worse = max(shot, after, key=lambda one: one.multipliers.unstable)
     outside = worse.multipliers.others[: worse.multipliers.unstable]
@@ -132,33 +132,33 @@ def special_shots(shooting: Shooting, shot: Shot, after: Shot, asked: Sequence[f
     if change > 0 and (turning or (bool(len(outside)) and outside[-1].real < 0.0)):
         few = shot.multipliers.unstable
         there = _located(shooting, shot, after, lambda one: 0.5 - float(one.multipliers.unstable != few))
-        found.append(replace(there, kind=TORUS if turning else FLIP))
+        special.append(replace(there, kind=TORUS if turning else FLIP))
     for speed in asked:
         if min(shot.p[1], after.p[1]) < math.log(speed / shooting.unit) <= max(shot.p[1], after.p[1]):
             there_too = _at_speed(shooting, shot, after, speed)
-            found += [] if there_too is None else [replace(there_too, kind=ASKED)]
-    return sorted(found, key=lambda one: abs(one.p[1] - shot.p[1]))
+            special += [] if there_too is None else [replace(there_too, kind=ASKED)]
+    return sorted(special, key=lambda one: abs(one.p[1] - shot.p[1]))
 
 
 def _at_speed(shooting: Shooting, shot: Shot, after: Shot, speed: float) -> Shot | None:
     """The cycle at a speed in rad/s within a step: from its ends, else from one between them that is nearer to it."""
-    found = shooting.at_speed(shot, after, speed)
-    if found is None:
+    cycle = shooting.at_speed(shot, after, speed)
+    if cycle is None:
         nearer = _located(shooting, shot, after, lambda one: float(one.p[1]) - math.log(speed / shooting.unit))
-        found = shooting.at_speed(nearer, after if nearer is shot else shot, speed)
-    return found
+        cycle = shooting.at_speed(nearer, after if nearer is shot else shot, speed)
+    return cycle
 
 
 def _next(shooting: Shooting, shot: Shot, along: Array, length: float) -> Shot | None:
-    found = shooting.stepped(shot, length, along)
-    return None if found is None or shooting.direction(shot, found) @ along < SHARPEST else found
+    ahead = shooting.stepped(shot, length, along)
+    return None if ahead is None or shooting.direction(shot, ahead) @ along < SHARPEST else ahead
 
 
-def _located(shooting: Shooting, shot: Shot, after: Shot, told: Callable[[Shot], float]) -> Shot:
+def _located(shooting: Shooting, shot: Shot, after: Shot, criterion: Callable[[Shot], float]) -> Shot:
     """The cycle within a step at which a number changes its sign: between the ends by halves of the straight line."""
     along = shooting.direction(shot, after)
     length = float(along @ np.concatenate([after.x - shot.x, after.p - shot.p]))
-    low, high, at_low, at_high = 0.0, length, told(shot), told(after)
+    low, high, at_low, at_high = 0.0, length, criterion(shot), criterion(after)
     best = shot if abs(at_low) < abs(at_high) else after
     for _ in range(REFINED):
         share = min(max(at_low / (at_low - at_high), 0.1), 0.9)
@@ -166,8 +166,8 @@ def _located(shooting: Shooting, shot: Shot, after: Shot, told: Callable[[Shot],
         there = shooting.stepped(shot, middle, along)
         if there is None:
             break
-        value = told(there)
-        if abs(value) <= abs(told(best)):
+        value = criterion(there)
+        if abs(value) <= abs(criterion(best)):
             best = there
         if value * at_low > 0.0:
             low, at_low = middle, value

@@ -1,4 +1,4 @@
-"""Limit cycles of a case whose films are on cells, over its speed: resting positions with the motions of the oil that
+"""Limit cycles of a case whose films are on cells, over its speed: static equilibria with the motions of the oil that
 films keep, Hopf points, and from each the branch of cycles by shooting."""
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from frbcli.errors import NotConverged
 
 SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
 HELD = 0.05  # error of the trivial multiplier from which on it is stated
-FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle beside a Hopf point
+FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle next to a Hopf point
 
 
 def limit_cycles_by_shooting(
@@ -47,22 +47,21 @@ def limit_cycles_by_shooting(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """As limit_cycles, for films on cells that keep their oil or whose force has kinks; speeds in rad/s, asked: those
-    at which cycles are computed exactly.
+    """As limit_cycles, for films that are mass-conserving or whose force has kinks; speeds in rad/s, asked: those at
+    which cycles are computed exactly.
 
-    Raises NotConverged where no resting position is found.
-    """
+    Raises NotConverged where no static equilibrium is found. """
     begun = working_time().cpu_s
     flow = period_map(case)
     shooting = Shooting(flow, fastest)
     rests = resting(shooting, slowest, fastest)
     if not rests:
-        raise NotConverged(f"No resting position was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
+        raise NotConverged(f"No static equilibrium was found between {hertz(slowest):.4g} and {hertz(fastest):.4g} Hz.")
     hopf = thresholds(shooting, rests)
-    told = CycleCount(observe)
+    count = CycleCount(observe)
 
-    def tell(shot: Shot) -> None:
-        told(shooting.speed_Hz(shot), shot.eccentricity_max)
+    def record(shot: Shot) -> None:
+        count(shooting.speed_Hz(shot), shot.eccentricity_max)
 
     other = other_cells(case, shooting)
     branches: list[CycleBranch] = []
@@ -72,7 +71,7 @@ def limit_cycles_by_shooting(
         if any(abs(end - begin.rest.omega) < SAME * begin.rest.omega for end in ends):
             special.append(_hopf(shooting, other, begin, None, None))
             continue
-        shots, note = _branch(shooting, begin, (slowest, fastest), asked, tell)
+        shots, note = _branch(shooting, begin, (slowest, fastest), asked, record)
         if note == AT_REST:
             ends.append(2.0 * math.pi * shooting.speed_Hz(shots[-1]))
         special.append(_hopf(shooting, other, begin, len(branches), shots[0] if shots else None))
@@ -80,7 +79,7 @@ def limit_cycles_by_shooting(
         branches.append(CycleBranch(len(special) - 1, points, _with_cells(flow, note, shots)))
         if with_unbalance:
             branches[-1] = whirls_of_branch(shooting, branches[-1], shots, fastest - slowest, observe)
-    response, remarks = _response(shooting, rests, (slowest, fastest), asked, tell) if with_unbalance else ((), [])
+    response, remarks = _response(shooting, rests, (slowest, fastest), asked, record) if with_unbalance else ((), [])
     return LimitCycles(
         case=case,
         over=SPEED,
@@ -90,7 +89,7 @@ def limit_cycles_by_shooting(
         branches=tuple(branches),
         special=(*special, *special_cycles(branches, response)),
         notes=(*_notes(shooting, other, rests, hopf), *remarks),
-        cost=Cost(working_time().cpu_s - begun, told.count),
+        cost=Cost(working_time().cpu_s - begun, count.count),
         synchronous=response,
     )
 
@@ -100,11 +99,11 @@ def _response(
     rests: Sequence[Rest],
     speeds: tuple[float, float],
     asked: Sequence[float],
-    tell: Callable[[Shot], None],
+    record: Callable[[Shot], None],
 ) -> tuple[tuple[CyclePoint, ...], list[str]]:
     """The synchronous response to the unbalance by falling speed, and what is to be said of it."""
     driven = shooting.with_all_unbalance
-    shots, note = synchronous_shots(driven, rests, speeds, asked, tell)
+    shots, note = synchronous_shots(driven, rests, speeds, asked, record)
     names = {TORUS: "in a torus point", FLIP: "in a flip"}
     remarks = [] if note == LEFT else [f"Synchronous response: {note}"]
     remarks += [
@@ -120,32 +119,32 @@ def _branch(
     begin: RestThreshold,
     speeds: tuple[float, float],
     asked: Sequence[float],
-    tell: Callable[[Shot], None],
+    record: Callable[[Shot], None],
 ) -> tuple[tuple[Shot, ...], str]:
     for size in FIRST_SIZES:
         first = shooting.from_rest(begin.rest, begin.number, size)
         if first is not None:
-            return follow_shots(shooting, first, speeds, asked, tell)
-    return (), "No cycle was found beside the Hopf point."
+            return follow_shots(shooting, first, speeds, asked, record)
+    return (), "No cycle was found next to the Hopf point."
 
 
 def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
     """The note of a branch, which says where the mean of a cycle lacks places of its cells, and where these hold it."""
-    told, places = [note], 1 + len(flow.places)
+    remarks, places = [note], 1 + len(flow.places)
     lacking = sum(len(shot.others) < len(flow.places) for shot in shots)
     if lacking > 0:
-        told.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
+        remarks.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
     held = max((shot.multipliers.defect for shot in shots), default=0.0)
     if held > HELD:
-        told.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
-    return " ".join(told).strip()
+        remarks.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
+    return " ".join(remarks).strip()
 
 
 def _notes(
     shooting: Shooting, other: OtherCells | None, rests: Sequence[Rest], hopf: Sequence[RestThreshold]
 ) -> list[str]:
     around, along = shooting.flow.films.cells.shape[2:]
-    kept = "keep their oil, on" if shooting.flow.held.any() else "are on"
+    kept = "are mass-conserving, on" if shooting.flow.held.any() else "are on"
     notes = [
         f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
         f"with the error of the cells; multipliers are known to 5e-3. {_errors_of(other)}"

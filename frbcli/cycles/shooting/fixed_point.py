@@ -1,16 +1,15 @@
 """Fixed points of a map by Newton's method in the space that it contracts slowly, and by repetition in the rest.
 
-Let x -> M(x, p) have a derivative with few eigenvalues that are not small: those of the rotor; oil is exchanged within
-a period. An orthonormal basis V of the states of the rotor and of what the map makes of them (a Krylov space) holds
-the slow motions, and dM/dx is taken as (M V) V^T with finite differences M V. Then
+Let x -> M(x, p) have a derivative with few eigenvalues that are not small, which belong to the rotor; oil is exchanged
+within a period. An orthonormal basis V of the states of the rotor and of what the map makes of them (a Krylov space)
+holds the slow motions, and dM/dx is taken as (M V) V^T with finite differences M V. Then
 
     dx = r + (M V) c + (dM/dp) dp,      (1 - V^T M V) c - V^T dM/dp dp = V^T r,      r = M(x) - x,
 
 with as many further equations for the parameters p as there are (recursive projection: Shroff and Keller, SIAM J.
-Numer. Anal. 30, 1993). One evaluation of the map makes one iteration. What the image changes by from one to the next
-tells of slow motions that V misses, as of oil that stays for many periods: V and M V learn of them (Broyden's update).
-The eigenvalues of V^T M V are the multipliers.
-"""
+Numer. Anal. 30, 1993). One evaluation of the map makes one iteration. The change of the image from one iteration to the
+next shows slow motions that V misses, such as oil that stays for many periods; Broyden's update adds them to V and M V.
+The eigenvalues of V^T M V are the multipliers. """
 
 from __future__ import annotations
 
@@ -25,7 +24,7 @@ from frbcli.rotor.loads import largest_first
 Map = Callable[[Array, Array], Array]  # (N,) of a state (N,) and parameters (P,)
 
 DIFFERENCE = 5e-3  # by which states and parameters are disturbed, at most: less blurs the images by the cells
-MORE = 12  # images beside those of the first states
+MORE = 12  # images in addition to the images of the first states
 NEW = 0.01  # part of an image outside of the space from which on it counts
 ITERATIONS = 40
 CLOSE, NOISE = 1e-7, 1e-5  # corrections that end the iteration: always, and if they become no smaller
@@ -115,7 +114,7 @@ def fixed_point(
             return None
         x, p, before = x + dx, p + dp, image
         image = mapped(x, p)
-        if float(np.linalg.norm(dx)) > NEW * size:  # else the change of the image is that of the parameters
+        if float(np.linalg.norm(dx)) > NEW * size:  # else the parameters alone change the image
             space = taught(space, dx, image - before - space.by_parameters @ dp)
         sizes.append(size)
     return None

@@ -2,9 +2,9 @@
 error, found from those on the own ones. The error is extrapolated in the direction in which both have the
 more similar number of cells: along the axis 6 cells may leave more of it than 32 around.
 
-What a cycle is told with, z = (ln Omega, ln T, largest eccentricities), is compared at its speed. Of a fold the cycles
-before and behind it are found again, too, each in the plane across the branch: how the difference changes along it
-tells where the other branch turns back. Of a Hopf point the first cycle beside it is found again at its size.
+The results of a cycle, z = (ln Omega, ln T, largest eccentricities), are compared at its speed. For a fold the cycles
+before and behind it are found again, too, each in the plane across the branch: the change of the difference along the
+branch shows where the other branch turns back. For a Hopf point the first cycle next to it is found again at its size.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from frbcli.scene.forms.cells import cells_of
 from frbcli.scene.planning.plan import make_plan
 
 RESOLVED = 0.5  # length of a slow motion of length 1 on other cells from which on they resolve it
-BESIDE = 0.5  # of the error of a neighbour: differences may change their sign between both
+NEIGHBOURS = 0.5  # of the error of a neighbour: differences may change their sign between both
 UPWIND = 1.0  # order in which gas that oil carries becomes exact with smaller cells
 SPREAD = 0.5  # of what places of the cells differ by: the least error
 
@@ -65,26 +65,26 @@ def other_cells(case: Case, shooting: Shooting) -> OtherCells | None:
 
 
 def threshold_errors(own: Shooting, other: OtherCells, first: Shot) -> tuple[float, float]:
-    """The errors of a Hopf point by the cells of its films, relative, of its speed and its frequency: what those of the
-    first cycle beside it differ by at its size; NaN if that is not found on other cells. Growth at rest is scattered by
-    more."""
+    """Relative errors of speed and frequency of a Hopf point by the cells of its films: the differences of the first
+    cycle next to it, at its size; NaN if that is not found on other cells. Growth at rest scatters more."""
     speed, frequency, *_ = other.share * np.abs(_again(own, other, first, first.tangent) - _own(own, first))
     return float(speed), float(frequency)
 
 
 def shot_errors(own: Shooting, other: OtherCells, shots: Sequence[Shot]) -> tuple[ShotError, ...]:
-    """The errors of the cycles of a branch in their order, but of folds at least BESIDE of those of neighbours."""
-    found = [
+    """The errors of the cycles of a branch in their order; at folds at least NEIGHBOURS times the neighbours'
+    errors."""
+    shot_error = [
         _fold_error(own, other, shots[i - 1 : i + 2]) if shot.kind == FOLD else _cycle_error(own, other, shot)
         for i, shot in enumerate(shots)
     ]
     cycles = [i for i, shot in enumerate(shots) if shot.kind != FOLD]
-    errors = np.array([[found[i].frequency, *found[i].eccentricity] for i in cycles])
-    beside = np.fmax(np.roll(errors, 1, axis=0), np.roll(errors, -1, axis=0))[1:-1]
-    errors[1:-1] = np.maximum(errors[1:-1], np.nan_to_num(BESIDE * beside))
+    errors = np.array([[shot_error[i].frequency, *shot_error[i].eccentricity] for i in cycles])
+    neighbours = np.fmax(np.roll(errors, 1, axis=0), np.roll(errors, -1, axis=0))[1:-1]
+    errors[1:-1] = np.maximum(errors[1:-1], np.nan_to_num(NEIGHBOURS * neighbours))
     for i, (frequency, *eccentricity) in zip(cycles, errors, strict=True):
-        found[i] = ShotError(np.nan, frequency, np.array(eccentricity))
-    return tuple(found)
+        shot_error[i] = ShotError(np.nan, frequency, np.array(eccentricity))
+    return tuple(shot_error)
 
 
 def _cycle_error(own: Shooting, other: OtherCells, shot: Shot) -> ShotError:
@@ -111,8 +111,8 @@ def _again(own: Shooting, other: OtherCells, shot: Shot, held: Array) -> Array:
         return np.full(len(_own(own, shot)), np.nan)
     across = np.append(flow.states_on(twin.flow, held[:size, None])[:, 0], held[size:])
     conditions = both(twin.held(near), across)
-    found = twin.again(near, shot.mean_p, _space_on(own, other, shot.space), conditions, shot.steps, NOISE)
-    return _mean(twin.flow, found) if found else np.full(len(_own(own, shot)), np.nan)
+    cycles = twin.again(near, shot.mean_p, _space_on(own, other, shot.space), conditions, shot.steps, NOISE)
+    return _mean(twin.flow, cycles) if cycles else np.full(len(_own(own, shot)), np.nan)
 
 
 def _space_on(own: Shooting, other: OtherCells, space: SlowSpace) -> SlowSpace:
@@ -134,15 +134,15 @@ def _turned(at: Array, z: Array, apart: Array) -> Array:
     _, along, _ = np.linalg.solve(np.vander(at, increasing=True), z)
     slopes = (apart[[0, 2]] - apart[1]) / ends[:, None]
     turns = -0.5 * slopes[:, :1] / bend
-    found = apart[1] + turns * (along + slopes)
-    found[:, 0] = apart[1, 0] + 0.5 * turns[:, 0] * slopes[:, 0]
+    apart_at = apart[1] + turns * (along + slopes)
+    apart_at[:, 0] = apart[1, 0] + 0.5 * turns[:, 0] * slopes[:, 0]
     between = (at.min() <= turns) & (turns <= at.max())
-    return np.asarray(np.where(between.all(), np.abs(found).max(axis=0), np.nan))
+    return np.asarray(np.where(between.all(), np.abs(apart_at).max(axis=0), np.nan))
 
 
 def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> ShotError:
     """apart: z on other cells less z."""
-    spread = np.ptp([_told(own.flow, *each) for each in _places(shot)], axis=0)
+    spread = np.ptp([_quantities(own.flow, *each) for each in _places(shot)], axis=0)
     least = np.maximum(SPREAD * spread, LEAST * np.array([1.0, 1.0, *_own(own, shot)[2:]]))
     speed, frequency, *eccentricity = np.maximum(share * np.abs(apart), least)
     return ShotError(speed if shot.kind == FOLD else np.nan, frequency, np.array(eccentricity))
@@ -156,10 +156,10 @@ def _places(shot: Shot) -> list[tuple[Array, Array]]:
     return [(shot.p, shot.displacements), *shot.others]
 
 
-def _mean(flow: PeriodMap, found: Sequence[tuple[Array, Array]]) -> Array:
+def _mean(flow: PeriodMap, places: Sequence[tuple[Array, Array]]) -> Array:
     """z, the mean over places of the cells."""
-    return np.asarray(np.mean([_told(flow, *each) for each in found], axis=0))
+    return np.asarray(np.mean([_quantities(flow, *each) for each in places], axis=0))
 
 
-def _told(flow: PeriodMap, p: Array, displacements: Array) -> Array:
+def _quantities(flow: PeriodMap, p: Array, displacements: Array) -> Array:
     return np.array([p[1], p[0], *largest(flow.middles(displacements))])

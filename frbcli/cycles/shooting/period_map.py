@@ -1,13 +1,12 @@
-"""What a time of constant speed makes of a machine with films on cells: the map of the time loop that runs use.
+"""What a time of constant speed makes of a machine with finite-volume films: the map of the time loop that runs use.
 
 The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, the filling of the openings of each
-film whose supply gives a flow at the most, and of each cell of the films that keep their oil its fraction and, where
-the oil carries gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with
-the oil; what they hold is brought back over the angle that they have turned by, with cubics through four cells. The
-steps are of equal length and their number is fixed, so that the map is smooth enough for differences: error control
-would change it from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is
-released and absorbed.
-"""
+film with a flow-limited supply, and of each cell of the mass-conserving films its fraction and, where the oil carries
+gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with the oil; what
+they hold is brought back over the angle that they have turned by, with cubics through four cells. The steps are of
+equal length and their number is fixed, so that the map is smooth enough for differences: error control would change it
+from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is released and
+absorbed. """
 
 from __future__ import annotations
 
@@ -52,7 +51,7 @@ from frbcli.solve.time_loop import advance
 STEPS_PER_REVOLUTION = 100
 TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
-PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle beside the first, in lengths of a cell
+PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle after the first, in lengths of a cell
 SAMPLES = 256  # moments at which displacements are evaluated
 MOST_STEPS = 10**6
 
@@ -61,7 +60,7 @@ MOST_STEPS = 10**6
 class Wet:
     """A machine at one moment. q, v, a: (n,) displacements, velocities and accelerations of the rotor, rings at their
     angle 0; content: (n, m, k) oil fractions of the fields of cells, and behind them, where oil carries gas, their free
-    gas over the oil; rate: those of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
+    gas over the oil; rate: of H theta and H theta c in 1/s; w: (fields, m, k) unknowns; filling: (fields,) of the
     openings, see feed.py. a, rate and w follow from the rest within the first step, and are carried along as its
     guess."""
 
@@ -107,7 +106,7 @@ class PeriodMap:
 
     @property
     def slow(self) -> int:
-        """How many numbers of a state, which stand before those of the oil, belong to the rotor and to fillings."""
+        """How many numbers of a state belong to the rotor and to fillings; the numbers of the oil follow them."""
         return 2 * self.system.rotor.size - self.system.ring_count + int(np.count_nonzero(self.limited))
 
     @property
@@ -129,12 +128,12 @@ class PeriodMap:
 
     @property
     def places(self) -> tuple[float, ...]:
-        """Further PLACES of the cells at the start of a cycle, which matter where cells turn; with the unbalance they
-        pass all places beside the motion within a period."""
+        """Further PLACES of the cells at the start of a cycle, which matter where cells turn; with the unbalance the
+        cells pass all places within a period."""
         return PLACES if self.turned.any() and self.driven == 0.0 else ()
 
     def middles(self, d: Array) -> Array:
-        """(..., F, 2) displacements in the middle of the films, of those of the journals (..., J, 2)."""
+        """(..., F, 2) displacements in the middle of the films, from displacements of the journals (..., J, 2)."""
         return np.asarray(d.reshape(*d.shape[:-2], self.system.films.count, -1, 2).mean(axis=-2))
 
     def at_ends(self, eccentricities: Array) -> Array:
@@ -229,9 +228,9 @@ class PeriodMap:
 
     def _slow(self, v: Array, omega: float) -> Array:
         """Velocities over half of the speed; of displacements over their units, too."""
-        told = 2.0 * v / omega
-        told[self._kept] /= self.lengths
-        return np.asarray(told)
+        slow = 2.0 * v / omega
+        slow[self._kept] /= self.lengths
+        return np.asarray(slow)
 
     def _gaps(self, q: Array, bodies: Array) -> Array:
         """H in the cells of films between rotor and rings at angles (1 + rings,), see Films.gaps."""
@@ -279,7 +278,7 @@ class PeriodMap:
 
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
-    """The map of a case whose films are all on cells. cells: (around, along), default those of its plan."""
+    """The map of a case whose films are all on cells. cells: (around, along), default: the cells of its plan."""
     plan = replace(make_plan(case), tolerance=TOLERANCE)
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
@@ -303,14 +302,14 @@ def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     )
 
 
-def wet_at(found: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
+def wet_at(flow: PeriodMap, q: Array, v: Array, omega: float) -> Wet:
     """A machine with displacements q and velocities v whose films have settled there. Raises Unreachable."""
     try:
-        state = state_at(found.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
+        state = state_at(flow.system, speed_profile([0.0, 1.0], [omega, omega]), q, v)
     except NotConverged:
         raise Unreachable from None
-    content, rate = content_of(state.wet, found._gaps(q, found.begun))
-    return Wet(state.q, state.v, state.a, content, rate, state.wet[W], found._filling(state))
+    content, rate = content_of(state.wet, flow._gaps(q, flow.begun))
+    return Wet(state.q, state.v, state.a, content, rate, state.wet[W], flow._filling(state))
 
 
 def content_of(wet: Array, gaps: Array) -> tuple[Array, Array]:
@@ -327,7 +326,7 @@ def resampled(fields: Array, shape: tuple[int, ...]) -> Array:
     for axis in (1, 2):
         count, wanted = fields.shape[axis], shape[axis]
         at = (np.arange(wanted) + 0.5) * count / wanted - 0.5
-        at = at if axis == 1 else np.clip(at, 0.0, count - 1.0)  # around the last cell lies beside the first
+        at = at if axis == 1 else np.clip(at, 0.0, count - 1.0)  # around the last cell lies next to the first
         low = np.floor(at).astype(int)
         share = (at - low).reshape(-1, *(1,) * (fields.ndim - axis - 1))
         below, above = (np.take(fields, index % count, axis) for index in (low, low + 1))

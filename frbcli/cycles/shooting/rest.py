@@ -1,4 +1,4 @@
-"""Resting positions of machines with films on cells, and their Hopf points.
+"""Static equilibria of machines with finite-volume films, and their Hopf points.
 
 How fast a small motion grows is known from differences of the time loop, across the kinks that fronts of the oil leave
 when they cross cells: it scatters, with oil by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore
@@ -22,7 +22,7 @@ from frbcli.equilibrium.resting import resting_position
 from frbcli.errors import NotConverged
 from frbcli.film.parabola import parabola_roots
 
-RESTS = 15  # resting positions of a diagram
+RESTS = 15  # static equilibria of a diagram
 NEAR = 0.02  # relative error of the speed about which a Hopf point is sought
 FITTED, AROUND = 12, 0.04  # rates that a parabola goes through, within this of its zero, relative
 WIDER = 2.0  # times the disturbance of the differences, once more: how much its size changes the rates
@@ -30,7 +30,7 @@ WIDER = 2.0  # times the disturbance of the differences, once more: how much its
 
 @dataclass(frozen=True)
 class RestThreshold:
-    """A Hopf point. rest: the resting position there; number: of the eigenvalue that crosses the imaginary axis;
+    """A Hopf point. rest: the static equilibrium there; number: of the eigenvalue that crosses the imaginary axis;
     uncertainty: of its speed in rad/s, NaN where it is not known."""
 
     rest: Rest
@@ -39,29 +39,29 @@ class RestThreshold:
 
 
 def resting(shooting: Shooting, slowest: float, fastest: float) -> list[Rest]:
-    """Resting positions in ascending order of the speed, sought from the fastest on; speeds in rad/s."""
-    found: list[Rest] = []
+    """Static equilibria in ascending order of the speed, sought from the fastest on; speeds in rad/s."""
+    rests: list[Rest] = []
     for omega in np.linspace(fastest, slowest, RESTS):
         rest = settled(shooting, float(omega))
-        if rest is None and found:
-            rest = shooting.rest(found[-1].wet, float(omega))
+        if rest is None and rests:
+            rest = shooting.rest(rests[-1].wet, float(omega))
         if rest is not None:
-            found.append(rest)
-    return found[::-1]
+            rests.append(rest)
+    return rests[::-1]
 
 
 def settled(shooting: Shooting, omega: float) -> Rest | None:
-    """The resting position next to that of films whose oil is at rest, too; None if none is found."""
+    """The static equilibrium near the one with the oil at rest, too; None if none is found."""
     system = shooting.flow.system
     try:
-        found = resting_position(system, omega)
-        return shooting.rest(wet_at(shooting.flow, found.displacements, found.velocities(system), omega), omega)
+        static = resting_position(system, omega)
+        return shooting.rest(wet_at(shooting.flow, static.displacements, static.velocities(system), omega), omega)
     except (NotConverged, Unreachable):
         return None
 
 
 def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
-    """The Hopf points between resting positions, of whirls that begin or cease to grow, others may grow beside them."""
+    """The Hopf points between static equilibria, of whirls that begin or cease to grow; other whirls may grow there."""
     return [
         located(shooting, low, high, number)
         for low, high in itertools.pairwise(rests)
@@ -70,7 +70,7 @@ def thresholds(shooting: Shooting, rests: list[Rest]) -> list[RestThreshold]:
 
 
 def located(shooting: Shooting, low: Rest, high: Rest, number: int = 0) -> RestThreshold:
-    """The Hopf point between two resting positions of the whirl `number`, from 0, by falling growth; its uncertainty is
+    """The Hopf point between two static equilibria of the whirl `number`, from 0, by falling growth; its uncertainty is
     NaN where the rest cannot be followed."""
 
     def at(omega: float) -> Rest:
@@ -109,7 +109,7 @@ class _Fit:
 
 
 def _fitted(shooting: Shooting, near: Rest, number: int) -> _Fit:
-    """The parabola through the rates of a whirl about the speed of a resting position.
+    """The parabola through the rates of a whirl about the speed of a static equilibrium.
 
     The cells lie in different places from one speed to the next: else what they leave changes little between them."""
     places = [Shooting(shooting.flow.lying(place), shooting.unit) for place in shooting.flow.places]

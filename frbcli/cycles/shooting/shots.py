@@ -1,14 +1,13 @@
-"""Limit cycles and resting positions of machines with films on cells, found by shooting.
+"""Limit cycles and static equilibria of machines with finite-volume films, found by shooting.
 
-A cycle is a fixed point of the map of the time loop over its period (period_map.py). Beside the state x, the period and
-the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on
-a branch by the plane across the direction of the last step (branch.py). With the unbalance the period is that of the
-rotor, T Omega = 2 pi, in place of the phase condition: the unbalance holds the motion in time.
+A cycle is a fixed point of the map of the time loop over its period (period_map.py). Besides the state x, the period
+and the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on a
+branch by the plane across the direction of the last step (branch.py). With unbalance the phase condition is replaced by
+T Omega = 2 pi, the period of the rotor: the unbalance holds the motion in time.
 
 Cells that turn with the oil hardly move against a whirl of half the speed: a cycle depends a little on how they lie at
-its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore told as the mean of
-those with cells in several places; how far these lie apart is part of the error of the cells.
-"""
+its start. In a run they pass all places in turn, within some ten periods. A cycle is therefore stated as the mean over
+several places of the cells; the scatter of these is part of the error of the cells. """
 
 from __future__ import annotations
 
@@ -91,7 +90,7 @@ class Shot:
 
 @dataclass(frozen=True)
 class Rest:
-    """A resting position. x, wet: its state; omega: rad/s; displacement: (J, 2), see PeriodMap; eigenvalues: (k,) 1/s
+    """A static equilibrium. x, wet: its state; omega: rad/s; displacement: (J, 2), see PeriodMap; eigenvalues: (k,) 1/s
     of slow motions, and their states (N, k)."""
 
     x: Array
@@ -132,15 +131,15 @@ class Rest:
 
 
 class Shooting:
-    """Finds cycles and resting positions of one machine, or, where its unbalance acts, synchronous motions. unit: that
-    of speeds and frequencies in rad/s."""
+    """Finds cycles and static equilibria of one machine, or, where its unbalance acts, synchronous motions. unit: of
+    speeds and frequencies, in rad/s."""
 
     def __init__(self, flow: PeriodMap, unit: float) -> None:
         self.flow, self.unit = flow, unit
 
     @property
     def free(self) -> bool:
-        """Whether the period is that of a whirl, and not that of the rotor."""
+        """Whether the period is of a whirl, not of the rotor."""
         return self.flow.driven == 0.0
 
     @property
@@ -158,7 +157,7 @@ class Shooting:
         return AT_REST_DIFFERENCE if self.flow.held.any() else DIFFERENCE
 
     def rest(self, near: Wet, omega: float, wider: float = 1.0) -> Rest | None:
-        """The resting position at a speed, as a fixed point of the map over half a revolution: whirls of up to the
+        """The static equilibrium at a speed, as a fixed point of the map over half a revolution: whirls of up to the
         speed of the rotor have frequencies of their own in it. None if it does not converge. wider: factor of what
         states are disturbed by."""
         time, none, difference = math.pi / omega, np.zeros(0), wider * self.at_rest_difference
@@ -171,12 +170,12 @@ class Shooting:
             x = self.flow.packed(near, self.unit)
             space = slow_space(mapped, x, none, self._first(x), difference)
             free = Conditions(np.zeros((0, len(x))), np.zeros((0, 0)))
-            found = fixed_point(mapped, x, none, space, free)
-            if found is None:
+            fixed = fixed_point(mapped, x, none, space, free)
+            if fixed is None:
                 return None
-            x, passage = found.x, asked.passage
+            x, passage = fixed.x, asked.passage
             asked.settle(x)
-            space = slow_space(mapped, x, none, self._first(x, found.space), difference)
+            space = slow_space(mapped, x, none, self._first(x, fixed.space), difference)
         except Unreachable:
             return None
         values, states = ritz(space)
@@ -189,7 +188,7 @@ class Shooting:
         size = len(shot.x)
         conditions = both(self.held(shot.wet), along)
         guess_x, guess_p = shot.x + length * along[:size], shot.p + length * along[size:]
-        return self._found(replace(shot, tangent=along), guess_x, guess_p, conditions)
+        return self._solved(replace(shot, tangent=along), guess_x, guess_p, conditions)
 
     def direction(self, shot: Shot, after: Shot) -> Array:
         """(N + 2,) direction of length 1 from one cycle to the next, without what they differ by in time.
@@ -205,13 +204,13 @@ class Shooting:
         share = (math.log(omega / self.unit) - shot.p[1]) / (other.p[1] - shot.p[1])
         x, p = shot.x + share * (other.x - shot.x), shot.p + share * (other.p - shot.p)
         for one in (shot, other) if share < 0.5 else (other, shot):
-            found = self._found(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
-            if found is not None:
-                return found
+            cycle = self._solved(one, x, p, both(self.held(one.wet), unit_vector(len(x) + 2)))
+            if cycle is not None:
+                return cycle
         return None
 
     def from_rest(self, rest: Rest, number: int, length: float) -> Shot | None:
-        """The cycle of a small size beside a Hopf point; number: of the eigenvalue that crosses there."""
+        """The cycle of a small size next to a Hopf point; number: of the eigenvalue that crosses there."""
         mode, nu = rest.states[:, number], rest.eigenvalues[number].imag
         steps = round(STEPS_PER_REVOLUTION * rest.omega / nu)
         along, across = mode.real / np.linalg.norm(mode.real), -mode.imag
@@ -221,28 +220,28 @@ class Shooting:
         tangent = np.concatenate([along, np.zeros(2)])
         rows = np.stack([np.append(across / np.linalg.norm(across), np.zeros(2)), tangent])
         start = self._near(rest.wet, p, tangent, steps)
-        found = self.begun(start, guess, both(*rows))
-        return None if found is None else replace(found, tangent=self.direction(start, found))
+        cycle = self.begun(start, guess, both(*rows))
+        return None if cycle is None else replace(cycle, tangent=self.direction(start, cycle))
 
     def with_unbalance(self, rest: Rest) -> Shot | None:
-        """The synchronous motion at the speed of a resting position, the tangent to lower speeds; None if it is not
+        """The synchronous motion at the speed of a static equilibrium, the tangent to lower speeds; None if it is not
         found. The unbalance is raised in steps where one step does not lead there."""
         size, speed = len(rest.x), math.log(rest.omega / self.unit)
         p = np.array([math.log(2.0 * math.pi) - speed, speed])
         down = np.append(np.zeros(size), [1.0, -1.0]) / math.sqrt(2.0)
-        found, share = self._near(rest.wet, p, down, STEPS_PER_REVOLUTION), 0.0
+        cycle, share = self._near(rest.wet, p, down, STEPS_PER_REVOLUTION), 0.0
 
         def raised(by: float) -> Shot | None:
             partly = Shooting(replace(self.flow, driven=(share + by) * self.flow.driven), self.unit)
-            held = both(self.held(found.wet), unit_vector(size + 2))
-            return partly.begun(found, found.x, held)
+            held = both(self.held(cycle.wet), unit_vector(size + 2))
+            return partly.begun(cycle, cycle.x, held)
 
         while share < 1.0:
             there, step = halved_until(raised, 1.0 - share, SMALLEST_SHARE)
             if there is None:
                 return None
-            found, share = there, share + step
-        return found
+            cycle, share = there, share + step
+        return cycle
 
     def _near(self, wet: Wet, p: Array, tangent: Array, steps: int) -> Shot:
         """A machine as a motion of which nothing is known."""
@@ -266,20 +265,20 @@ class Shooting:
             space = slow_space(asked.at, guess, start.p, self._first(guess))
         except Unreachable:
             return None
-        return self._found(replace(start, space=space), guess, start.p, conditions)
+        return self._solved(replace(start, space=space), guess, start.p, conditions)
 
-    def _found(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
+    def _solved(self, shot: Shot, x: Array, p: Array, conditions: Conditions) -> Shot | None:
         asked = _Asked(self, shot.wet, shot.steps)
         try:
-            found = fixed_point(asked.at, x, p, shot.space, conditions)
-            if found is None:
+            fixed = fixed_point(asked.at, x, p, shot.space, conditions)
+            if fixed is None:
                 return None
-            x, p = found.x, found.p
+            x, p = fixed.x, fixed.p
             asked.settle(x)
             passage, wet = asked.passage, asked.near
             gap = 1.0 - float(np.hypot(passage.displacements[:, :, 0], passage.displacements[:, :, 1]).max())
             by = DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
-            space = slow_space(asked.at, x, p, self._first(x, found.space), by)
+            space = slow_space(asked.at, x, p, self._first(x, fixed.space), by)
         except Unreachable:
             return None
         held = self.held(wet)
@@ -298,14 +297,14 @@ class Shooting:
         not in the first. steps: of the period; close: see fixed_point."""
         asked = _Asked(self, near, steps)
         try:
-            found = fixed_point(asked.at, self.flow.packed(near, self.unit), p, space, conditions, close)
+            fixed = fixed_point(asked.at, self.flow.packed(near, self.unit), p, space, conditions, close)
         except Unreachable:
-            found = None
-        if found is None:
+            fixed = None
+        if fixed is None:
             return ()
-        asked.settle(found.x)
-        first = found.p, asked.passage.displacements
-        others = (self._elsewhere(place, asked, found.p, found.space, conditions, close) for place in self.flow.places)
+        asked.settle(fixed.x)
+        first = fixed.p, asked.passage.displacements
+        others = (self._elsewhere(place, asked, fixed.p, fixed.space, conditions, close) for place in self.flow.places)
         return (first, *(each for each in others if each is not None))
 
     def _elsewhere(
@@ -315,18 +314,18 @@ class Shooting:
         there = self.flow.moved(here.near, place)
         asked = _Asked(self, there, here.steps, self.flow.lying(place))
         try:
-            found = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions, close)
+            fixed = fixed_point(asked.at, self.flow.packed(there, self.unit), p, space, conditions, close)
         except Unreachable:
             return None
-        return None if found is None else (found.p, asked.passage.displacements)
+        return None if fixed is None else (fixed.p, asked.passage.displacements)
 
     def held(self, wet: Wet) -> Array:
         """(N + 2,) what holds a motion in time: nothing along the direction in which its state moves, of the rotor
         alone; with the unbalance no change of T Omega."""
         if not self.free:
             return np.append(np.zeros(self.flow.size), np.ones(2))
-        found = self.flow.motion_of(wet, self.unit)
-        return np.append(found / float(np.linalg.norm(found)), np.zeros(2))
+        motion = self.flow.motion_of(wet, self.unit)
+        return np.append(motion / float(np.linalg.norm(motion)), np.zeros(2))
 
     def _first(self, x: Array, known: SlowSpace | None = None) -> Array:
         """(N, j) unit states of the rotor and of fillings, and the slow motions that are known already, oil that stays
@@ -377,7 +376,7 @@ def largest(displacements: Array) -> Array:
 
 
 def driven_multipliers(space: SlowSpace) -> Multipliers:
-    """The multipliers of a motion with the unbalance; none is trivial, and a 1 stands in its place."""
+    """The multipliers of a motion with the unbalance; none is trivial; the first one is set to 1."""
     return Multipliers(np.append(1.0 + 0.0j, ritz(space)[0]), BLURRED)
 
 

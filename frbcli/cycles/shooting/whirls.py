@@ -1,5 +1,5 @@
-"""The whirls of a branch in films on cells with the unbalance: what its stable cycles of nearly half the speed lock in
-with, if a run comes to it."""
+"""The whirls of a branch in finite-volume films with the unbalance: what its stable cycles of nearly half the speed
+lock in with, if a run comes to it."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from frbcli.cycles.result import CycleBranch, MissingWhirl, UnbalancedWhirl, her
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, Wet
 from frbcli.cycles.shooting.shots import Shooting, Shot, largest
 from frbcli.cycles.unbalance.synchronous import WHIRLS
-from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, taken
+from frbcli.cycles.unbalance.whirls import FREE, locked_lines, nearly_half, spaced
 
-APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are taken
+APART = 1.0 / 10.0  # of the range of speeds: distance between the cycles of a branch that are followed
 SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl that locks in nearly repeats
 RUNS = 5  # each of as many periods, as long as the whirl nearly repeats
 LAST, PER_PERIOD = 100, 32  # of them, in which a whirl is watched, and its moments in each
@@ -31,7 +31,7 @@ def whirls_of_branch(
     """A branch with its whirls. shots: of its points but the first, which is at rest; range_: of the speeds in rad/s;
     observe: see limit_cycles."""
     driven, whirls, missing = shooting.with_all_unbalance, list[UnbalancedWhirl](), list[MissingWhirl]()
-    for place in taken(branch, APART * hertz(range_)):
+    for place in spaced(branch, APART * hertz(range_)):
         if place == 0:
             continue
         point, shot = branch.points[place], shots[place - 1]
@@ -109,11 +109,11 @@ def _locked(driven: Shooting, run: HeldRun) -> Shot | None:
     """The motion of two periods of the rotor that a run of a cycle ends in; None if it does not."""
     if run.moved[1] > REPEATS:
         return None
-    found = driven.locked_in(run.wet, run.omega)
-    if found is None or not found.multipliers.stable:
+    locked = driven.locked_in(run.wet, run.omega)
+    if locked is None or not locked.multipliers.stable:
         return None
-    half = np.fft.rfft(found.displacements[:-1], axis=0, norm="forward")[1::2]
-    return found if float(np.abs(half).max()) > WHIRLS else None
+    half = np.fft.rfft(locked.displacements[:-1], axis=0, norm="forward")[1::2]
+    return locked if float(np.abs(half).max()) > WHIRLS else None
 
 
 def _whirl(driven: Shooting, shot: Shot) -> UnbalancedWhirl:

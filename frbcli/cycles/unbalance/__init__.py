@@ -1,1 +1,1 @@
-"""Motions with the unbalance beside the branches of limit cycles: synchronous, and whirls that lock in."""
+"""Motions with unbalance near the branches of limit cycles: synchronous ones, and whirls that lock in."""

@@ -2,8 +2,8 @@
 
 With an unbalance at 2 mu, which is shifted against the whirl by an angle theta, a cycle of some frequency mu(theta)
 exists; it goes on from the one without unbalance, mu = nu. Where mu = Omega / 2 for some theta the whirl locks in, for
-one theta with a stable motion, for another one with an unstable one. If no theta has it, the whirl does not lock in.
-"""
+one theta with a stable motion, for another one with an unstable one. If there is no such theta, the whirl does not lock
+in. """
 
 from __future__ import annotations
 
@@ -40,9 +40,9 @@ def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> 
             share *= 0.5
             continue
         for guess in guesses:
-            found = locked_near(machine, guess, omega, share)
-            if found is not None:
-                return _raised(machine, found, omega, share)
+            locked = locked_near(machine, guess, omega, share)
+            if locked is not None:
+                return _raised(machine, locked, omega, share)
         return None
     return None
 
@@ -62,19 +62,19 @@ def locked_near(machine: Machine, motion: Complex, omega: float, share: float = 
     return cycle if cycle.multipliers.stable and np.abs(whirl).max() > WHIRLS else None
 
 
-def _raised(machine: Machine, found: Cycle, omega: float, share: float) -> Cycle | None:
+def _raised(machine: Machine, locked: Cycle, omega: float, share: float) -> Cycle | None:
     """The motion with the whole unbalance that goes on from one with a share of it."""
     step = share
     while share < 1.0:
         higher = min(1.0, share + step)
-        there = locked_near(machine, unpacked(found.y[:-2], machine.size), omega, higher)
+        there = locked_near(machine, unpacked(locked.y[:-2], machine.size), omega, higher)
         if there is not None:
-            found, share, step = there, higher, 2.0 * step
+            locked, share, step = there, higher, 2.0 * step
         elif step < SMALLEST:
             return None
         else:
             step *= 0.5
-    return found
+    return locked
 
 
 def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: float) -> list[Complex]:
@@ -103,20 +103,20 @@ def _guesses(machine: Machine, motion: Complex, nu: float, omega: float, share: 
 def shifted(machine: Machine, motion: Complex, nu: float, omega: float, share: float, angles: Array) -> list[Array]:
     """The cycles with a share of the unbalance shifted by angles theta, each from the one before it. Raises
     Unreachable."""
-    y, found = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]]), []
+    y, cycles = np.concatenate([packed(motion), [nu / machine.pace, omega / machine.pace]]), []
     for theta in angles:
         y = _shifted(machine, motion, y, share, float(theta))
-        found.append(y)
-    return found
+        cycles.append(y)
+    return cycles
 
 
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
-    """The cycle with a share of the unbalance shifted by theta, next to y; its phase is that of the reference. Raises
-    Unreachable."""
-    found = corrected(_equations(machine, reference, share, theta), y, unit_vector(len(y)))
-    if found is None:
+    """The cycle with a share of the unbalance shifted by theta, next to y; its phase is the phase of the reference.
+    Raises Unreachable."""
+    place = corrected(_equations(machine, reference, share, theta), y, unit_vector(len(y)))
+    if place is None:
         raise Unreachable
-    return found.y
+    return place.y
 
 
 def _equations(machine: Machine, reference: Complex, share: float, theta: float) -> Equations:

@@ -1,10 +1,9 @@
-"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and those of
+"""The synchronous response with unbalance, nonlinear: motions of the rotor's own period, stable or not; and motions of
 two of its periods, see locked.py.
 
-The equations are those of a cycle (balance.py) with nu = Omega, or 2 nu = Omega, in place of the phase condition, and
+The equations of a cycle (balance.py) apply with nu = Omega, or 2 nu = Omega, instead of the phase condition, and with
 the unbalance in the first or second harmonic, Omega^2 times the motion that it makes behind the films. A force of the
-order k acts in k times that harmonic.
-"""
+order k acts in k times that harmonic. """
 
 from __future__ import annotations
 
@@ -46,8 +45,8 @@ class Synchronous(Follower):
         return partial(self._motion, reference=unpacked(place.y[:-2], self.machine.size))
 
     def fast_multipliers(self, machine: Machine, y: Array, _near: Multipliers | None, _enough: float) -> Multipliers:
-        """The multipliers of a motion y; none is trivial, for the unbalance holds it in time, and a 1 stands in its
-        place."""
+        """The multipliers of a motion y; none is trivial, since the unbalance holds it in time; the first one is set to
+        1."""
         harmonics = (len(y) - 2) // machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
         values = np.linalg.eigvals(monodromy(machine, self.course.seen_states(machine), y, count)).astype(complex)
@@ -75,7 +74,7 @@ def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1
 
 
 def synchronous_response(follower: Synchronous, resting: Equilibrium) -> Branch | None:
-    """The response from the speed of a resting position down to the slowest one that a follower of such motions has;
+    """The response from the speed of a static equilibrium down to the slowest one that a follower of such motions has;
     None if it does not begin."""
     machine = follower.machine
     motion = np.zeros((first_harmonics(machine, 1) + 1, machine.size), dtype=complex)
@@ -89,8 +88,8 @@ def synchronous_response(follower: Synchronous, resting: Equilibrium) -> Branch 
     place = follower.refitted(oriented(start, along))
     if place is None:
         return None
-    found = follow_branch(follower, place)
-    return replace(found, cycles=(follower.cycle(place), *found.cycles))
+    branch = follow_branch(follower, place)
+    return replace(branch, cycles=(follower.cycle(place), *branch.cycles))
 
 
 def driven_motion(machine: Machine, harmonics: int, periods: int, share: float, theta: float = 0.0) -> Array:

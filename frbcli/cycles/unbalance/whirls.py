@@ -1,8 +1,7 @@
-"""The whirls with the unbalance beside the branches of limit cycles: what stable cycles of nearly half the speed lock
-in with, and where the synchronous motion is stable.
+"""The whirls with unbalance near the branches of limit cycles: what stable cycles of nearly half the speed lock in
+with, and where the synchronous motion is stable.
 
-A whirl that does not lock in has a frequency of its own beside that of the rotor. It is not computed: a run shows it.
-"""
+A whirl that does not lock in has its own frequency besides the rotor's. It is not computed: a run shows it. """
 
 from __future__ import annotations
 
@@ -33,24 +32,24 @@ from frbcli.cycles.unbalance.locked import locked_near, locked_whirl
 APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
 NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
 ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
-LINES, FAINT = 8, 1e-4  # beside those of whirl and unbalance: how many lines, and the smallest over the clearance
+LINES, FAINT = 8, 1e-4  # besides whirl and unbalance: how many lines, and the smallest over the clearance
 # Why no whirl locks in
 FREE = "its frequency is not near half the speed"
 NOT_FOUND = "no stable motion of half the speed was found"
 UNSETTLED = "its temperatures do not settle"
 
 
-def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
+def whirls_with_unbalance(diagram: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:
     """A diagram over the speed with the whirls that its stable cycles lock in with.
 
     course: which the diagram goes over; observe: called with the number of motions so far, the speed in Hz and the
     largest eccentricity of the latest one.
     """
-    speeds, branches, count = [point.speed_Hz for point in found.equilibria], [], 0
-    for branch in found.branches:
+    speeds, branches, count = [point.speed_Hz for point in diagram.equilibria], [], 0
+    for branch in diagram.branches:
         near: Cycle | None = None
         whirls, missing = list[UnbalancedWhirl](), list[MissingWhirl]()
-        for point in (branch.points[place] for place in taken(branch, APART * (max(speeds) - min(speeds)))):
+        for point in (branch.points[place] for place in spaced(branch, APART * (max(speeds) - min(speeds)))):
             try:
                 near = _locked(course, point, near)
             except Unreachable as why:
@@ -62,10 +61,10 @@ def whirls_with_unbalance(found: LimitCycles, course: MachineCourse, observe: Ob
             if observe is not None:
                 observe(count, point.speed_Hz, float(whirls[-1].eccentricity_max.max()))
         branches.append(replace(branch, with_unbalance=tuple(whirls), missing=tuple(missing)))
-    return replace(found, branches=tuple(branches))
+    return replace(diagram, branches=tuple(branches))
 
 
-def taken(branch: CycleBranch, apart: float) -> list[int]:
+def spaced(branch: CycleBranch, apart: float) -> list[int]:
     """Places in a branch of stable cycles at some distance from each other in Hz, with those that were asked for."""
     places: list[int] = []
     for place, point in enumerate(branch.points):
@@ -81,7 +80,7 @@ def nearly_half(point: CyclePoint) -> bool:
 
 
 def locked_lines(omega: float, harmonics: Complex) -> tuple[SpectralLine, ...]:
-    """The lines of a motion of two periods of the rotor: those of whirl and unbalance, then the largest others. omega:
+    """The lines of a motion of two periods of the rotor: whirl and unbalance first, then the largest others. omega:
     rad/s; harmonics: (H + 1, 2 F) of the displacements over the clearance."""
     whirl, unbalance, *others = (
         SpectralLine(_multiple_of_half(order), 0.5 * order * hertz(omega), _longer_axis(harmonic))
@@ -119,11 +118,11 @@ def _locked_at(machine: Machine, motion: Complex, point: CyclePoint, near: Cycle
     """The motion that a cycle with harmonics (H + 1, c) locks in with at the temperatures of a machine. Raises
     Unreachable where none is found."""
     nu, omega = 2.0 * math.pi * point.frequency_Hz, 2.0 * math.pi * point.speed_Hz
-    found = None if near is None else locked_near(machine, unpacked(near.y[:-2], machine.size), omega)
-    found = found or locked_whirl(machine, motion, nu, omega)
-    if found is None:
+    locked = None if near is None else locked_near(machine, unpacked(near.y[:-2], machine.size), omega)
+    locked = locked or locked_whirl(machine, motion, nu, omega)
+    if locked is None:
         raise Unreachable(NOT_FOUND)
-    return found
+    return locked
 
 
 def _motion_of(machine: Machine, point: CyclePoint) -> Complex:
@@ -163,25 +162,25 @@ def _multiple_of_half(order: int) -> str:
     return "Omega / 2" if order == 1 else f"{order} Omega / 2"
 
 
-def of_no_whirl(found: LimitCycles) -> LimitCycles:
+def of_no_whirl(diagram: LimitCycles) -> LimitCycles:
     """A diagram whose whirls with the unbalance were asked for, with what is to be said where none was sought, and
     where the synchronous motion is stable."""
-    notes = list(found.notes)
-    if not any(branch.with_unbalance or branch.missing for branch in found.branches):
+    notes = list(diagram.notes)
+    if not any(branch.with_unbalance or branch.missing for branch in diagram.branches):
         notes.append("With unbalance: no branch has a stable cycle, from which a whirl is sought.")
-    return replace(found, notes=(*notes, *_synchronous(found)))
+    return replace(diagram, notes=(*notes, *_synchronous(diagram)))
 
 
-def _synchronous(found: LimitCycles) -> list[str]:
+def _synchronous(diagram: LimitCycles) -> list[str]:
     """Where the synchronous motion is stable, in words: each of the branches between its folds by itself."""
-    pieces = between_folds(found.synchronous)
+    pieces = between_folds(diagram.synchronous)
     if not pieces:
         return []
     if len(pieces) == 1:
         return [f"The synchronous motion is {_stability(pieces[0])}, where it was computed."]
-    folds = " and ".join(f"{point.speed_Hz:.6g} Hz" for point in found.synchronous if point.kind == FOLD)
-    told = [f"The synchronous motion has {len(pieces)} branches, which meet in folds at {folds}."]
-    return told + [
+    folds = " and ".join(f"{point.speed_Hz:.6g} Hz" for point in diagram.synchronous if point.kind == FOLD)
+    notes = [f"The synchronous motion has {len(pieces)} branches, which meet in folds at {folds}."]
+    return notes + [
         f"Branch {number} of the synchronous motion is {_stability(piece)}, with eccentricities of "
         f"{min(sizes):.3g} to {max(sizes):.3g}."
         for number, piece in enumerate(pieces, start=1)

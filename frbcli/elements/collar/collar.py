@@ -228,16 +228,16 @@ def collar_under(case: Case, bearing: ThrustBearing, load: AnyLoad) -> Collar:
 @lru_cache(maxsize=8)
 def rests_over_speed(collar: Collar) -> tuple[CollarRest, ...]:
     """Where a collar rests, by ascending speed, at all speeds of its table at which its load is carried."""
-    found = []
+    rests = []
     count = SPEEDS if collar.thermal is None else WARM_SPEEDS
     below, above = np.geomspace(SLOWEST, 1.0, 3 * count // 4), np.geomspace(1.0, FASTEST, count // 4)
     for share in (*below.tolist(), *above[1:].tolist()):
         try:
-            found.append(collar.rest(share * collar.top))
+            rests.append(collar.rest(share * collar.top))
         except NotCarried:
-            if found:
+            if rests:
                 break
-    return tuple(found)
+    return tuple(rests)
 
 
 def tilt_part(collar: Collar) -> LinearPart:

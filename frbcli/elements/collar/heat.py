@@ -27,7 +27,7 @@ LossAndFlow = Callable[[float], tuple[float, float]]  # W and m^3/s of all pads 
 
 @dataclass(frozen=True)
 class PadHeat:
-    """The heat of a case, as far as it is that of thrust bearings."""
+    """The heat of a case, as far as it concerns thrust bearings."""
 
     oil: Oil
     thermal: Thermal

@@ -97,12 +97,12 @@ class AxialMotion:
         return [float(state[1]), force / self.mass]
 
     def room(self, t: float, state: Array) -> float:
-        """The smaller gap less that of contact, in m."""
+        """The smaller gap less the gap at contact, in m."""
         return min(float(self._gap(side, state[:1])[0]) for side in self._sides) - self.collar.thin
 
     def missing(self) -> tuple[float, float]:
-        """The largest part of the load in N that a full film carries only by pressures below that of cavitation, as its
-        collar lifts, and its time in s."""
+        """The largest part of the load in N that a full film carries only by pressures below the cavitation pressure,
+        as its collar lifts, and its time in s."""
         times = np.linspace(0.0, self.end, LOOKED_AT)
         lifts = []
         for t in times.tolist():
@@ -111,8 +111,8 @@ class AxialMotion:
                 gap, rate = float(self._gap(side, np.array([position]))[0]), side * velocity
                 bound = self.collar.viscosity * self.collar.films(gap).damping * max(rate, 0.0)
                 lifts.append((bound, t, gap, rate))
-        found = [(self._cut(*lift), lift[1]) for lift in sorted(lifts, reverse=True)[:SOLVED]]
-        return max(found)
+        candidates = [(self._cut(*lift), lift[1]) for lift in sorted(lifts, reverse=True)[:SOLVED]]
+        return max(candidates)
 
     def _cut(self, bound: float, t: float, gap: float, rate: float) -> float:
         """That part of one film; bound: what it can be at most."""
@@ -145,13 +145,13 @@ def axial_motion(case: Case, profile: SpeedProfile, mass: float) -> AxialMotion 
 
     touch.terminal = True  # type: ignore[attr-defined]
     for begin, stop in zip(profile.times[:-1].tolist(), profile.times[1:].tolist(), strict=True):
-        found = solve_ivp(moving.slope, (begin, stop), state, "LSODA", dense_output=True, events=touch,
+        solution = solve_ivp(moving.slope, (begin, stop), state, "LSODA", dense_output=True, events=touch,
                           rtol=RELATIVE, atol=ABSOLUTE)  # fmt: skip
-        if not found.success:
-            raise NotConverged(f"The motion along the axis was not found at {begin:.4g} s: {found.message}")
-        pieces.append(found.sol)
-        state, end = found.y[:, -1], float(found.t[-1])
-        if found.status == 1:
+        if not solution.success:
+            raise NotConverged(f"The motion along the axis was not found at {begin:.4g} s: {solution.message}")
+        pieces.append(solution.sol)
+        state, end = solution.y[:, -1], float(solution.t[-1])
+        if solution.status == 1:
             break
     motion = AxialMotion(collar, profile, mass, tuple(pieces), end)
     share, t = motion.missing()

@@ -31,7 +31,7 @@ ALONG = "and does nothing else: a {} rotor moves in translation and does not til
 
 @dataclass(frozen=True)
 class ThrustElement(MachineElement):
-    """Pads beside a collar. stand: the node that the pads stand on; rotor: kind of the rotor, "" without one; collar:
+    """Pads next to a collar. stand: the node that the pads stand on; rotor: kind of the rotor, "" without one; collar:
     what it carries, None without an axial load."""
 
     given: ThrustBearing
@@ -65,7 +65,7 @@ class ThrustElement(MachineElement):
         linear = self.linear
         return Parts() if linear is None else Parts(links=((Link(COLLAR, self.stand, sees=TILTS), linear),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         if self.collar is None or not self.collar.top:
             return "thrust bearing", f"{self.given.name}: left out".removeprefix(": "), LEFT_OUT
         rest = self.collar.rest(self.collar.top)

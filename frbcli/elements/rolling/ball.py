@@ -129,7 +129,7 @@ class BallBearingElement(MachineElement):
         links = ((link, damping),) if self.given.damping else ()
         return Parts(links=links, ports=((self.signal, link, BallForce(self.rings)),))
 
-    def told(self, site: Site) -> Line:
+    def plan_line(self, site: Site) -> Line:
         return self.line
 
     @property

@@ -1,9 +1,8 @@
 """A ball bearing: its geometry, contacts and frequencies.
 
-The contact angle without load is that of the grooves, or follows from the radial clearance G, by which one ring moves
+The contact angle without load is given by the grooves, or follows from the radial clearance G, by which one ring moves
 from one side to the other: cos(alpha_0) = 1 - G / (2 A), A = (f_i + f_o - 1) d (Harris, Rolling Bearing Analysis,
-chapter 2).
-"""
+chapter 2). """
 
 from __future__ import annotations
 
@@ -52,7 +51,7 @@ class BallBearing:
 
     @property
     def cage_ratio(self) -> float:
-        """Speed of the cage over that of the shaft."""
+        """Speed of the cage over the speed of the shaft."""
         return 0.5 * (1.0 - self.gamma)
 
     @property
@@ -77,7 +76,7 @@ class BallBearing:
 
     @cached_property
     def contacts(self) -> tuple[HertzContact, HertzContact]:
-        """Those of a ball with the inner and the outer ring."""
+        """Contacts of a ball with the inner and the outer ring."""
         d, gamma = self.ball_diameter, self.gamma
         inner = 2.0 / d + 2.0 / d * gamma / (1.0 - gamma), 2.0 / d - 1.0 / (self.inner * d)
         outer = 2.0 / d - 2.0 / d * gamma / (1.0 + gamma), 2.0 / d - 1.0 / (self.outer * d)

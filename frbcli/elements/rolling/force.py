@@ -1,7 +1,7 @@
 """Force and stiffness of a ball bearing from the displacement of its inner ring: plain functions, compiled in runs.
 
 A ball between raceway grooves (Harris, Rolling Bearing Analysis, chapter 7; Jones): its centre lies `u` along the axis
-and `v` outwards from the centre of the outer groove, that of the inner groove at
+and `v` outwards from the centre of the outer groove, the centre of the inner groove at
 
     a = A sin(alpha_0) + z,    r = A cos(alpha_0) + x cos(psi) + y sin(psi)
 
@@ -32,13 +32,12 @@ BELOW = -0.5 * math.pi  # where the first ball stands at the cage angle 0: in th
 class BallNumbers(NamedTuple):
     """What a ball bearing is to the kernels, SI units.
 
-    points: places around at which balls stand; share: balls of all rows for each place; axial, radial: distances A
-    sin(alpha_0) and A cos(alpha_0) of the groove centres without load; inner, outer: distances of the centre of a ball
-    from the groove centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball
-    over the square of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on
-    all rows in N, or, of rings that are held, their axial displacement; cage: its speed over that of the shaft, 0 for
-    the mean over its angle.
-    """
+    points: places of balls around; share: balls of all rows for each place; axial, radial: distances A sin(alpha_0) and
+    A cos(alpha_0) of the groove centres without load; inner, outer: distances of the centre of a ball from the groove
+    centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball over the square
+    of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on all rows in N,
+    or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
+    angle. """
 
     points: int
     share: float
@@ -76,7 +75,7 @@ def ball(
     """A ball at rest between the centres of the outer groove, (0, 0), and of the inner one, (a, r), in m.
 
     share, centrifugal, rest: see of_balls. memory: from place `at` on a, r, u, v of a ball at rest near by, and the
-    derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. Those of this one are left there.
+    derivatives of u and v by a and r, u_a, u_r, v_a, v_r; zeros if not known. The values of this ball are left there.
 
     Returns the force (a, r) in N with which the inner ring presses on the ball, and its derivative (aa, ar, rr) by the
     place of the inner groove.
@@ -93,8 +92,8 @@ def ball(
     by_a, by_r = a - memory[at], r - memory[at + 1]
     u = memory[at + 2] + memory[at + 4] * by_a + memory[at + 5] * by_r
     v = memory[at + 3] + memory[at + 6] * by_a + memory[at + 7] * by_r
-    beside = u * u + v * v > outer * outer
-    if not beside:
+    outside = u * u + v * v > outer * outer
+    if not outside:
         u, v = _near(of, a, r, length, share, centrifugal)
     step_u = step_v = f_a = f_r = s_aa = s_ar = s_rr = h_uu = h_uv = h_vv = determinant = 0.0
     least, size = math.inf, 1.0
@@ -110,9 +109,9 @@ def ball(
         missed = math.sqrt(g_u * g_u + g_v * g_v)
         if (missed >= least or d_i + d_o <= 0.0) and size > SMALLEST:
             size, step_u, step_v = 0.5 * size, 0.5 * step_u, 0.5 * step_v
-            if beside:  # what is known does not help
+            if outside:  # what is known does not help
                 u, v = _near(of, a, r, length, share, centrifugal)
-                beside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
+                outside, least, size, step_u, step_v = False, math.inf, 1.0, 0.0, 0.0
             continue
         u, v, least, size, f_a, f_r = t_u, t_v, missed, 1.0, q_i * m_a, q_i * m_r
         along, across = 1.5 * root_i, q_i / l_i

@@ -58,7 +58,7 @@ def contact(one: Elastic, other: Elastic, rolling: float, across: float) -> Hert
 
     low, high = sorted((rolling, across))
     if low <= 0.0:
-        raise ValueError(f"curvatures of {low:.4g} 1/m along a contact: the bodies are not apart beside it")
+        raise ValueError(f"curvatures of {low:.4g} 1/m along a contact: the bodies are not apart next to it")
     total, difference = rolling + across, (high - low) / (rolling + across)
 
     def integrals(kappa: float) -> tuple[float, float]:

@@ -44,19 +44,19 @@ def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float 
         everything[free] = start[free] + MICROMETRE * q
         return _energy(of, psi, everything, of.centrifugal * omega**2)
 
-    found = minimize(
+    scaled = minimize(
         lambda q: at(q)[0], np.zeros(len(free)), method="trust-exact",
         jac=lambda q: MICROMETRE * at(q)[1][free],
         hess=lambda q: MICROMETRE**2 * at(q)[2][np.ix_(free, free)],
         options={"gtol": 1e-15, "maxiter": 500},
     ).x  # fmt: skip
-    for _ in range(3):  # beyond what differences of energies tell
-        _, gradient, matrix = at(found)
-        found = found - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free])[0] / MICROMETRE
-    energy, gradient, matrix = at(found)
+    for _ in range(3):  # beyond what differences of energies resolve
+        _, gradient, matrix = at(scaled)
+        scaled = scaled - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free])[0] / MICROMETRE
+    energy, gradient, matrix = at(scaled)
     inner, coupled = matrix[np.ix_(free, free)], matrix[free, :2]
     stiffness = matrix[:2, :2] - coupled.T @ np.linalg.lstsq(inner, coupled)[0]
-    start[free] += MICROMETRE * found
+    start[free] += MICROMETRE * scaled
     return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness, energy)
 
 

@@ -10,11 +10,10 @@ In the liquid c = c_l, in the vapour c = c_v. In the mixture between their densi
     r = (rho_l c_l^2 / (rho_v c_v^2) - 1) / (1 - theta_v),   theta_v = rho_v / rho_l,
 
 p and c being continuous at both ends. p_cav is where the mixture begins. The paper takes rho_v as given, from which
-p_cav follows; here p_cav is that of the case, and rho_v is the one with which the pressure of the vapour is rho c_v^2.
+p_cav follows; here p_cav is given by the case, and rho_v is the one with which the pressure of the vapour is rho c_v^2.
 
-The films have one viscosity eta, and their flow under pressure has no theta: this stands for a mixture of the viscosity
-theta eta, the mean of liquid and vapour by their volumes if eta_v / eta = rho_v / rho_l.
-"""
+The films have one viscosity eta, and their flow under pressure has no theta: this corresponds to a mixture of the
+viscosity theta eta, the mean of liquid and vapour by their volumes if eta_v / eta = rho_v / rho_l. """
 
 from __future__ import annotations
 

@@ -1,10 +1,9 @@
 """The laws compiled, each by itself, and how a compiled film calls one that it does not know.
 
-A film holds the addresses of two functions of its law, which numba makes from `cell`, `follow` and `empty` (law.py).
-So the kernels of films are compiled once for all laws, also for those that a user adds, and nothing compiled of
-a law is kept anywhere but in its own functions. Numba keeps these beside the file of a shipped law, until that file
-changes; those of a user's law are made anew in every process, since they may call what stands in other files.
-"""
+A film holds the addresses of two functions of its law, which numba makes from `cell`, `follow` and `empty` (law.py). So
+the kernels of films are compiled once for all laws, also for those that a user adds, and compiled code of a law exists
+in its own functions only. Numba keeps these next to the file of a shipped law, until that file changes; a user's law is
+compiled anew in every process, since it may call code of other files. """
 
 from __future__ import annotations
 
@@ -40,7 +39,7 @@ _FOLLOW = types.void(_POINTER, _POINTER, _POINTER, _POINTER)
 _CELLS = types.void(types.intp, _POINTER, _POINTER, _POINTER, _POINTER)
 _DOUBLES = ctypes.POINTER(ctypes.c_double)
 _first: Any = ndarray.to_fixed_tuple  # the first numbers of an array as a tuple
-# Stand in the templates below for those of one law.
+# Placeholders in the templates below for the functions of one law.
 cell: Any = Law.cell
 follow, empty, COUNT, GAS = Law.follow, Law.empty, 1, False
 
@@ -76,9 +75,9 @@ def addresses(law: Law) -> tuple[int, int]:
 
 def given_parameters(law: Law) -> np.ndarray[Any, np.dtype[np.float64]]:
     """(LARGEST_PARAMETERS,) parameters of a law, filled up with zeros."""
-    found = np.zeros(LARGEST_PARAMETERS)
-    found[: len(law.parameters)] = law.parameters
-    return found
+    parameters = np.zeros(LARGEST_PARAMETERS)
+    parameters[: len(law.parameters)] = law.parameters
+    return parameters
 
 
 def compiled_cells(law: Law, w: np.ndarray[Any, np.dtype[np.float64]], scales: Scales) -> CellState:
@@ -106,7 +105,7 @@ call_cells: Any = intrinsic(_call_cells)
 
 
 def _follow(given, motion, scales, law):  # type: ignore[no-untyped-def]
-    """CompiledLaw.follow of the law whose functions stand for follow and empty."""
+    """CompiledLaw.follow of the law whose functions replace follow and empty."""
     at, pressures, out = carray(motion, (MOTION,)), carray(scales, (3,)), carray(law, (LAW_NUMBERS,))
     parameters = follow(_first(carray(given, (COUNT,)), COUNT), at[ECCENTRICITY], at[SPEED], at[WHIRL])
     for i in range(COUNT):
@@ -115,7 +114,7 @@ def _follow(given, motion, scales, law):  # type: ignore[no-untyped-def]
 
 
 def _cells(n, law, scales, w, states):  # type: ignore[no-untyped-def]
-    """CompiledLaw.cells of the law whose function stands for cell."""
+    """CompiledLaw.cells of the law whose function replaces cell."""
     parameters, pressures = _first(carray(law, (COUNT,)), COUNT), carray(scales, (3,))
     at = Scales(pressures[0], pressures[1], pressures[2])
     unknowns, out = carray(w, (n,)), carray(states, (LAYERS, n))

@@ -71,24 +71,22 @@ FRONTS = 1.5  # fronts between cells make the order 1 to 2: the middle of it
 class Law:
     """A cavitation law; a subclass is a frozen dataclass, its fields are the numbers of the law as a film takes them.
 
-    What a class declares:
-    name: in film.cavitation; label: in pictures; equation: its numbers in the dissertation, or the source; meaning: of
-    the table [film.NAME], a sentence; cell_words: what a cell does, for the documents; keys: of that table.
-    conserves: whether oil neither appears nor vanishes in its cells; keeps_oil: whether the oil of a cell is a state
-    that goes on from one moment to the next; cavitates: whether it does anything below p_cav; clips: whether loads take
-    no pressure below p_cav; closed: whether the pressure is that of a linear equation, known in closed form between
-    rectangles; tabulated: whether its source follows from the pressure of the cell alone, as a penalty's, so that
-    films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn in;
-    empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
+    What a class declares: name: in film.cavitation; label: in pictures; equation: its numbers in the dissertation, or
+    the source; meaning: of the table [film.NAME], a sentence; cell_words: what a cell does, for the documents; keys: of
+    that table. conserves: whether oil neither appears nor vanishes in its cells; keeps_oil: whether the oil of a cell
+    is a state that goes on from one moment to the next; cavitates: whether it does anything below p_cav; clips: whether
+    loads take no pressure below p_cav; closed: whether the pressure solves a linear equation, known in closed form
+    between rectangles; tabulated: whether its source follows from the pressure of the cell alone, as a penalty's, so
+    that films without openings are tabulated; starves: whether its cavity stays so near to p_cav that no oil is drawn
+    in; empties: whether it is at p_cav, so that a film without supply carries nothing in the long run; holds_cavity:
     whether a source keeps the pressure from falling below p_cav; edges: whether the edge of its cavity within a cell is
-    known, see `edged`; published_form: whether it has a published form, with
-    artificial diffusion; carries_gas: whether the oil carries free gas, whose balance then follows from free_gas and
-    exchanged of the law, and of which `cell` takes two more parameters and has two more results, see bubbly.py.
-    order: by which forces become exact with smaller cells; cost: time of a solve on cells over that of Elrod's law;
-    fronts: steps that the fronts of oil in a film without inflow need over those of the two-phase law.
-    heavy: static load over width and diameter, Pa, above which errors of steps grow in its films.
-    compared: values of keys that the picture of theta(p) shows beside those of the case.
-    """
+    known, see `edged`; published_form: whether it has a published form, with artificial diffusion; carries_gas: whether
+    the oil carries free gas, whose balance then follows from free_gas and exchanged of the law, and of which `cell`
+    takes two more parameters and has two more results, see bubbly.py. order: by which forces become exact with smaller
+    cells; cost: time of a solve on cells over the time with Elrod's law; fronts: steps that the fronts of oil in a film
+    without inflow need over the steps with the two-phase law. heavy: static load over width and diameter, Pa, above
+    which errors of steps grow in its films. compared: values of keys that the picture of theta(p) shows besides the
+    case's own. """
 
     name: ClassVar[str]
     label: ClassVar[str]
@@ -116,8 +114,8 @@ class Law:
 
     @classmethod
     def scaled(cls, given: Any, oil: FilmOil) -> Self:
-        """The law of one film from the values `given` for its keys, by attribute, and from its oil. What it follows in
-        a film is that of the centred journal at 1 rad/s, see follow."""
+        """The law of one film from the values `given` for its keys, by attribute, and from its oil. Quantities that
+        follow the film are given for the centred journal at 1 rad/s, see follow."""
         return cls()
 
     @staticmethod
@@ -182,7 +180,7 @@ class Law:
         raise NotImplementedError
 
     def edge_source(self, pressure: Array, scales: Scales, rate: Array, through: Array) -> Array:
-        """Sources that belong to scaled gauge pressures of cells beside the edge of the cavity, see `edged`."""
+        """Sources for scaled gauge pressures of cells next to the edge of the cavity, see `edged`."""
         raise NotImplementedError
 
     def curve(self, ratio: Array) -> Array:
@@ -208,8 +206,8 @@ class Law:
 
 
 def source_at_edge(above: Array, rate: Array, through: Array) -> Array:
-    """Source of a cell whose pressure is `above` that of the cavity, which begins s < 1 cells behind its middle:
-    A (1 - s)^2 / 2 with s^2 = above / (A L^2 / (2 H^3)), see film/cells/cavity_edge.py."""
+    """Source of a cell whose pressure is by `above` larger than in the cavity, which begins s < 1 cells behind its
+    middle: A (1 - s)^2 / 2 with s^2 = above / (A L^2 / (2 H^3)), see film/cells/cavity_edge.py."""
     opens = np.maximum(rate, 0.0)
     most = 0.5 * opens / through
     place = np.sqrt(np.clip(np.divide(above, most, out=np.ones_like(above), where=most > 0.0), 0.0, 1.0))

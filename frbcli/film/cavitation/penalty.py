@@ -26,9 +26,8 @@ class Penalty(Law):
     """q = prefactor exp(-steepness (P - P_cav)), with P scaled in 1/s.
 
     prefactor: in 1/s; steepness: b of (3.32) over the ambient pressure (absolute reading) or over half the reference
-    speed (dimensionless reading), both in s. follows: whether the steepness is that of the centred journal and follows
-    the eccentricity, and whether both are those of 1 rad/s and follow the speed.
-    """
+    speed (dimensionless reading), both in s. follows: whether the steepness is given for the centred journal and
+    follows the eccentricity, and whether both are given for 1 rad/s and follow the speed. """
 
     prefactor: float
     steepness: float
@@ -93,8 +92,8 @@ class Penalty(Law):
         )
 
     def edged(self, state: CellState, w: Array, scales: Scales, rate: Array, through: Array) -> CellState:
-        """See Law.edged: a cell beside the edge has the source there where the law itself has less. Where the pressure
-        falls to that of the cavity over several cells, it has not."""
+        """See Law.edged: a cell next to the edge has this source where the law itself gives less, but not where the
+        pressure falls to the cavity pressure over several cells."""
         above, weight = self._above_cavity(state.pressure, scales, rate)
         source = source_at_edge(above, rate, through)
         more = (source > state.source) & (state.pressure_slope > 0.0)  # not in openings
@@ -115,8 +114,8 @@ class Penalty(Law):
 
     def _above_cavity(self, pressure: Array, scales: Scales, rate: Array) -> tuple[Array, Array]:
         """Pressure from which s at the edge follows, and its derivative by the pressure. In a cavity the source makes
-        up for the gap that opens. Beside it p'' = a (1 - e^(-b y)) at y above the pressure there, so that the slope is
-        that of a parabola of the height y - (1 - e^(-b y)) / b."""
+        up for the gap that opens. Next to it p'' = a (1 - e^(-b y)) at y above the pressure there, so that the slope
+        equals the slope of a parabola of the height y - (1 - e^(-b y)) / b."""
         cavity = -np.log(np.maximum(rate / self.prefactor, math.exp(NOTHING))) / self.steepness
         y = np.maximum(pressure - scales.cavitation - cavity, 0.0)
         weight = -np.expm1(-self.steepness * y)

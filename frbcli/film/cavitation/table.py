@@ -1,4 +1,4 @@
-"""The table of the cavitation laws: one row each. Everything else about a law stands in its own file."""
+"""The table of the cavitation laws: one row each. All else about a law is in its own file."""
 
 from __future__ import annotations
 

@@ -6,12 +6,11 @@ Oil appears in a cavity as fast as its gap opens, at the rate A = omega/2 H' + d
 pressure above it therefore is a r^2 / 2 with a = A / H^3 at the distance r, and has no slope at the edge. Balances of
 cells with the cavity between two middles would move the edge onto one of them: forces then have an error of second
 order that jumps from cell to cell, and their derivatives one of first order. Let the edge lie s < 1 cells of the length
-L behind the middle of the last cell with pressure, p = a (s L)^2 / 2. The flow that enters this cell for pressure is
-(s + 1/2) A L, that into the next one, whose pressure is that of the cavity, s^2 A L / 2, and the surfaces carry A L
-more out of it than into it. It is balanced with a source of A (1 - s)^2 / 2, and so the edge may lie anywhere.
+L behind the middle of the last cell with pressure, p = a (s L)^2 / 2. The pressure flow into this cell is (s + 1/2) A
+L, the one into the next cell, which is at cavity pressure, s^2 A L / 2, and the surfaces carry A L more out of it than
+into it. It is balanced with a source of A (1 - s)^2 / 2, and so the edge may lie anywhere.
 
-What the heat of the time loop asks films on cells for the oil that leaves them.
-"""
+What the heat of the time loop asks finite-volume films for the oil that leaves them. """
 
 from __future__ import annotations
 
@@ -93,8 +92,8 @@ def edge_slopes(film: VolumeFilm, motion: Motion, pressure: Array) -> tuple[Arra
 
 
 class CellEnds(NamedTuple):
-    """Films on cells as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1 over
-    the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
+    """Finite-volume films as they were made, for the heat of the time loop. far_open (F,); units (F,) m^2: a flow of 1
+    over the clearance; films, feed_holes, given (F, m, k) pressures: of VolumeFilms at the reference; resistance
     (channels,) over the viscosity; groove_pressure (channels,) Pa; exponents (F, p): by which the parameters of the
     laws follow the scale of the pressures."""
 

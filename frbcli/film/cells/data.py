@@ -1,4 +1,4 @@
-"""Films on volumes as arrays for the compiled kernels: all films of a machine beside each other."""
+"""Films on volumes as arrays for the compiled kernels: all films of a machine side by side."""
 
 from __future__ import annotations
 
@@ -41,15 +41,15 @@ SCALES = record(("reference", "f8"), ("cavitation", "f8"), ("ambient", "f8"))  #
 # An end of a section: CLOSED, GIVEN, FREE, or FED by a groove; the slope of the pressure there, see EndSlope; the
 # pressure in a groove; 1 over the distance from the last unknown, with the seal, over which oil diffuses.
 END = record(("kind", "i8"), ("rise", "f8"), ("bend", "f8"), ("pressure", "f8"), ("reach", "f8"))
-# One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it keeps
-# its oil; carries_gas: whether that carries free gas; bored: whether flows around take the gaps of both cells, as
-# beside bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s; supplied_gas,
-# gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any; settled: share
-# of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces that it flows
-# between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its L, and by how
-# much more it acts along than around, see diffusion/spread.py; parameters: of its law, of a centred journal at 1 rad/s.
-# Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply` is the largest; of
-# a supply that gives a flow at the most: given, line and lowest of supply_line.
+# One film. follow_at, cells_at: addresses of its compiled law; solver_at: of ring_solver; remembers: whether it is
+# mass-conserving; carries_gas: whether its oil carries free gas; bored: whether flows around take the gaps of both
+# cells, as next to bores; centrifugal: by which given pressures fall with the square of the grid's speed, in s;
+# supplied_gas, gas_content: free gas of the oil that is supplied, and all gas of the oil, of a law that carries any;
+# settled: share of its pace that its balances may be off by in the mean; roughness, over the clearance, of surfaces
+# that it flows between, and shear: see Section; diffuses, length, spread: whether it has an artificial diffusion, its
+# L, and by how much more it acts along than around, see diffusion/spread.py; parameters: of its law, of a centred
+# journal at 1 rad/s. Its openings hold the oil fraction `fraction` at `share` of the given pressures, of which `supply`
+# is the largest; of a flow-limited supply: given, line and lowest of supply_line.
 FILM = record(
     ("aspect", "f8"),
     ("scales", SCALES),
@@ -85,9 +85,9 @@ FILM = record(
 SIN, COS, GAP, FACE_SIN, FACE_COS, FACE_GAP, LENGTH, PUSH_X, PUSH_Y, BATHED, RING_ROWS = range(11)
 # Layers of cells: area in the balance; share of the cell that is film, and by how much the area exceeds it over the
 # cell's length; conductance of a gap of 1 to the next cell around and along, 0: none; given pressure; 1 where the
-# pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in
-# its film, 0: none; weight in the force; area in which oil is sheared; conductance to the next cell around with a gap
-# of its own, beside the edge of an opening, 0: none, and sine, cosine and gap of the centred journal there.
+# pressure is an unknown; conductance to the channel of a ring that opens there, and 1 + the number of that hole in its
+# film, 0: none; weight in the force; area in which oil is sheared; conductance to the next cell around with its own
+# gap, next to the edge of an opening, 0: none, and sine, cosine and gap of the centred journal there.
 (
     AREA,
     SHARE,
@@ -184,8 +184,8 @@ def _describe(film: VolumeFilm, own: np.record) -> None:
 
 @lru_cache(maxsize=FEW)
 def _geometry(section: Section, grid: VolumeGrid) -> tuple[Array, Array, Array]:
-    """ring (RING_ROWS, m), width (1, k) and cells (CELL_LAYERS, m, k) of a film, not to be written to. Those of a few
-    films are kept: a film is solved often, at each eccentricity with a law of its own."""
+    """ring (RING_ROWS, m), width (1, k) and cells (CELL_LAYERS, m, k) of a film, not to be written to. The arrays of a
+    few films are cached: a film is solved often, at each eccentricity with its own law."""
     m, k = grid.shape
     ring, width, cells = np.zeros((RING_ROWS, m)), np.zeros((1, k)), np.zeros((CELL_LAYERS, m, k))
     face, centred = grid.phi[1:], (0.0, 0.0)

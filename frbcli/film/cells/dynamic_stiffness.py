@@ -1,4 +1,4 @@
-"""The dynamic stiffness Z(s) of films that keep their oil: -F = Z(s) d for a motion d exp(s t) of the journal.
+"""The dynamic stiffness Z(s) of mass-conserving films: -F = Z(s) d for a motion d exp(s t) of the journal.
 
 F has c components, two forces and of a film that tilts two moments, d as many coordinates or one more, see LinearFilm.
 
@@ -76,8 +76,8 @@ def dynamic_stiffness(film: LinearFilm, frequencies: Sequence[float]) -> Dynamic
     rights: list[Array] = []
     lefts: list[Array] = []
     for s in (0.0j, *(1j * frequency for frequency in frequencies)):
-        for found, kept in zip(_changes(film, s), (rights, lefts), strict=True):
-            kept += [found.real] if s == 0.0 else [found.real, found.imag]
+        for change, kept in zip(_changes(film, s), (rights, lefts), strict=True):
+            kept += [change.real] if s == 0.0 else [change.real, change.imag]
     right, left = (_span(np.concatenate(kept, axis=1)) for kept in (rights, lefts))
     right, left = _filled(right, left), _filled(left, right)
     flow = left.T @ (film.flow @ right)
@@ -95,7 +95,7 @@ def _changes(film: LinearFilm, s: complex) -> tuple[Complex, Complex]:
     from scipy.sparse.linalg import splu  # takes long to load
 
     # Oil that leaves one cell enters others: the diagonal serves as pivot, as in elimination/block_cyclic.py, and the
-    # order is that of a symmetric matrix.
+    # order is the one for a symmetric matrix.
     matrix, at = film.at(s), s if s.imag else s.real
     solver = splu(
         matrix,

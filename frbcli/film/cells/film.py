@@ -59,8 +59,8 @@ class Flows:
 class VolumeSolution:
     """w: (m, k) unknown; state: of the cells, arrays (m, k), given values in grooves and holes; Newton iterations;
     before: (m, k) oil fractions before the upstream cells that it was solved with, see carried.py; gas: of a law whose
-    oil carries any; filling: of openings whose supply gives a flow at the most, see feed.py; stages: (n, 3, m, k) w,
-    c_in and r of a steady film with gas, first solved upwind, then each time with second order."""
+    oil carries any; filling: of openings with a flow-limited supply, see feed.py; stages: (n, 3, m, k) w, c_in and r of
+    a steady film with gas, first solved upwind, then each time with second order."""
 
     w: Array
     state: CellState
@@ -88,8 +88,8 @@ class VolumeFilm:
     def __init__(
         self, section: Section, grid: VolumeGrid, law: Law, reference: float, edged: bool = False
     ) -> None:  # fmt: skip
-        """reference: scaled pressure in 1/s that one unit of w stands for, see reference_pressure; edged: whether the
-        edge of the cavity lies within cells where the film rests, see cavity_edge.py, if its law knows it."""
+        """reference: scaled pressure in 1/s of one unit of w, see reference_pressure; edged: whether the edge of the
+        cavity lies within cells where the film rests, see cavity_edge.py, if its law knows it."""
         self.section, self.grid, self.law = section, grid, law
         self.edged = edged and law.edges and section.flow_roughness == 0.0
         self.scales = Scales(
@@ -101,10 +101,9 @@ class VolumeFilm:
     def full(self) -> Array:
         """(m, k) unknown of a full film at the ambient pressure.
 
-        Where that is p_cav, it stands on the kink of the law, and on its full side: from there one step of Newton's
-        method finds the pressures of the whole film, from the other side those of one more column of cells. Oil that
-        carries gas has this in equilibrium.
-        """
+        Where that is p_cav, it lies on the kink of the law, on its full side: from there one step of Newton's method
+        finds the pressures of the whole film, from the other side only of one more column of cells. Gas in the oil is
+        in equilibrium. """
         if self.law.carries_gas:
             return np.full(self.grid.shape, self.law.standing(self.scales))
         return np.full(self.grid.shape, max(ABOVE_KINK, -self.scales.cavitation / self.scales.reference))
@@ -142,7 +141,7 @@ class VolumeFilm:
 
     @property
     def clips_between(self) -> bool:
-        """Whether forces clip between the middles of cells, see clipped.py: not beside a circumferential groove, whose
+        """Whether forces clip between the middles of cells, see clipped.py: not next to a circumferential groove, whose
         cavities end within the width, so that their edges cross the rows of cells at a slant."""
         return self.law.clips and self.section.far != "groove"
 

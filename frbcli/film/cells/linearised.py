@@ -1,4 +1,4 @@
-"""A film on cells linearised about its settled state, with the oil of its cells as a state of its own.
+"""A finite-volume film linearised about its settled state, with the oil of its cells as a state of its own.
 
 With the changes w of the cells' unknowns, d of the journal's place and d' of its velocity, the balances (3.9) are
 
@@ -56,7 +56,7 @@ class LinearFilm:
     """A film of n states at rest, see above, by c coordinates of its journal. SI units but for the cells' own: flow and
     storage (n, n) sparse; by_place (n, c) per m and rad; by_rate (n, c) by their rates; by_total (n,) by omega_J +
     omega_S; push (2 or 4, n) N and N m on the journal; sheared (n,): share of Couette's torque that missing oil leaves;
-    field: of the settled film; ordered: whether the states stand in the order of their elimination, each with its own
+    field: of the settled film; ordered: whether the states are in the order of their elimination, each with its own
     equation."""
 
     flow: csc_matrix
@@ -83,7 +83,7 @@ class LinearFilm:
         return csc_matrix((shifted, both.indices, both.indptr), shape=both.shape)
 
     def turning(self) -> LinearFilm:
-        """The film beside rings: the angle by which journal and shell turn together is one more coordinate, and the
+        """The film next to rings: the angle by which journal and shell turn together is one more coordinate, and the
         share of Couette's torque that missing oil leaves one more component of the force."""
         by_place = np.column_stack([self.by_place, np.zeros_like(self.by_total)])
         by_rate, push = np.column_stack([self.by_rate, self.by_total]), np.vstack([self.push, self.sheared])
@@ -95,7 +95,7 @@ class LinearFilm:
 
 
 def lying(film: VolumeFilm, share: float) -> VolumeFilm:
-    """The film on cells that lie by a share of one cell further around."""
+    """The film with its cells shifted around by a share of one cell."""
     phi, z, height = film.grid.phi, film.grid.z, film.grid.height
     grid = volume_grid(film.section, phi + share * 2.0 * math.pi / (len(phi) - 1), z, height)
     return VolumeFilm(film.section, grid, film.law, film.scales.reference, film.edged)
@@ -114,9 +114,9 @@ def linear_film(
     solution = solver.steady(motion, start, upwind=True)
     weights = shear_weights(at, motion, factor)
     if at.law.carries_gas:
-        found = linear_states(at, motion, solution, weights)
-        moved = found.by_place / clearance, found.by_rate / clearance, found.by_total
-        return LinearFilm(found.flow, found.storage, *moved, found.push, found.sheared, solution.field, ordered=True)
+        terms = linear_states(at, motion, solution, weights)
+        moved = terms.by_place / clearance, terms.by_rate / clearance, terms.by_total
+        return LinearFilm(terms.flow, terms.storage, *moved, terms.push, terms.sheared, solution.field, ordered=True)
     settled = _SettledCells(solver, motion, solution, weights)
     return settled.at_pressure() if solution.filling >= ALL else settled.at_flow()
 
@@ -132,7 +132,7 @@ def by_neighbours(stencil: Array) -> csc_matrix:
 
 
 class _SettledCells:
-    """A settled film on cells, of which the derivatives are taken."""
+    """A settled finite-volume film, of which the derivatives are taken."""
 
     def __init__(self, solver: FilmSolver, motion: Motion, solution: VolumeSolution, weights: Array) -> None:
         """weights: see shear_weights."""
@@ -164,16 +164,16 @@ class _SettledCells:
         )
 
     def at_flow(self) -> LinearFilm:
-        """The film with the filling of its supply's line as its last state: line filling' + taken = given. What the
+        """The film with the filling of its supply's line as its last state: line filling' + outflow = given. What the
         openings take is what the cells get without flowing out at open ends."""
         from scipy.sparse import block_diag, bmat
 
         film, open_ = self.at_pressure(), self._parts[-1][UNKNOWN].ravel() != 0.0
         flow, by_place, *_ = self._balances(without_ends(self._parts[0]))
-        taken, clearance = -(open_ @ flow), self._solver.film.section.clearance
-        by_filling, taken_by_filling, push = self._by_filling()
+        outflow, clearance = -(open_ @ flow), self._solver.film.section.clearance
+        by_filling, by_supply, push = self._by_filling()
         return LinearFilm(
-            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [taken.reshape(1, -1), [[taken_by_filling]]]], "csc"),
+            flow=bmat([[film.flow, by_filling.reshape(-1, 1)], [outflow.reshape(1, -1), [[by_supply]]]], "csc"),
             storage=block_diag([film.storage, [[self._parts[0].line]]], "csc"),
             by_place=np.vstack([film.by_place, -(open_ @ by_place) / clearance]),
             by_rate=np.vstack([film.by_rate, np.zeros((1, 2))]),
@@ -211,8 +211,8 @@ class _SettledCells:
             left = -fields[:, :, k + BY_ITSELF].ravel()
             return left, flows[SUPPLY_NET : SUPPLY_NET + 1], self._pushed(self._states[PRESSURE]).sum(axis=(1, 2))
 
-        left, taken, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
-        return left, float(taken[0]), push
+        left, outflow, push = ((ahead - back) / (2.0 * step) for ahead, back in zip(at(step), at(-step), strict=True))
+        return left, float(outflow[0]), push
 
     def _pushed(self, pressure: Array) -> Array:
         """(2, m, k) forces in N of the cells with scaled gauge pressures, or their derivatives."""

@@ -1,4 +1,4 @@
-"""Forces, torques, pressures and oil flows of a film on cells."""
+"""Forces, torques, pressures and oil flows of a finite-volume film."""
 
 from __future__ import annotations
 
@@ -32,8 +32,8 @@ class OilBalance:
 
 @dataclass(frozen=True)
 class GasBalance:
-    """Free gas of the whole bearing. share: its volume at the saturation pressure over that of the oil, in the mean; in
-    m^3/s at that pressure, in, out and what leaves the solution net; what does not balance over the gas that the oil
+    """Free gas of the whole bearing. share: mean of its volume at the saturation pressure over the volume of the oil;
+    in m^3/s at that pressure, in, out and what leaves the solution net; what does not balance over the gas that the oil
     carries, dissolved or not."""
 
     share: float
@@ -87,8 +87,7 @@ def loads(
 ) -> FilmLoads:
     """All loads of a solution.
 
-    slip: omega_J - omega_S in rad/s, else that of a shell at rest; factor: how missing oil lowers the torque.
-    """
+    slip: omega_J - omega_S in rad/s, by default with a shell at rest; factor: how missing oil lowers the torque. """
     pressure, mean = film.pressure(solution.state), film.mean_pressure(solution.state)
     ambient = film.section.ambient_pressure
     scale = film.section.pressure_scale

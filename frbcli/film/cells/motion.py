@@ -74,7 +74,7 @@ class Storage(NamedTuple):
 
 
 def turned(vector: tuple[float, float], angle: float) -> tuple[float, float]:
-    """A vector (x, y) turned by an angle in rad: from the axes of a frame at this angle to those of the lab."""
+    """A vector (x, y) turned by an angle in rad: from the axes of a frame at this angle to the axes of the lab."""
     c, s = math.cos(angle), math.sin(angle)
     return c * vector[0] - s * vector[1], s * vector[0] + c * vector[1]
 

@@ -1,4 +1,4 @@
-"""The state of one film for a motion of its journal, to round-off: for kinematic tests, resting positions and starts.
+"""The state of one film for a motion of its journal, to round-off: for kinematic tests, static equilibria and starts.
 
 Balances, derivatives and elimination are the compiled ones of the time loop. Here stands what leads Newton's method to
 a solution from afar. The law's kinks make plain Newton steps oscillate between sets of cavitated cells. A storage of w
@@ -97,7 +97,7 @@ GAS_ATTEMPTS: tuple[Attempt, ...] = (replace(PLAIN, limit=60), *GAS_BEGINS)
 
 @lru_cache(maxsize=FEW)
 def _alone(film: VolumeFilm) -> VolumeFilms:
-    """A film as arrays, not to be written to. Those of a few films are kept: each is solved often."""
+    """A film as arrays, not to be written to. The arrays of a few films are cached: each is solved often."""
     return volume_films([film])
 
 
@@ -126,9 +126,8 @@ class FilmSolver:
         of REPEATED solutions holding the oil fractions of the one before.
 
         start: field of a solution to begin from, else a full film; upwind: whether oil is carried upwind by every law.
-        Gas that goes with the oil from the start needs no solution without it before.
-        Where the supply gives a flow at the most, the openings are filled accordingly. Raises FilmUnsolved.
-        """
+        Gas that goes with the oil from the start needs no solution without it before. Where the supply gives a flow at
+        most, the openings are filled accordingly. Raises FilmUnsolved. """
         if not is_limited(self.film.section):
             return self._steady(motion, start, upwind)
 
@@ -167,8 +166,8 @@ class FilmSolver:
     def _steady_with_gas(
         self, motion: Motion, start: Array | None, storage: Storage, repeated: int
     ) -> VolumeSolution:
-        """See steady. Each stage begins from that of a film near by, if `start` has it; else the gas is in equilibrium
-        first, and then begins to go with the oil."""
+        """See steady. Each stage begins from the same stage of a film near by, if `start` includes it; else the gas is
+        in equilibrium first, and then begins to go with the oil."""
         begun = start if start is not None and start.ndim > self._area.ndim else np.zeros((0, 0))
         closes = [CLOSE, *(GAS_ROUND_OFF * PASSED_ON**number for number in range(1, 1 + repeated))][::-1]
         self._settle_gas()
@@ -179,18 +178,18 @@ class FilmSolver:
             solution = self._again(motion, solution, storage, closes[0])
         else:
             self._hold_gas(self.film.gaps(motion), storage, 0.0)
-            solution = self._solve(motion, self._taken(begun[0]), storage, closes[0])
+            solution = self._solve(motion, self._start_of(begun[0]), storage, closes[0])
         stages = [self._stage(solution)]
         for number in range(1, repeated + 1):
             self._before = before_upstream(solution.state.fraction, motion.omega)
-            near = self._taken(begun[number]) if number < len(begun) else solution.w
-            found = self._solve(motion, near, storage, closes[number])
-            solution = replace(found, iterations=solution.iterations + found.iterations)
+            near = self._start_of(begun[number]) if number < len(begun) else solution.w
+            refined = self._solve(motion, near, storage, closes[number])
+            solution = replace(refined, iterations=solution.iterations + refined.iterations)
             stages.append(self._stage(solution))
         return replace(solution, stages=np.array(stages))
 
-    def _taken(self, stage: Array) -> Array:
-        """(m, k) w of a stage; the gas of the states <- that of the stage."""
+    def _start_of(self, stage: Array) -> Array:
+        """(m, k) w of a stage; the gas of the states <- gas of the stage."""
         w, self._states[CARRIED_GAS], self._states[TURNOVER] = stage
         return np.asarray(w)
 
@@ -221,8 +220,8 @@ class FilmSolver:
         self, motion: Motion, solution: VolumeSolution, storage: Storage, close: float = CLOSE
     ) -> VolumeSolution:
         """The solution that follows one of the same motion, with the iterations of both."""
-        found = self._solve(motion, solution.w, storage, close)
-        return replace(found, iterations=solution.iterations + found.iterations)
+        refined = self._solve(motion, solution.w, storage, close)
+        return replace(refined, iterations=solution.iterations + refined.iterations)
 
     def _settle_gas(self) -> None:
         """Gas in equilibrium, as it is at once in oil that is not replaced."""
@@ -298,7 +297,7 @@ class FilmSolver:
             solve_blocks(self._stencil, self._blocks, self._fields, self._stencil[0, 0], self._fields[0, 0])
             w = w + self._fields[:, :, w.shape[1]]
             if not np.max(np.abs(w)) < LARGEST:
-                return w, iteration, "the equations became singular, as those of a film that no oil can enter are"
+                return w, iteration, "the equations became singular, as they are for a film that no oil can enter"
         return w, 2 * attempt.limit, self._where(worst)
 
     def _assemble(
@@ -346,18 +345,18 @@ class FilmSolver:
         return self._stencil
 
     def leaving(self, motion: Motion, states: Array, past: Array, g: float = 0.0) -> Array:
-        """See tilted_balances, whose stencil and flows are those of the solver."""
+        """See tilted_balances, with stencil and flows of the solver."""
         return tilted_balances(self._parts, self._places, motion, states, past, self._stencil, self._flows, g)
 
     def _passed(self, motion: Motion) -> tuple[Array, Array]:
         """(m, k) what a cell passes on per pressure and per oil fraction of its own, from the derivatives."""
-        found = []
+        passed = []
         for slope in (PRESSURE_SLOPE, FRACTION_SLOPE):
             self._states[:CARRIED_GAS] = self._states[BEFORE_UPSTREAM] = 0.0
             self._states[slope] = 1.0
             self._flow(motion, np.zeros(self.film.grid.shape))
-            found.append(self._stencil[CENTRE].copy())
-        return found[0], found[1]
+            passed.append(self._stencil[CENTRE].copy())
+        return passed[0], passed[1]
 
     def _terms(self, passed: tuple[Array, Array], w: Array, storage: Storage) -> Array:
         """(m, k) size of the terms that the residual is the sum of: it is round-off of theirs."""

@@ -68,8 +68,8 @@ def steady_force(
 
 
 def settled_force(solver: FilmSolver, motion: Motion, solution: VolumeSolution) -> FilmForce:
-    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field where
-    it keeps its oil. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
+    """Force and derivatives, in SI units, of a steady film that a solver has solved, with the slopes of its field if it
+    is mass-conserving. Where the edge of its cavity lies within cells, its sources follow the motion, too."""
     if solution.filling < ALL:
         return _force_at_flow(solver, motion, solution)
     film, data, (m, k), clearance = solver.film, solver.data, solution.w.shape, solver.film.section.clearance
@@ -143,8 +143,8 @@ def _force_at_flow(solver: FilmSolver, motion: Motion, solution: VolumeSolution)
         moved = change * np.eye(len(sizes))[number]
         filling, (x, y), (v_x, v_y) = solution.filling + float(moved[0]), motion.d + moved[1:3], motion.v + moved[3:]
         there = replace(motion, d=(float(x), float(y)), v=(float(v_x), float(v_y)))
-        found = solver.filled(filling, there, solution.w)
-        return np.array([*force(film, film.mean_pressure(found.state)), found.flows.supply])
+        changed = solver.filled(filling, there, solution.w)
+        return np.array([*force(film, film.mean_pressure(changed.state)), changed.flows.supply])
 
     by_filling, *by_motion = (
         (at(number, size) - at(number, -size)) / (2.0 * size) for number, size in enumerate(sizes)

@@ -1,4 +1,4 @@
-"""Films on finite volumes, all of a machine beside each other."""
+"""Films on finite volumes, all of a machine side by side."""
 
 from __future__ import annotations
 
@@ -96,8 +96,8 @@ class CellFilms(Films):
         return np.asarray(self.data.cells[:, SHEARED].sum(axis=(1, 2)) / (2.0 * math.pi))
 
     def harmonic_gaps(self, places: Array) -> Array:
-        """See Films.harmonic_gaps: over the cells in which oil is sheared, with the openings where they stand, as the
-        time loop has it. Narrow gaps lie between openings, or in them, and rough surfaces shear the oil otherwise."""
+        """See Films.harmonic_gaps: over the cells in which oil is sheared, with the openings in their places, as in the
+        time loop. Narrow gaps lie between openings, or in them, and rough surfaces shear the oil otherwise."""
         h = np.maximum(self.gaps(places / np.array(self.clearances)[:, None])[:, :, 0], NARROWEST)
         areas = self.data.cells[:, SHEARED].sum(axis=2)
         sheared = areas / h
@@ -207,18 +207,18 @@ class CellFilms(Films):
             keeps * film.section.copies * film.section.radius * film.section.width * film.section.clearance
             for film, keeps in zip(self.own, self.remembering, strict=True)
         ]
-        found = passed_oil(size, flows)
+        passed = passed_oil(size, flows)
         if any(film.section.diffusion is not None for film in self.own):
-            found["oil_created_m3"] = float(np.asarray(size) @ flows[PASSED, :, CREATED])
-        return found
+            passed["oil_created_m3"] = float(np.asarray(size) @ flows[PASSED, :, CREATED])
+        return passed
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         film, d = self.own[i], place / self.clearances[i]
         motion = Motion((float(d[0]), float(d[1])), (0.0, 0.0), total)
         solution, at = steady_solution(film, motion), film_at(film, math.hypot(*d), total)
-        found = loads(at, motion, solution, slip, self.factor)
-        moment = float(place[0] * found.force[1] - place[1] * found.force[0])
-        power = -found.torque.couette * slip + 0.5 * moment * total
+        acting = loads(at, motion, solution, slip, self.factor)
+        moment = float(place[0] * acting.force[1] - place[1] * acting.force[0])
+        power = -acting.torque.couette * slip + 0.5 * moment * total
         return power, outflow(at, motion.d, at.pressure(solution.state))
 
     def heat_ends(self) -> Any:
@@ -271,14 +271,14 @@ class CellFilms(Films):
         """See Films.smooth: as the mean over the angle of openings that turn."""
         from frbcli.film.cells.mean_film import mean_film  # with the solver of cells, which takes long to load
 
-        found: list[FilmData] = []
+        means: list[FilmData] = []
         for i, film in enumerate(self.own):
             openings, drop = film.section.holes, 0.0
             centrifugal = float(self.data.films[i].centrifugal)
             if openings and ring_shares[i] > 0.0 and centrifugal > 0.0 and openings[0].pressure > 0.0:
                 drop = centrifugal * ring_shares[i] ** 2 * film.section.pressure_scale / openings[0].pressure
-            found.append(mean_film(film, len(openings), drop))
-        return tuple(found)
+            means.append(mean_film(film, len(openings), drop))
+        return tuple(means)
 
     def smooth_ends(self, films: Sequence[FilmData]) -> tuple[EndFlow | MeanEndFlow, ...]:
         tables = [film for film in films if isinstance(film, MeanFilm)]
@@ -350,8 +350,8 @@ def least_gaps(section: Section, d: Array) -> Array:
 
 
 def unknown_with_gas(film: VolumeFilm, content: Array, before: Array, w: Array) -> Array:
-    """(m, k) unknown of cells with oil fractions and free gas `content` (2, m, k); w: that of cells which had `before`,
-    whose pressure a cell keeps that has too much oil for its gas."""
+    """(m, k) unknown of cells with oil fractions and free gas `content` (2, m, k); w: unknown of cells with the content
+    `before`; a cell with too much oil for its gas keeps its pressure."""
     theta, free = content
     gas = with_own_gas(np.clip(free, 0.0, film.law.gas_content))
     changed = np.abs(content - before).max(axis=0) > SAME
@@ -359,11 +359,11 @@ def unknown_with_gas(film: VolumeFilm, content: Array, before: Array, w: Array) 
 
 
 def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array:
-    """(m, k) unknown of cells that hold theta; w: that of cells which held `before`.
+    """(m, k) unknown of cells that hold theta; w: unknown of cells that held `before`.
 
     The first step asks for it: over so short a time the oil of a cell stays, and Newton's method leaps past the steep
-    part of a law from afar. In a full cell the pressure is not told by the oil, and the unknown stays."""
-    found = np.where(theta < 1.0, w, np.maximum(w, 0.0))
+    part of a law from afar. In a full cell the oil does not determine the pressure, and the unknown stays."""
+    unknown = np.where(theta < 1.0, w, np.maximum(w, 0.0))
     changed = (theta < 1.0) & (np.abs(theta - before) > SAME)
     high = np.zeros(np.count_nonzero(changed))
     low = high - 2.0 - (film.scales.cavitation + film.scales.ambient) / film.scales.reference
@@ -371,5 +371,5 @@ def unknown_at(film: VolumeFilm, theta: Array, before: Array, w: Array) -> Array
         middle = 0.5 * (low + high)
         more = film.law.cells(middle, film.scales).fraction > theta[changed]
         low, high = np.where(more, low, middle), np.where(more, middle, high)
-    found[changed] = high
-    return found
+    unknown[changed] = high
+    return unknown

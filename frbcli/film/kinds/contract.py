@@ -105,7 +105,7 @@ class Films(ABC):
         return np.ones(self.count)
 
     def compared(self) -> Compared | None:
-        """The force beside that of a better film, None where there is no better one to be had."""
+        """The force and the force of a better film, None where there is no better one."""
         return None
 
     @property
@@ -170,7 +170,7 @@ class Films(ABC):
 
     @property
     def starving(self) -> bool:
-        """Whether a film keeps its oil and has no pressurised supply, so that its force decays."""
+        """Whether a film is mass-conserving and has no pressurised supply, so that its force decays."""
         return False
 
     def changeable(self) -> Self:

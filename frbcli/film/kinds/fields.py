@@ -1,5 +1,5 @@
-"""Steady films on cells as bearing sheets ask for their pressure and flow, whether or not their gaps are even along the
-axis."""
+"""Steady finite-volume films as bearing sheets ask for their pressure and flow, whether or not their gaps are even
+along the axis."""
 
 from __future__ import annotations
 

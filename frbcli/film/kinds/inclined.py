@@ -17,7 +17,7 @@ PLANE = slice(0, 2)  # of the four coordinates of a journal that tilts: its disp
 
 @dataclass(frozen=True)
 class InclinedFilms(Films):
-    """tilted: the same films around journals that may tilt; those of these films stay parallel to the z-axis."""
+    """tilted: the same films around journals that may tilt; here journals stay parallel to the z-axis."""
 
     tilted: TiltedFilms
 
@@ -28,9 +28,9 @@ class InclinedFilms(Films):
 
     def force(self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None) -> FilmForce:
         whole = np.concatenate([place, self.tilted.standing[i, 2:]])
-        found = self.tilted.force(i, whole, np.concatenate([rate, np.zeros(2)]), total, near)
-        by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (found.by_displacement, found.by_velocity))
-        return FilmForce(found.force[PLANE], by_place, by_rate, found.field)
+        force = self.tilted.force(i, whole, np.concatenate([rate, np.zeros(2)]), total, near)
+        by_place, by_rate = (slopes[PLANE, PLANE] for slopes in (force.by_displacement, force.by_velocity))
+        return FilmForce(force.force[PLANE], by_place, by_rate, force.field)
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
         whole = np.concatenate([place, self.tilted.standing[i, 2:]])

@@ -10,7 +10,6 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import compiled
-from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.mean_fields.table import MeanFilm
 from frbcli.film.penalty_table.table import PenaltyTableFilm
 from frbcli.film.rectangles.film_force import FilmData, film_force
@@ -26,17 +25,15 @@ def film_samples(film: FilmData, d: Array, v: Array, omega: Array) -> Array:
 
     d: (n, 2) displacement over the clearance; v: (n, 2) its rate in 1/s; omega: (n,) omega_J + omega_S in rad/s.
     """
-    if isinstance(film, BearingModelFilm):
-        film = film._replace(central=1)
-    found = np.empty((len(d), COLUMNS))
-    _sample(film, d, v, omega, found)
-    if isinstance(film, PenaltyTableFilm | BearingModelFilm | MeanFilm):
+    rows = np.empty((len(d), COLUMNS))
+    _sample(film, d, v, omega, rows)
+    if isinstance(film, PenaltyTableFilm | MeanFilm):
         step = DIFFERENCE * np.maximum(np.abs(omega), 1.0)
-        ahead, behind = np.empty_like(found), np.empty_like(found)
+        ahead, behind = np.empty_like(rows), np.empty_like(rows)
         _sample(film, d, v, omega + step, ahead)
         _sample(film, d, v, omega - step, behind)
-        found[:, BY_OMEGA:] = (ahead[:, :2] - behind[:, :2]) / (2.0 * step[:, None])
-    return found
+        rows[:, BY_OMEGA:] = (ahead[:, :2] - behind[:, :2]) / (2.0 * step[:, None])
+    return rows
 
 
 def at_viscosity(film: FilmData, scale: float) -> FilmData:
@@ -51,17 +48,17 @@ def have_closed_forms(films: Sequence[FilmData]) -> bool:
 
 
 @compiled()
-def _sample(film: Any, d: Array, v: Array, omega: Array, found: Array) -> None:
+def _sample(film: Any, d: Array, v: Array, omega: Array, rows: Array) -> None:
     """The rows of film_samples; by omega as far as it moves the gap, through w = v - (omega/2) J d (4.5)."""
     for i in range(d.shape[0]):
         f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = film_force(
             film, d[i, 0], d[i, 1], v[i, 0], v[i, 1], omega[i]
         )
-        found[i, 0], found[i, 1] = f_x, f_y
-        found[i, 2], found[i, 3], found[i, 4], found[i, 5] = k_xx, k_xy, k_yx, k_yy
-        found[i, 6], found[i, 7], found[i, 8], found[i, 9] = d_xx, d_xy, d_yx, d_yy
-        found[i, 10] = 0.5 * (d_xx * d[i, 1] - d_xy * d[i, 0])
-        found[i, 11] = 0.5 * (d_yx * d[i, 1] - d_yy * d[i, 0])
+        rows[i, 0], rows[i, 1] = f_x, f_y
+        rows[i, 2], rows[i, 3], rows[i, 4], rows[i, 5] = k_xx, k_xy, k_yx, k_yy
+        rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = d_xx, d_xy, d_yx, d_yy
+        rows[i, 10] = 0.5 * (d_xx * d[i, 1] - d_xy * d[i, 0])
+        rows[i, 11] = 0.5 * (d_yx * d[i, 1] - d_yy * d[i, 0])
 
 
 def drag_factor(d: Array) -> tuple[Array, Array]:

@@ -43,9 +43,9 @@ class TableFilms(Films):
         if self.scales is None:
             return evaluate(self.data[i], self.clearances[i], place, rate, total)
         s = self.scales[i]
-        found = evaluate(self.data[i], self.clearances[i], place, s * np.asarray(rate), s * total)
+        force = evaluate(self.data[i], self.clearances[i], place, s * np.asarray(rate), s * total)
         r = 1.0 if self.shares is None else self.shares[i]
-        return FilmForce(r * found.force, r * found.by_displacement, r * s * found.by_velocity)
+        return FilmForce(r * force.force, r * force.by_displacement, r * s * force.by_velocity)
 
     @cached_property
     def end_flows(self) -> tuple[EndFlow, ...]:

@@ -59,8 +59,8 @@ ALONG, SHARES = 0.5 * (1.0 + _NODES[:, None]), 0.5 * _WEIGHTS  # places along a 
 @dataclass(frozen=True)
 class TiltedFilms(Films):
     """own: the films; misalignments: (films, 2) tilts of the shells about x and y, rad; cells: (around, along) over the
-    whole width, of one that no groove divides; settled, centrifugal (films,): see FILM; states: at which forces are
-    compared, of a run. Derivatives are those of films that keep no oil."""
+    whole width, of a film that no groove divides; settled, centrifugal (films,): see FILM; states: at which forces are
+    compared, of a run. Derivatives are as for films that are not mass-conserving."""
 
     own: tuple[TiltedFilm, ...]
     misalignments: Array
@@ -175,8 +175,8 @@ class TiltedFilms(Films):
         return [(i, land) for i, film in enumerate(self.own) for land in film.lands]
 
     def power_and_flow(self, i: int, place: Array, total: float, slip: float, drag: float) -> tuple[float, float]:
-        """See Films.power_and_flow: the moment that turns against half of the total is that of the pressures about the
-        middle of the shell, where each of them acts."""
+        """See Films.power_and_flow: the moment that turns against half of the total is the moment of the pressures
+        about the middle of the shell, each where it acts."""
         couette, flow, load = 0.0, 0.0, np.zeros(COORDINATES)
         for land in self.own[i].lands:
             motion = land.motion(place, np.zeros(COORDINATES), total)

@@ -1,5 +1,5 @@
 """Outflow of a film with turning openings through its ends, as the mean over their angle: from the fields of
-film/mean_fields, by the same flows as of a film on cells. Compiled."""
+film/mean_fields, by the same flows as of a finite-volume film. Compiled."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def mean_end_flow(film: VolumeFilm, fields: MeanFilm, data: VolumeFilms, i: int)
 def mean_end_flows(flow: MeanEndFlow, motions: Array, omega: Array, scale: float) -> Array:
     """(n,) of table_end_flow in motions (n, 4) of d and w, at omega (n,), omega_J + omega_S in rad/s."""
     fields, own = flow.fields, flow.films[0]
-    table, n, found = fields.table, motions.shape[0], np.zeros(motions.shape[0])
+    table, n, flows = fields.table, motions.shape[0], np.zeros(motions.shape[0])
     angles, k, m = table.shape[1], table.shape[2], table.shape[4]
     states, line_of = np.zeros((STATES, m, k)), np.empty(m)
     for moment in range(n):
@@ -69,6 +69,6 @@ def mean_end_flows(flow: MeanEndFlow, motions: Array, omega: Array, scale: float
                     around = line_of[i - 1 if i > 0 else m - 1] + line_of[i + 1 if i + 1 < m else 0]
                     states[PRESSURE, i, line] = max((around + 4.0 * line_of[i]) / 6.0, fields.level)
             d_x, d_y = e * math.cos(j * flow.apart), e * math.sin(j * flow.apart)
-            found[moment] += side_flow(own, flow.ring, flow.cells, states, d_x, d_y, flow.far_open)
-        found[moment] *= flow.unit / (angles * scale)
-    return found
+            flows[moment] += side_flow(own, flow.ring, flow.cells, states, d_x, d_y, flow.far_open)
+        flows[moment] *= flow.unit / (angles * scale)
+    return flows

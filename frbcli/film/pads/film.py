@@ -48,7 +48,7 @@ AT_REST = RunnerMotion()
 
 @dataclass(frozen=True)
 class PadFilm:
-    """The film of a pad, or of all pads of a ring, whose pressure is then that of the first.
+    """The film of a pad, or of all pads of a ring, with the pressure of the first.
 
     forces: on the runner: load in N, moments about x and y in N m; torque: that resists the rotation, in N m
     inner_flow, outer_flow, trailing_flow: out of the film, leading_flow: into it, in m^3/s; swept: rate at which the
@@ -150,10 +150,10 @@ def _pressure(mesh: PadMesh, matrix: csc_matrix, source: Array, oil: PadOil) -> 
         if oil.law != REYNOLDS:
             return pressure, factor, solved
         holds = matrix @ pressure - source  # positive in a cavity: it keeps the pressure from falling
-        found = is_free & (holds - scale * (pressure - oil.cavitation_pressure) > 0.0)
-        if np.array_equal(found, cavity):
+        free = is_free & (holds - scale * (pressure - oil.cavitation_pressure) > 0.0)
+        if np.array_equal(free, cavity):
             return pressure, factor, solved
-        cavity = found
+        cavity = free
     raise NotConverged("The boundary of the cavity in a film of a thrust bearing was not found.")
 
 

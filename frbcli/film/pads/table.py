@@ -22,7 +22,7 @@ from frbcli.film.pads.film import PadFilm, PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import MESH, SOMMERFELD, Pad
 from frbcli.film.pads.mesh import PadMesh, pad_mesh
 
-NODES = 48  # of the interpolation, which errs by less than 1e-7
+NODES = 48  # of the interpolation, whose error is below 1e-7
 MOST_HELD = 8
 
 
@@ -54,9 +54,9 @@ class GapTable:
 
     def at(self, gap: float) -> ScaledPads:
         """The films at a gap in m between thin and wide."""
-        found = chebyshev.chebval(self._scaled(gap), self.coefficients)
-        load, torque, side_flow, stiffness, damping, inverse_gap = np.exp(found[:6]).tolist()
-        direct, cross, turning = (found[6:] * self.radius**2).tolist()
+        series = chebyshev.chebval(self._scaled(gap), self.coefficients)
+        load, torque, side_flow, stiffness, damping, inverse_gap = np.exp(series[:6]).tolist()
+        direct, cross, turning = (series[6:] * self.radius**2).tolist()
         return ScaledPads(
             load,
             torque,

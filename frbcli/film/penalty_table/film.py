@@ -21,12 +21,12 @@ from frbcli.film.penalty_table.rows import LIMIT, row_forces
 from frbcli.film.penalty_table.table import PenaltyTableFilm, slow_speed, source_table, table_numbers
 from frbcli.film.rectangles.film_force import FilmData
 
-CENTRED = 1e-6  # eccentricity that stands for the centre
+CENTRED = 1e-6  # eccentricity that counts as the centre
 
 
 @dataclass(frozen=True)
 class RowEquations:
-    """The balances of the cells at an eccentricity, by pressures above that of cavitation and by velocities.
+    """The balances of the cells at an eccentricity, by pressures above p_cav and by velocities.
 
     stencil: (ENTRIES, m, k) matrix; loads: (3, m, k) net outflow at the cavitation pressure: at rest, and per velocity
     along and across the line of centres; area: (m, k); push: (2, m) and width: (k,) weights of the force.

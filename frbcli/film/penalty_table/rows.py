@@ -20,7 +20,7 @@ from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BE
 
 SETTLED = 2e-4  # of the largest pressure: a correction after which what is left is its square
 PLAIN, DAMPING, LIMIT = 8, 0.5, 60  # iterations without damping; how it goes on from one to the next; all
-# Layers of the states of the cells: pressure above that of cavitation and source, and their slopes by w.
+# Layers of the states of the cells: pressure above p_cav and source, and their slopes by w.
 ABOVE_CAVITY, SOURCE, RISE, FALL, LAYERS = range(5)
 penalty_cell = compiled_cell(Penalty)
 
@@ -98,12 +98,11 @@ def row_forces(
     law: Array, unit: float, stencil: Array, loads: Array, area: Array, push: Array, width: Array,
     velocities: Array, forces: Array,
 ) -> int:  # fmt: skip
-    """forces (d, l, 2) <- integrals of the pressure above that of cavitation for the velocities (d, l, 2).
+    """forces (d, l, 2) <- integrals of the pressure above p_cav for the velocities (d, l, 2).
 
-    law: (3,) parameters of the penalty; unit: that w counts in beside the size of the velocity, 1/s; stencil, loads,
-    area, push, width: of RowEquations. Along l velocities are best sorted by size, the largest first: each begins
-    where the one before it has led. Returns the most iterations of one, LIMIT if it has not settled.
-    """
+    law: (3,) parameters of the penalty; unit: of w, next to the size of the velocity, 1/s; stencil, loads, area, push,
+    width: of RowEquations. Along l velocities are best sorted by size, the largest first: each begins where the one
+    before it has led. Returns the most iterations of one, LIMIT if it has not settled. """
     m, k = area.shape
     cells, newton = np.zeros((LAYERS, m, k)), np.zeros((ENTRIES, m, k))
     blocks, right = np.zeros((m, k, k)), np.zeros((m, k, k + 1))

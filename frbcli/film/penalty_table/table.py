@@ -1,8 +1,8 @@
 """Films whose law makes oil where the pressure falls too low, tabulated over eccentricity, direction and speed.
 
 The force of such a film without openings follows from the eccentricity and from the velocity w of the journal in the
-frame that turns with half the speed, seen along and across the line of centres. It is not proportional to |w| as that
-of a clipped film is, for the law brings a pressure of its own: |w| is the third axis. Where the law's pressure follows
+frame that turns with half the speed, seen along and across the line of centres. Unlike the force of a clipped film it
+is not proportional to |w|, for the law brings its own pressure: |w| is the third axis. Where the law's pressure follows
 the speed of rotation (dimensionless penalty), w and the force count over it.
 
 Of a steepness b the force leaves proportion where b |w| is small, and slowly: cubic splines in (|w| + L)^-ROOT with L
@@ -108,11 +108,11 @@ def _along_all_axes(values: Array, of: Callable[[Array, int, Callable[[Array], N
 
 def _every_other(values: Array, axis: int, ends: Callable[[Array], None]) -> Array:
     """Values between which every other one, from the last one on, is taken from the spline through the rest."""
-    found = np.moveaxis(values, axis, 0).copy()
-    first = (len(found) - 1) % 2
-    c = _coefficients(found[first::2], 0, ends)
-    found[first + 1 :: 2] = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
-    return np.moveaxis(found, 0, axis)
+    refined = np.moveaxis(values, axis, 0).copy()
+    first = (len(refined) - 1) % 2
+    c = _coefficients(refined[first::2], 0, ends)
+    refined[first + 1 :: 2] = (c[:-3] + 23.0 * (c[1:-2] + c[2:-1]) + c[3:]) / 48.0
+    return np.moveaxis(refined, 0, axis)
 
 
 def _coefficients(values: Array, axis: int, ends: Callable[[Array], None]) -> Array:
@@ -127,7 +127,7 @@ def _coefficients(values: Array, axis: int, ends: Callable[[Array], None]) -> Ar
 
 
 def _ends_free(matrix: Array) -> None:
-    """The third derivative does not jump at the node beside an end."""
+    """The third derivative does not jump at the node next to an end."""
     matrix[0, :5] = matrix[-1, -5:] = 1.0, -4.0, 6.0, -4.0, 1.0
 
 

@@ -248,7 +248,7 @@ def chain_force(
                     for r in range(1, 5):
                         part[r, c] += w0 * line[r, i] + w1 * line[r, i + 1] + w2 * line[r, i + 2]
             elif max(p0, p1, p2) > 0.0:
-                # cut_element integrates with cos and sin: n = (sin phi, -cos phi) is that of phi - pi/2
+                # cut_element integrates with cos and sin: n = (sin phi, -cos phi) belongs to phi - pi/2
                 cut_element(line, i, i + 1, i + 2, p0, p1, p2, grid[START, e] - 0.5 * math.pi, grid[LENGTH, e], part)
         for r in range(5):
             for c in range(2):

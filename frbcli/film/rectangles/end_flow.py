@@ -2,7 +2,7 @@
 
 Before it is clipped the pressure is a sum of the fields of a unit w and of a hydrostatic part, and so is its slope at
 an end. Where this is positive oil leaves; where it is negative, the film is clipped there, or draws in oil that is as
-fresh as that of the supply. With the slope of P(phi, z), scaled as in (3.9), at an end of a section of the width b
+fresh as the supply's. With the slope of P(phi, z), scaled as in (3.9), at an end of a section of the width b
 
     Q = ends R^3 C / b * integral of max(H^3 dP/dz, 0) dphi.
 """
@@ -57,7 +57,7 @@ class TableEndFlow(NamedTuple):
 
 class ChainEndFlow(NamedTuple):
     """The flow through the ends between axial grooves. film: whose pressure it is; slopes (modes,) of the axial modes
-    at an end; rest: what modes beyond these would add, over (w . n); corner: what they add beside an edge of a groove,
+    at an end; rest: what modes beyond these would add, over (w . n); corner: what they add next to an edge of a groove,
     whose pressure falls fast near the end, over H^3 there, 1/s."""
 
     unit: float
@@ -99,7 +99,7 @@ def make_end_flow(section: Section, film: FilmData) -> EndFlow:
 
 
 def _corner(section: Section, modes: AxialModes, slopes: Array, kept: int) -> float:
-    """Integral of dP/dz at an end beside one edge of a groove, of the modes beyond those kept: the pressure that they
+    """Integral of dP/dz at an end next to one edge of a groove, of the modes that are not kept: the pressure that they
     have in the groove decays with sqrt(lambda) R/b, before the gap changes."""
     groove = section.grooves[0]
     width = section.bearing_width
@@ -213,7 +213,7 @@ def _end_flow(flow, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped-def]
 @compiled(makes_arrays=True)
 def end_flows(flow: EndFlow, motions: Array) -> Array:
     """(k,) of end_flow in motions (k, 4) of d and w, with the pressures of the film."""
-    found = np.empty(motions.shape[0])
+    flows = np.empty(motions.shape[0])
     for i in range(motions.shape[0]):
-        found[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
-    return found
+        flows[i] = end_flow(flow, motions[i, 0], motions[i, 1], motions[i, 2], motions[i, 3], 1.0)
+    return flows

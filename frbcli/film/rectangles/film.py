@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cavitation.table import law_named
 from frbcli.film.gap import Section, groove_pressure
 from frbcli.film.grid import Mesh
@@ -73,9 +72,9 @@ def _grooved_film(section: Section, clipped: bool, level: float, mesh: Mesh) -> 
 
 @dataclass(frozen=True)
 class FieldSlopes:
-    """How a settled film on cells follows a journal at rest at `place` (c,) in m and rad, and
-    `total`, omega_J + omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the
-    oil fractions by the field; force: (c,) of the force by the total, in N s and N m s."""
+    """How a settled finite-volume film follows a journal at rest at `place` (c,) in m and rad, and `total`, omega_J +
+    omega_S in rad/s. by_place (..., c), by_total (...): of its field (...); fraction: (...) of the oil fractions by the
+    field; force: (c,) of the force by the total, in N s and N m s."""
 
     place: Array
     total: float
@@ -88,7 +87,7 @@ class FieldSlopes:
 @dataclass(frozen=True)
 class FilmForce:
     """Force on the journal by a whole section, N; stiffness dF/dD (2, 2) in N/m and damping dF/dD' (2, 2) in N s/m;
-    field: of a film on cells, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
+    field: of a finite-volume film, from which a film near by is sought, see VolumeSolution; fraction: (m, k) its oil
     fractions, None of others; slopes: of the field, None of films without one and where they are not known."""
 
     force: Array
@@ -111,7 +110,7 @@ class FilmForce:
         return replace(self, field=self.field + change, fraction=fraction, slopes=there)
 
     def plus(self, other: FilmForce, sign: float = 1.0) -> FilmForce:
-        """This film with another force beside it, or without it."""
+        """This film with another force added, or subtracted (sign = -1)."""
         return replace(
             self,
             force=self.force + sign * other.force,
@@ -126,12 +125,7 @@ def none_of(coordinates: int) -> FilmForce:
 
 
 def evaluate(film: FilmData, clearance: float, displacement: Array, velocity: Array, omega: float) -> FilmForce:
-    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s.
-
-    Derivatives of a bearing model that does not tell them are central differences here.
-    """
-    if isinstance(film, BearingModelFilm):
-        film = film._replace(central=1)
+    """One evaluation in SI units: displacement (2,) in m, velocity (2,) in m/s, omega = omega_J + omega_S in rad/s."""
     d, v = np.asarray(displacement) / clearance, np.asarray(velocity) / clearance
     values = np.array(film_force(film, d[0], d[1], v[0], v[1], omega))
     return FilmForce(values[:2], values[2:6].reshape(2, 2) / clearance, values[6:].reshape(2, 2) / clearance)

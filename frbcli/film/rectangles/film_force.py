@@ -1,8 +1,7 @@
 """One film as the time loop sees it: force and derivatives from displacement, velocity and angular speed.
 
 The kind of a film is its type: the compiler sees it and compiles what the films of a case need. A kind is a row of
-POLAR if it is solved along and across the line of centres; films whose grooves stand still are solved in x and y;
-bearing models are asked for their force as they are.
+POLAR if it is solved along and across the line of centres; films whose grooves stand still are solved in x and y.
 """
 
 from __future__ import annotations
@@ -13,7 +12,6 @@ from typing import Any
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS, compiled
-from frbcli.film.bearing_model.film import BearingModelFilm, model_force
 from frbcli.film.gap import LARGEST_ECCENTRICITY
 from frbcli.film.mean_fields.table import MeanFilm, mean_force
 from frbcli.film.penalty_table.table import PenaltyTableFilm, source_force
@@ -22,9 +20,7 @@ from frbcli.film.rectangles.fields import FieldsFilm, fields_force
 from frbcli.film.rectangles.short import ShortFilm, SuppliedShortFilm, short_closed, short_general
 from frbcli.film.rectangles.table import TableFilm, table_force
 
-FilmData = (
-    ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | BearingModelFilm | MeanFilm
-)
+FilmData = ShortFilm | SuppliedShortFilm | TableFilm | FieldsFilm | ChainFilm | PenaltyTableFilm | MeanFilm
 
 NEAR_CENTRE = 1e-6  # below this eccentricity the direction of the line of centres is arbitrary, and does not matter
 
@@ -64,8 +60,6 @@ def _in_frame(film: Any, d_x: float, d_y: float, v_x: float, v_y: float, omega: 
 
 @overload(_in_frame, jit_options=AS_KERNELS)
 def _by_kind(film, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-untyped-def]
-    if film.instance_class is BearingModelFilm:
-        return lambda film, d_x, d_y, v_x, v_y, omega: model_force(film, d_x, d_y, v_x, v_y, omega)
     solve = _standing if film.instance_class is ChainFilm else _polar
     # w = v - (omega/2) J d: the motion seen from a frame that turns with half the speed (4.5)
     return lambda film, d_x, d_y, v_x, v_y, omega: solve(

@@ -154,16 +154,16 @@ def _mode_fields(
     lengths: Array, cube: Array, change: Array, decays: Array, mode_loads: Array, load: Array, ring: RingMatrices,
     work: tuple[Array, Array, Array], fields: Array,
 ) -> None:  # fmt: skip
-    """fields <- those of unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode with
-    a load of 1."""
+    """fields <- fields as in unit_fields; change (m, 3): dH^3/deps at the quadrature points; load (2, m, 3) of a mode
+    with a load of 1."""
     m = lengths.shape[0]
-    own, defect, found = work
+    own, defect, solution = work
     for k in range(decays.shape[0]):
         for s in range(2):
             for e in range(m):
                 for i in range(3):
                     own[s, e, i] = mode_loads[k] * load[s, e, i]
-        solve_ring(lengths, cube, decays[k], own, ring, found)
+        solve_ring(lengths, cube, decays[k], own, ring, solution)
         # K' P + K P' = 0: the load does not depend on the eccentricity.
         for e in range(m):
             _element(lengths[e], change[e], decays[k], ring.local)
@@ -171,14 +171,14 @@ def _mode_fields(
             for s in range(2):
                 for i in range(3):
                     defect[s, e, i] = -(
-                        ring.local[i, 0] * found[s, 2 * e]
-                        + ring.local[i, 1] * found[s, 2 * e + 1]
-                        + ring.local[i, 2] * found[s, n]
+                        ring.local[i, 0] * solution[s, 2 * e]
+                        + ring.local[i, 1] * solution[s, 2 * e + 1]
+                        + ring.local[i, 2] * solution[s, n]
                     )
         for s in range(2):
             for i in range(2 * m):
-                fields[s, k, i] = found[s, i]
-        solve_ring(lengths, cube, decays[k], defect, ring, found)
+                fields[s, k, i] = solution[s, i]
+        solve_ring(lengths, cube, decays[k], defect, ring, solution)
         for s in range(2):
             for i in range(2 * m):
-                fields[2 + s, k, i] = found[s, i]
+                fields[2 + s, k, i] = solution[s, i]

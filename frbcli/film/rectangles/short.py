@@ -36,14 +36,14 @@ class SuppliedShortFilm(NamedTuple):
 
 
 def sealed_shape(seals: tuple[float, float]) -> tuple[float, float]:
-    """a, b of a section with seals: its pressure by a unit of A is z (1 - z) + a + (b - 1) z, that of a unit pressure
-    of the supply at z = 1 is a + b z. The slope at a sealed end is the pressure there over the length of the seal."""
+    """a, b of a section with seals: its pressure by a unit of A is z (1 - z) + a + (b - 1) z, by a unit supply pressure
+    at z = 1 it is a + b z. The slope at a sealed end is the pressure there over the length of the seal."""
     near, far = seals
     return (near, 1.0) if far > 0.0 else (near / (1.0 + near), 1.0 / (1.0 + near))
 
 
 def sealed_share(seals: tuple[float, float]) -> float:
-    """Integral of the pressure by A over that of a section with open ends."""
+    """Integral of the pressure by A over the same integral with open ends."""
     a, b = sealed_shape(seals)
     return 1.0 + 6.0 * a + 3.0 * (b - 1.0)
 

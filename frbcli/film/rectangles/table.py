@@ -85,7 +85,7 @@ def _add_forces(
     fields: Array, weights_z: Array, directions: Array, vertices: Array, lengths: Array, weights: Array, clipped: bool,
     work: tuple[Array, Array], result: Array,
 ) -> None:  # fmt: skip
-    """result += those of clipped_forces; fields (l, 4, n) of a unit stretched w on the axial lines."""
+    """result += forces as in clipped_forces; fields (l, 4, n) of a unit stretched w on the axial lines."""
     line, part = work
     n = line.shape[1]
     level = 0.0 if clipped else -1e300
@@ -149,8 +149,7 @@ def _slopes(values: Array, step: float, parity: float) -> Array:
     parity.
 
     Between neighbours s' + 4 s + s'' = 3 (f'' - f') / step; beyond an end the slope of an even function is mirrored
-    with the other sign: it is zero there; that of an odd function with the same.
-    """
+    with the other sign and is zero there; the slope of an odd function with the same sign. """
     from scipy.linalg import solve_banded
 
     n = values.shape[1]

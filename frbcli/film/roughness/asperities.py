@@ -204,9 +204,8 @@ def rub(
     """What the summits of film f do: displacement e in m and velocity v in m/s of the journal in its shell; slip:
     omega_J - omega_S, shell_speed: omega_S, rad/s.
 
-    Friction has one direction over the arc, that of the mean sliding speed, weighted with the pressure: then it does
-    nothing but dissipate.
-    """
+    Friction has one direction over the arc, the direction of the mean sliding speed weighted with the pressure; so it
+    only dissipates. """
     eccentricity = math.sqrt(e_x * e_x + e_y * e_y)
     if eccentricity == 0.0 or not meets(asperities, clearance, eccentricity):
         return APART
@@ -285,22 +284,22 @@ def wear_along(
 
 
 @compiled()
-def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array, found: Array) -> None:
-    """Force (x, y) on the journal in N, torque on it in N m and power of friction in W of film f: found (k, 4), by
+def rub_along(asperities: Asperities, f: int, clearances: Array, motions: Array, rows: Array) -> None:
+    """Force (x, y) on the journal in N, torque on it in N m and power of friction in W of film f: rows (k, 4), by
     clearances (k,) and motions (k, 6), the arguments of `rub` from e_x on."""
     for k in range(motions.shape[0]):
         e_x, e_y, v_x, v_y, slip, shell_speed = motions[k]
         each = rub(asperities, f, clearances[k], e_x, e_y, v_x, v_y, slip, shell_speed)
-        found[k, 0], found[k, 1], found[k, 2], found[k, 3] = each.f_x, each.f_y, each.torque, each.power
+        rows[k, 0], rows[k, 1], rows[k, 2], rows[k, 3] = each.f_x, each.f_y, each.torque, each.power
 
 
 @compiled()
-def touch_along(asperities: Asperities, f: int, clearance: float, eccentricities: Array, found: Array) -> None:
-    """found (k, 4) <- the integrals of film f as touch has them, at eccentricities (k,) in m; 0 where no summits
+def touch_along(asperities: Asperities, f: int, clearance: float, eccentricities: Array, rows: Array) -> None:
+    """rows (k, 4) <- the integrals of film f as touch has them, at eccentricities (k,) in m; 0 where no summits
     meet."""
     for k in range(eccentricities.shape[0]):
-        found[k] = 0.0
+        rows[k] = 0.0
         if meets(asperities, clearance, eccentricities[k]):
             own = touch(asperities, f, clearance, eccentricities[k])
-            found[k, 0], found[k, 1] = own.normal, own.radial
-            found[k, 2], found[k, 3] = own.normal_slope, own.radial_slope
+            rows[k, 0], rows[k, 1] = own.normal, own.radial
+            rows[k, 2], rows[k, 3] = own.normal_slope, own.radial_slope

@@ -44,7 +44,7 @@ class ElasticShell:
         if eccentricity <= begins:
             return film(place, rate)
         x, y, u, w, g_xx, g_yy, g_xy, r_xx, r_yy, r_xy = contact_gap(begins, d_x, d_y, v_x, v_y)
-        found = film(clearance * np.array([x, y]), clearance * np.array([u, w]))
+        force = film(clearance * np.array([x, y]), clearance * np.array([u, w]))
         felt, rated = np.array([[g_xx, g_xy], [g_xy, g_yy]]), np.array([[r_xx, r_xy], [r_xy, r_yy]])
         outwards = place / np.hypot(*place)
         along = self.stiffness if eccentricity > self.begins else 0.0
@@ -52,9 +52,9 @@ class ElasticShell:
         across = push / (eccentricity * clearance)
         spring = across * np.eye(2) + (along - across) * np.outer(outwards, outwards)
         return FilmForce(
-            found.force - push * outwards,
-            found.by_displacement @ felt + found.by_velocity @ rated - spring,
-            found.by_velocity @ felt,
-            found.field,
-            found.fraction,
+            force.force - push * outwards,
+            force.by_displacement @ felt + force.by_velocity @ rated - spring,
+            force.by_velocity @ felt,
+            force.field,
+            force.fraction,
         )

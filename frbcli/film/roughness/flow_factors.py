@@ -14,10 +14,10 @@ from frbcli.arrays import Array
 
 # Isotropic surfaces. Flow of the pressure: 1 - DEPTH exp(-RATE x)
 DEPTH, RATE = 0.90, 0.56
-# Flow that a rough surface carries beside that of its mean plane: A x^B exp(-C x + D x^2) up to FAR, then falling with
+# Flow that a rough surface carries in addition to its mean plane: A x^B exp(-C x + D x^2) up to FAR, then falling with
 # exp(-FADES x), from 1.126 exp(-5 / 4) on
 A, B, C, D, FAR, FADES = 1.899, 0.98, 0.92, 0.05, 5.0, 0.25
-# Stress beside that of the local gap: A x^B exp(-C x + D x^2) up to LAST_STRESS, then none
+# Stress in addition to the local gap's: A x^B exp(-C x + D x^2) up to LAST_STRESS, then none
 STRESS_A, STRESS_B, STRESS_C, STRESS_D, LAST_STRESS = 11.1, 2.31, 2.38, 0.11, 7.0
 SPREAD = 3.0  # largest height over the roughness, of heights with the density (35 / 32) (1 - s^2)^3, s over it
 CUT = 1.0 / 300.0  # local gap over the largest height, below which surfaces touch and shear no oil
@@ -30,7 +30,7 @@ def pressure_flow(x: Array) -> Array:
 
 
 def shear_flow(x: Array) -> Array:
-    """Phi_s: (2 / U sigma) times the flow that a rough surface with the speed U carries beside U h / 2."""
+    """Phi_s: (2 / U sigma) times the flow that a rough surface with the speed U carries in addition to U h / 2."""
     near = np.minimum(x, FAR)
     factor = A * near**B * np.exp(-C * near + D * near**2)
     return np.asarray(factor * np.exp(-FADES * (x - near)))
@@ -59,5 +59,5 @@ def shear_stress(x: Array) -> Array:
         moment *= (2.0 * k - 1.0) / (2.0 * k + 7.0)
         series = series + moment / np.maximum(z, SERIES) ** (2 * k)
     close = np.minimum(x, LAST_STRESS)
-    beside = STRESS_A * close**STRESS_B * np.exp(-STRESS_C * close + STRESS_D * close**2)
-    return np.asarray(np.where(z > SERIES, series, local) + np.where(x < LAST_STRESS, beside, 0.0))
+    moving = STRESS_A * close**STRESS_B * np.exp(-STRESS_C * close + STRESS_D * close**2)
+    return np.asarray(np.where(z > SERIES, series, local) + np.where(x < LAST_STRESS, moving, 0.0))

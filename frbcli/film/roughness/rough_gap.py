@@ -67,10 +67,10 @@ def stress_factor(h: float, roughness: float) -> float:
     x = h / roughness
     z = x / SPREAD
     if z > SERIES:
-        found, moment, power = 1.0, 1.0, 1.0
+        factor, moment, power = 1.0, 1.0, 1.0
         for k in range(1, TERMS + 1):
             moment, power = moment * (2.0 * k - 1.0) / (2.0 * k + 7.0), power * z * z
-            found += moment / power
+            factor += moment / power
     else:
         low, high = z - 1.0 if z > 1.0 else CUT, z + 1.0
         a, b = 1.0 - z * z, 2.0 * z
@@ -80,7 +80,7 @@ def stress_factor(h: float, roughness: float) -> float:
         for k in range(6):
             whole += powers[k] * (q - p) / (k + 1.0)
             p, q = p * low, q * high
-        found = 35.0 / 32.0 * z * whole
+        factor = 35.0 / 32.0 * z * whole
     if x < LAST_STRESS:
-        found += STRESS_A * math.exp(STRESS_B * math.log(x) - STRESS_C * x + STRESS_D * x * x)
-    return found
+        factor += STRESS_A * math.exp(STRESS_B * math.log(x) - STRESS_C * x + STRESS_D * x * x)
+    return factor

@@ -1,6 +1,6 @@
 """Rubbing surfaces and the derivatives of their forces.
 
-The summits of one film beside what it does: force with derivatives, and loads.
+The asperities of one film, which act in parallel to it: force with derivatives, and loads.
 
 Force and torques of the summits of a film with all their derivatives, for machines whose rings turn.
 
@@ -36,11 +36,11 @@ class Rubbing:
         if self.surfaces is None:
             return none_of(2)
         (e_x, e_y), (v_x, v_y) = place[:2].tolist(), rate[:2].tolist()
-        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
-        by_place, by_rate = (np.array(found[first : first + 4]).reshape(2, 2) for first in (2, 6))
-        return FilmForce(np.array(found[:2]), by_place, by_rate)
+        rubbed = rub(self.surfaces, self.film, self.clearance, e_x, e_y, v_x, v_y, slip, shell)
+        by_place, by_rate = (np.array(rubbed[first : first + 4]).reshape(2, 2) for first in (2, 6))
+        return FilmForce(np.array(rubbed[:2]), by_place, by_rate)
 
-    def beside(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
+    def with_summits(self, film: FilmForce, place: Array, rate: Array, slip: float, shell: float = 0.0) -> FilmForce:
         """A film and its summits, see force."""
         if self.surfaces is None:
             return film
@@ -52,8 +52,8 @@ class Rubbing:
         if self.surfaces is None:
             return 0.0, 0.0, 0.0
         e_x, e_y = place[:2].tolist()
-        found = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
-        return found.torque, found.shell_torque, e_x * found.f_y - e_y * found.f_x
+        rubbed = rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell)
+        return rubbed.torque, rubbed.shell_torque, e_x * rubbed.f_y - e_y * rubbed.f_x
 
     def power(self, place: Array, total: float, slip: float) -> float:
         """Heat in W that friction makes while the journal rests at `place` (2,) in m; total, slip: omega_J + omega_S
@@ -65,9 +65,9 @@ class Rubbing:
         return rub(self.surfaces, self.film, self.clearance, e_x, e_y, 0.0, 0.0, slip, shell).power
 
     def slopes(self, motions: Array) -> Array:
-        """(k, FOUND, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
+        """(k, QUANTITIES, COLUMNS) force and torques with all derivatives in motions (k, 6), see rub_slopes."""
         if self.surfaces is None:
-            return np.zeros((len(motions), FOUND, COLUMNS))
+            return np.zeros((len(motions), QUANTITIES, COLUMNS))
         return rub_slopes(self.surfaces, self.film, self.clearance, motions)
 
     def standing(self, load: float) -> float:
@@ -79,32 +79,32 @@ class Rubbing:
         return standing_eccentricity(self.surfaces, self.film, self.clearance, load)
 
     def loads(self, film: FilmLoads, motion: Motion, turning: float = 0.0) -> FilmLoads:
-        """The loads of a film with those of its summits. motion: in a shell at rest, seen from a frame that turns with
-        `turning` rad/s, as the force is."""
+        """The loads of a film with its summits. motion: in a shell at rest, seen from a frame that turns with `turning`
+        rad/s, as the force is."""
         if self.surfaces is None:
             return film
         c, (d_x, d_y), (v_x, v_y) = self.clearance, motion.d, motion.v
         slip = motion.omega + 2.0 * turning
-        found = rub(self.surfaces, self.film, c, c * d_x, c * d_y, c * v_x, c * v_y, slip, -turning)
+        rubbed = rub(self.surfaces, self.film, c, c * d_x, c * d_y, c * v_x, c * v_y, slip, -turning)
         x, y = film.force
-        torque = replace(film.torque, summits=(found.torque, -found.shell_torque))
-        return replace(film, force=(x + found.f_x, y + found.f_y), torque=torque)
+        torque = replace(film.torque, summits=(rubbed.torque, -rubbed.shell_torque))
+        return replace(film, force=(x + rubbed.f_x, y + rubbed.f_y), torque=torque)
 
     def share_of_error(self, film: FilmLoads, whole: FilmLoads) -> float:
-        """Relative error of the force with the summits over that of the film alone."""
+        """Relative error of the force with the summits over the error of the film alone."""
         size = math.hypot(*whole.force)
         return math.hypot(*film.force) / size if self.surfaces is not None and size > 0.0 else 1.0
 
 
-# What is found: force on the journal in N, torques in N m on the journal and on the shell, each about its own middle
-F_X, F_Y, ON_JOURNAL, ON_SHELL, FOUND = range(5)
+# Quantities: force on the journal in N, torques in N m on the journal and on the shell, each about its own middle
+F_X, F_Y, ON_JOURNAL, ON_SHELL, QUANTITIES = range(5)
 # Columns of each: its value, and its derivatives by displacement, velocity, slip and speed of the shell
 VALUE, BY_X, BY_Y, BY_V_X, BY_V_Y, BY_SLIP, BY_SHELL, COLUMNS = range(8)
 LEAST = 1e-300  # m: eccentricity in the middle, which has no line of centres
 
 
 def rub_slopes(asperities: Asperities, f: int, clearance: float, motions: Array) -> Array:
-    """(k, FOUND, COLUMNS) of film f in motions (k, 6): displacement in m and velocity in m/s of the journal in its
+    """(k, QUANTITIES, COLUMNS) of film f in motions (k, 6): displacement in m and velocity in m/s of the journal in its
     shell, slip omega_J - omega_S and speed omega_S of the shell in rad/s. See rub of asperities.py."""
     place, rate, (slip, shell) = motions[:, :2], motions[:, 2:4], motions[:, 4:].T
     e = np.maximum(np.hypot(*place.T), LEAST)
@@ -132,9 +132,9 @@ def rub_slopes(asperities: Asperities, f: int, clearance: float, motions: Array)
 
     def by_friction(size: Array, by_e: Array) -> Array:
         """(k, COLUMNS) of the coefficient of friction times a size, which the eccentricity changes."""
-        found = size[:, None] * coefficient
-        found[:, BY_X : BY_Y + 1] += (coefficient[:, VALUE] * by_e)[:, None] * away
-        return found
+        forces = size[:, None] * coefficient
+        forces[:, BY_X : BY_Y + 1] += (coefficient[:, VALUE] * by_e)[:, None] * away
+        return forces
 
     friction = by_friction(radial, radial_slope)
     still = np.zeros_like(e)

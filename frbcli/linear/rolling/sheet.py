@@ -29,8 +29,8 @@ HOUR = 3600.0
 
 @dataclass(frozen=True)
 class BallState:
-    """A ball bearing at rest, SI units: the fields are those of BALL_SHEET in columns.py, which tells what they are.
-    problem: why there is no state, then the numbers are NaN."""
+    """A ball bearing at rest, SI units: the fields are described by BALL_SHEET in columns.py. problem: why there is no
+    state, then the numbers are NaN."""
 
     bearing: str
     speed_Hz: float
@@ -93,7 +93,7 @@ def ball_bearing_sheet(
     speeds_Hz : sequence of float, optional
         Rotor speeds in Hz, not below 0; by default a range up to the highest of the case.
     loads : sequence of float, optional
-        Loads in N along -y on each bearing; by default those of the rotor.
+        Loads in N along -y on each bearing; by default from the rotor.
     observe : callable, optional
         Called with each state's number and their number.
 
@@ -146,7 +146,7 @@ class _Carried:
         self._near: MachineAtRest | None = None
 
     def states(self, elements: Sequence[BallBearingElement], speed: float) -> Iterator[BallState]:
-        """Those of all bearings at a speed in Hz."""
+        """States of all bearings at a speed in Hz."""
         omega = 2.0 * math.pi * speed
         try:
             self._near = at_rest = self._machines.at(omega, self._near, with_error=False)

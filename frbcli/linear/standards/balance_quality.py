@@ -4,7 +4,7 @@ A grade G is the permissible speed of the centre of mass about the axis, so that
 
     U_per = G m / Omega.
 
-Between two tolerance planes, those of the bearings, U_per is divided by the levers of the centre of mass,
+Between two tolerance planes at the bearings, U_per is divided by the levers of the centre of mass,
 
     U_A = U_per L_B / L,    U_B = U_per L_A / L,
 
@@ -85,7 +85,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, repr=False)
 class BalanceQuality(Tabular):
-    """The unbalance of a case beside that of a grade.
+    """The unbalance of a case compared with a balance quality grade.
 
     grade_mm_s: asked for; speed_Hz: at which; mass: kg; centre_of_mass: along the shaft in m, None where bearings have
     no positions; planes: disks, their sum, and the bearings where the permissible unbalance is divided.
@@ -122,12 +122,12 @@ def read_grade(given: str | float) -> float:
     """A grade in mm/s: "G6.3", "G 2.5" or "1". Raises ValueFault for anything else."""
     parts = GRADE.fullmatch(str(given))
     try:
-        found = float(parts[1]) if parts else math.nan
+        grade = float(parts[1]) if parts else math.nan
     except ValueError:
-        found = math.nan
-    if not 0.0 < found <= LARGEST:
+        grade = math.nan
+    if not 0.0 < grade <= LARGEST:
         raise ValueFault("is no balance quality grade.", "Write e.g. G6.3, G2.5, G1 or 0.4, in mm/s.")
-    return found
+    return grade
 
 
 def permissible_unbalance(grade_mm_s: float, mass: float, speed_Hz: float) -> float:
@@ -145,7 +145,7 @@ def balance_quality(case: Case, grade: str | float, speed_Hz: float | None = Non
     grade : str or float
         Such as "G6.3", or 6.3, in mm/s.
     speed_Hz : float, optional
-        The highest speed of operation in Hz; by default that of the case.
+        The highest speed of operation in Hz; by default from the case.
 
     Returns
     -------

@@ -9,8 +9,7 @@ A critical speed with an amplification factor AF from 2.5 on keeps off the range
 
     17 (1 - 1 / (AF - 1.5)) percent below it,    10 + 17 (1 - 1 / (AF - 1.5)) percent above it,
 
-of the nearer limit of the range. Editions differ: that of the contract decides.
-"""
+of the nearer limit of the range. Editions differ: the one in the contract decides. """
 
 from __future__ import annotations
 
@@ -39,7 +38,7 @@ ZONES = "ABCD"
 ISO_RANGE_rpm = (1000.0, 30000.0)  # of machines that the standard is for
 OF_SHAFT = ("journal", "disk")  # kinds of points
 WELL_DAMPED = 2.5  # amplification factor below which no margin is asked for
-TOLD = {"linear": "", "doubtful": "?", "beyond-gap": "!"}  # validity of an amplitude
+MARKS = {"linear": "", "doubtful": "?", "beyond-gap": "!"}  # validity of an amplitude
 
 
 def api_limit(speed_Hz: Array | float) -> Array:
@@ -55,7 +54,7 @@ def zone_limits(speed_Hz: Array | float) -> Array:
 
 def required_margin(speed_Hz: float, factor: float | None, operating_Hz: tuple[float, float]) -> float | None:
     """Share of the nearer limit of the range of operation by which a critical speed has to keep off it; within the
-    range that of one below it. None where its amplification factor is not known."""
+    range as for a speed below it. None where its amplification factor is not known."""
     if factor is None:
         return None
     if factor < WELL_DAMPED:
@@ -96,7 +95,7 @@ class PointVibration:
 
 @dataclass(frozen=True)
 class SpeedMargin:
-    """A critical speed beside the range of operation. required: see required_margin."""
+    """A critical speed and its distance to the range of operation. required: see required_margin."""
 
     peak: CriticalSpeed
     required: float | None
@@ -119,7 +118,7 @@ _POINT = (
     Column("peak_to_peak", "m", "vibration, peak to peak",
            shown=(Shown("um p-p", ".3g", "um"),)),
 )  # fmt: skip
-_MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", TOLD.__getitem__),))
+_MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", MARKS.__getitem__),))
 
 
 def _boundary(place: int, name: str) -> Column:
@@ -156,12 +155,11 @@ MARGINS = (
 
 @dataclass(frozen=True, repr=False)
 class VibrationLimits(Tabular):
-    """The vibration of a response beside its limits.
+    """The vibration of a response and its limits.
 
-    operating_Hz: lowest and highest speed of operation; covered_Hz: those of them that the response has, None without
-    any; api, iso: by points of the shaft; margins: of the critical speeds; whirling_Hz: speeds of operation at which a
-    whirl grows, so that the vibration is more than that by the unbalance.
-    """
+    operating_Hz: lowest and highest speed of operation; covered_Hz: the part of it that the response covers, None
+    without any; api, iso: by points of the shaft; margins: of the critical speeds; whirling_Hz: speeds of operation at
+    which a whirl grows, so that the vibration is more than the response to unbalance. """
 
     case: Case
     operating_Hz: tuple[float, float]
@@ -182,13 +180,13 @@ class VibrationLimits(Tabular):
         return table_of((*API_POINTS, Column("zone", "", "zone of ISO 20816-3", lambda it: zones[it].zone)), self.api)
 
 
-def vibration_limits(found: Response, operating_Hz: tuple[float, float]) -> VibrationLimits:
+def vibration_limits(response: Response, operating_Hz: tuple[float, float]) -> VibrationLimits:
     """Compare a response with the limits of API 617 and ISO 20816-3.
 
     Parameters
     ----------
-    found : Response
-        Of `response` with the same range of operation, so that it has the ends of it.
+    response : Response
+        Response over the same range of operation, including its ends.
     operating_Hz : tuple of float
         Lowest and highest speed of operation in Hz.
 
@@ -201,31 +199,31 @@ def vibration_limits(found: Response, operating_Hz: tuple[float, float]) -> Vibr
     --------
     >>> import frbcli
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
-    >>> found = frbcli.response(case, [60.0, 80.0], operating_Hz=(50.0, 100.0))
-    >>> [point.zone for point in frbcli.vibration_limits(found, (50.0, 100.0)).iso]
+    >>> response = frbcli.response(case, [60.0, 80.0], operating_Hz=(50.0, 100.0))
+    >>> [point.zone for point in frbcli.vibration_limits(response, (50.0, 100.0)).iso]
     ['A', 'A']
     """
     low, high = operating_Hz
-    inside = (found.speeds_Hz >= low * (1.0 - 1e-9)) & (found.speeds_Hz <= high * (1.0 + 1e-9))
-    speeds = found.speeds_Hz[inside]
-    points = [number for number, name in enumerate(found.points) if name.partition("_")[0] in OF_SHAFT]
+    inside = (response.speeds_Hz >= low * (1.0 - 1e-9)) & (response.speeds_Hz <= high * (1.0 + 1e-9))
+    speeds = response.speeds_Hz[inside]
+    points = [number for number, name in enumerate(response.points) if name.partition("_")[0] in OF_SHAFT]
     places = list(itertools.compress(range(len(inside)), inside))
 
     def worst(standard: str, limits: Array) -> Iterable[PointVibration]:
-        """limits: (boundaries, speeds)."""
+        """limits: (bounds, speeds)."""
         for point in points if len(speeds) else ():
-            size = 2.0 * found.amplitude[inside, point]
+            size = 2.0 * response.amplitude[inside, point]
             at = int(np.argmax(size / limits[0]))
-            boundaries: Sequence[float] = limits[:, at].tolist()
-            yield PointVibration(standard, found.points[point], float(speeds[at]), float(size[at]), tuple(boundaries),
-                                 found.validity[places[at]])  # fmt: skip
+            bounds: Sequence[float] = limits[:, at].tolist()
+            yield PointVibration(standard, response.points[point], float(speeds[at]), float(size[at]), tuple(bounds),
+                                 response.validity[places[at]])  # fmt: skip
 
     covered = (float(speeds[0]), float(speeds[-1])) if len(speeds) else None
     margins = (SpeedMargin(peak, required_margin(peak.speed_Hz, peak.amplification_factor, operating_Hz))
-               for peak in found.critical_speeds)  # fmt: skip
+               for peak in response.critical_speeds)  # fmt: skip
     api, iso = worst(API, api_limit(speeds)[None]), worst(ISO, zone_limits(speeds))
-    whirling = tuple(speeds[found.growth[inside] > 0.0].tolist())
-    return VibrationLimits(found.case, (low, high), covered, tuple(api), tuple(iso), tuple(margins), whirling)
+    whirling = tuple(speeds[response.growth[inside] > 0.0].tolist())
+    return VibrationLimits(response.case, (low, high), covered, tuple(api), tuple(iso), tuple(margins), whirling)
 
 
 def beyond_iso(operating_Hz: tuple[float, float]) -> bool:

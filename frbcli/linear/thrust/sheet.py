@@ -86,7 +86,7 @@ def thrust_sheet(
     """
     require_sheet(case, gaps or ())
     speeds = sorted(_speeds(case) if speeds_Hz is None else speeds_Hz)
-    found: list[ThrustState] = []
+    states: list[ThrustState] = []
     for bearing in case.thrust_bearings:
         films = thrust_films(case, bearing)
         collar = collar_of(case) or collar_under(case, bearing, 0.0)
@@ -97,10 +97,10 @@ def thrust_sheet(
             omega = 2.0 * math.pi * speed
             at_rest = [collar.rest(omega).gap] if acts else []
             for gap in (*at_rest, *asked, *(_gap_of(collar, load, omega) for load in sorted(loads, reverse=True))):
-                found.append(films.state(gap, omega))
+                states.append(films.state(gap, omega))
                 if observe is not None:
-                    observe(len(found), count)
-    return ThrustSheet(case, tuple(bearing.name for bearing in case.thrust_bearings), tuple(found))
+                    observe(len(states), count)
+    return ThrustSheet(case, tuple(bearing.name for bearing in case.thrust_bearings), tuple(states))
 
 
 def _gap_of(collar: Collar, load: float, omega: float) -> float:

@@ -102,8 +102,8 @@ class ThrustFilms:
         )
 
     def _sides(self, mesh: PadMesh, gap: float, omega: float, oils: Sequence[OilAt]) -> tuple[PadFilm, ...]:
-        """The film of the loaded side, and that of the other one where pads stand there, too. A tilt changes the gaps
-        of both by opposite amounts, and their forces are opposed, so that stiffness and damping add up."""
+        """The film of the loaded side, and of the other side where it has pads, too. A tilt changes the gaps of both by
+        opposite amounts, and their forces are opposed, so that stiffness and damping add up."""
         pairs = zip(self._gaps(gap), oils, strict=True)
         return tuple(self._film(mesh, each, oil, omega) for each, (oil, _) in pairs)
 
@@ -116,7 +116,7 @@ class ThrustFilms:
         return (gap, bearing.end_play - gap) if bearing.side == BOTH and bearing.end_play is not None else (gap,)
 
     def _oils(self, gap: float, omega: float) -> tuple[OilAt, ...]:
-        """The oil of each side, that of the case or, with heat, as warm as it becomes."""
+        """The oil of each side, from the case or, with heat, as warm as it becomes."""
         return tuple(self._oil(each, omega) for each in self._gaps(gap))
 
     def _oil(self, gap: float, omega: float) -> OilAt:

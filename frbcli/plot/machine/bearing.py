@@ -48,12 +48,8 @@ def bearing_figure(sheet: BearingSheet) -> Figure:
         for panel in panels[-1]:
             panel.set_xlabel("eccentricity" if chart else "rotor speed in Hz")
         for panel in panels[2]:
-            if panel.lines:
-                panel.set_yscale("log")
-                plain_numbers(panel.yaxis)
-            else:
-                panel.set_yticks([])
-                panel.text(0.5, 0.5, "not known of a bearing model", transform=panel.transAxes, ha="center")
+            panel.set_yscale("log")
+            plain_numbers(panel.yaxis)
         if chart:
             panels[0, 0].set_yscale("log")
             plain_numbers(panels[0, 0].yaxis)
@@ -86,8 +82,8 @@ def draw_coefficient(axes: Axes, sheet: BearingSheet, quantity: str) -> None:
     unit, scale, letter = {"stiffness": ("N/µm", 1e-6, "k"), "damping": ("N s/mm", 1e-3, "c")}[quantity]
     entries = [(f"{letter}{name}", _entry(quantity, i, scale)) for i, name in enumerate(AXES)]
     _curves(axes, sheet, f"{quantity} in {unit}", entries)
-    found = [[float(np.abs(getattr(state, quantity)).max()) for state in sheet.of(film)] for film in sheet.films]
-    sizes = [max(each) for each in found if any(each)]
+    largest = [[float(np.abs(getattr(state, quantity)).max()) for state in sheet.of(film)] for film in sheet.films]
+    sizes = [max(each) for each in largest if any(each)]
     if sizes and max(sizes) > UNLIKE * min(sizes):
         axes.set_yscale("symlog", linthresh=scale * min(sizes))
 
@@ -103,8 +99,8 @@ def _styles(sheet: BearingSheet) -> list[dict[str, Any]]:
 
 def _curves(axes: Axes, sheet: BearingSheet, label: str, readings: list[tuple[str, Reading]]) -> None:
     """Readings over the abscissa of the sheet, without those that are not known of any state."""
-    found = [state for film in sheet.films for state in sheet.of(film)]
-    readings = [each for each in readings if not found or not all(math.isnan(each[1](state)) for state in found)]
+    points = [state for film in sheet.films for state in sheet.of(film)]
+    readings = [each for each in readings if not points or not all(math.isnan(each[1](state)) for state in points)]
     for number, (film, style) in enumerate(zip(sheet.films, _styles(sheet), strict=True)):
         states = sheet.of(film)
         x = [state.eccentricity if sheet.over == ECCENTRICITY else state.speed_Hz for state in states]

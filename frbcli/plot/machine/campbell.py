@@ -30,7 +30,7 @@ def campbell_figure(stability: Stability) -> Figure:
     points = [point for point in stability.sweep if point.rests]
     case = stability.case
     with styled():
-        figure = new_figure(case.heading, "eigenvalues about the resting position", height=5.8)
+        figure = new_figure(case.heading, "eigenvalues about the static equilibrium", height=5.8)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2.6, 1.0))
         draw_frequencies(above, points)
         _draw_growth(below, stability.sweep)
@@ -42,9 +42,9 @@ def campbell_figure(stability: Stability) -> Figure:
 
 def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
     """Damped eigenfrequencies of the points with films, with bars of their expected errors."""
-    told = [(point.speed_Hz, *mode) for point in points for mode in point.modes_with_errors]
-    speeds, errors = (np.array([row[column] for row in told], dtype=float) for column in (0, 2))
-    values = np.array([value for _, value, _ in told], dtype=complex)
+    rows = [(point.speed_Hz, *mode) for point in points for mode in point.modes_with_errors]
+    speeds, errors = (np.array([row[column] for row in rows], dtype=float) for column in (0, 2))
+    values = np.array([value for _, value, _ in rows], dtype=complex)
     frequencies, grows = values.imag / (2 * np.pi), values.real > 0.0
     fastest = max((point.speed_Hz for point in points), default=1.0)
     critical = [point.critical.imag / (2 * np.pi) for point in points if len(point.oscillating)]
@@ -67,7 +67,7 @@ def draw_frequencies(axes: Axes, points: list[StabilityPoint]) -> None:
 
 
 def _draw_growth(axes: Axes, points: Sequence[StabilityPoint]) -> None:
-    """Growth of the critical motion, with a gap at speeds without a resting position."""
+    """Growth of the critical motion, with a gap at speeds without a static equilibrium."""
     speeds = np.array([point.speed_Hz for point in points])
     growth = np.array([point.growth for point in points])
     axes.plot(speeds, growth, color=BLACK, marker="." if len(points) == 1 else "")

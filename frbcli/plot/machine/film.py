@@ -26,11 +26,11 @@ FRICTION_HEIGHT = 2.4  # inches of the Stribeck curve
 HEIGHT = 5.4
 
 
-def film_figure(found: KinematicTest) -> Figure:
+def film_figure(test: KinematicTest) -> Figure:
     """Mid-lines of all models above, maps of pressure and oil fraction below, a row for each model with a solution."""
-    solved = [result for result in found.results if result.field is not None]
+    solved = [result for result in test.results if result.field is not None]
     with styled():
-        motion = found.case.motion
+        motion = test.case.motion
         speed = motion.speed if motion is not None and motion.speed else 0.0
         words = f"rotation with {speed:g} Hz"
         if len(solved) == 1 or motion is None or motion.load is None:
@@ -38,7 +38,7 @@ def film_figure(found: KinematicTest) -> Figure:
         heights = [5.2, MAP_HEIGHT * len(solved) + 0.4]
         if any(result.stribeck for result in solved):
             heights.append(FRICTION_HEIGHT)
-        figure = new_figure(found.case.heading, words, height=sum(heights))
+        figure = new_figure(test.case.heading, words, height=sum(heights))
         parts: Any = figure.subfigures(len(heights), 1, height_ratios=heights)
         _draw_lines(parts[0], solved)
         _draw_maps(parts[1], solved)
@@ -153,28 +153,28 @@ def _moved(solved: list[KinematicResult]) -> bool:
     return len({result.displacement for result in solved}) > 1
 
 
-def kinematic_figure(found: KinematicTest) -> Figure:
+def kinematic_figure(test: KinematicTest) -> Figure:
     """The films of a rotation, the history of a squeeze or a whirl."""
-    return film_figure(found) if found.test == "rotation" else history_figure(found)
+    return film_figure(test) if test.test == "rotation" else history_figure(test)
 
 
-def history_figure(found: KinematicTest) -> Figure:
-    """F_y of a squeeze and of a bearing model, the pressure at the probe of another whirl, over time for all models;
-    below, the gap at phi = pi."""
-    motion = found.case.motion
+def history_figure(test: KinematicTest) -> Figure:
+    """F_y of a squeeze, or the pressure at the probe of a whirl, over time for all models; below, the gap at the
+    probe's angle, phi = pi."""
+    motion = test.case.motion
     assert motion is not None
-    pressures = found.test == "whirl" and all(result.plan.form.solved for result in found.results)
+    pressures = test.test == "whirl"
     with styled():
-        words = f"{found.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
+        words = f"{test.test} with {motion.frequency:g} Hz, eccentricity {motion.eccentricity:g}"
         if motion.speed:
             words += f", journal turns with {motion.speed:g} Hz"
         if motion.tilt is not None:
             words += ", tilted"
-        if len(found.results) == 1:  # else the legend names the models
-            words += f", {found.results[0].plan.label}"
-        figure = new_figure(found.case.heading, words, height=HEIGHT)
+        if len(test.results) == 1:  # else the legend names the models
+            words += f", {test.results[0].plan.label}"
+        figure = new_figure(test.case.heading, words, height=HEIGHT)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(3.0, 1.0))
-        for number, result in enumerate(found.results):
+        for number, result in enumerate(test.results):
             history = result.history
             if history is None:
                 continue

@@ -1,4 +1,4 @@
-"""Oil fraction over pressure: the two-phase step for several steepnesses (figure 4.10), the models beside each other
+"""Oil fraction over pressure: the two-phase step for several steepnesses (figure 4.10), the models in one diagram
 (figure 4.11)."""
 
 from __future__ import annotations
@@ -20,11 +20,11 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
 
 BAR = 1e5
-STEEPNESSES = (0.9, 0.95, 0.99, 0.999)  # x_1 beside that of the case
+STEEPNESSES = (0.9, 0.95, 0.99, 0.999)  # x_1, in addition to the case's
 DASHES = ((5, 1.5), (1.5, 1), (6, 1.5, 1.5, 1.5), (8, 2), (3, 1, 1, 1, 1, 1))
 LINES: tuple[Any, ...] = ("-", *((0, dash) for dash in DASHES))
 POINTS = 4001
-PLAIN, OWN = 1.0, 2.0  # width of a line, and of that of the case
+PLAIN, OWN = 1.0, 2.0  # width of a line, and of the case's line
 LEAST, WIDEST = 1e-6, 1.2  # p / p_cav over which the models are compared
 
 
@@ -81,16 +81,16 @@ def _draw_models(axes: Axes, case: Case) -> None:
             own = law.name == case.film.cavitation and given == chosen
             _draw(axes, number, ratio * cavity, fraction, law.legend(given), own)
             number += 1
-    axes.set_title("The models beside each other")
+    axes.set_title("Comparison of the models")
 
 
 def _compared(law: type[Law], given: Any) -> list[Any]:
     """The values of the case for the keys of a law, and others for those which the law compares, sorted by these."""
-    found = [given]
+    variants = [given]
     for key, values in law.compared:
         others = {*values, getattr(given, key)}
-        found = [altered(one, {key: value}) for one in found for value in sorted(others)]
-    return found
+        variants = [altered(one, {key: value}) for one in variants for value in sorted(others)]
+    return variants
 
 
 def _draw(axes: Axes, number: int, pressure: Array, fraction: Array, label: str, own: bool) -> None:

@@ -41,57 +41,57 @@ ERROR = "error by the mesh"
 STABLE, UNSTABLE = "-", (0, (3, 1.5))
 
 
-def limit_cycles_figure(found: LimitCycles, tracks: Sequence[RunTrack] = ()) -> Figure:
-    """Largest eccentricities of resting positions and cycles over the speed, a panel for each film, and below the
+def limit_cycles_figure(diagram: LimitCycles, tracks: Sequence[RunTrack] = ()) -> Figure:
+    """Largest eccentricities of static equilibria and cycles over the speed, a panel for each film, and below the
     frequencies of the cycles with half the rotor speed and the lines of the rings.
 
     tracks: of runs, drawn over it as thin lines.
     """
-    case = found.case
-    count = len(found.films)
+    case = diagram.case
+    count = len(diagram.films)
     with styled():
-        at = "" if found.over == SPEED else f" at {case.speed_unit.words(found.equilibria[0].speed_Hz)}"
-        words = f"resting positions and limit cycles{at}, dashed where unstable"
+        at = "" if diagram.over == SPEED else f" at {case.speed_unit.words(diagram.equilibria[0].speed_Hz)}"
+        words = f"static equilibria and limit cycles{at}, dashed where unstable"
         figure = new_figure(case.heading, words, 7.2, 2.6 + 2.0 * count)
         panels = figure.subplots(count + 1, 1, sharex=True, height_ratios=[1.6] * count + [1.0])
         for film, axes in enumerate(panels[:-1]):
-            _film(axes, found, film)
-            _runs(axes, tracks, found.films[film])
-        _frequencies(panels[-1], found)
+            _film(axes, diagram, film)
+            _runs(axes, tracks, diagram.films[film])
+        _frequencies(panels[-1], diagram)
         legend_below(figure, panels[0], panels[-1], columns=4)
     return figure
 
 
-def _film(axes: Axes, found: LimitCycles, film: int) -> None:
-    speeds = np.array([point.value for point in found.equilibria])
-    eccentricity = np.array([point.eccentricity[film] for point in found.equilibria])
-    stable = np.array([point.stable for point in found.equilibria])
+def _film(axes: Axes, diagram: LimitCycles, film: int) -> None:
+    speeds = np.array([point.value for point in diagram.equilibria])
+    eccentricity = np.array([point.eccentricity[film] for point in diagram.equilibria])
+    stable = np.array([point.stable for point in diagram.equilibria])
     _line(axes, speeds, eccentricity, stable, BLACK, "at rest")
-    if found.synchronous:
-        speeds = np.array([point.value for point in found.synchronous])
-        values = np.array([point.eccentricity_max[film] for point in found.synchronous])
-        stable = np.array([point.stable for point in found.synchronous])
+    if diagram.synchronous:
+        speeds = np.array([point.value for point in diagram.synchronous])
+        values = np.array([point.eccentricity_max[film] for point in diagram.synchronous])
+        stable = np.array([point.stable for point in diagram.synchronous])
         _line(axes, speeds, values, stable, GREY, "with unbalance")
-    for number, branch in _drawn(found):
+    for number, branch in _drawn(diagram):
         values = np.array([point.eccentricity_max[film] for point in branch.points])
-        label = "cycles" if len(found.branches) == 1 else f"cycles, branch {number + 1}"
+        label = "cycles" if len(diagram.branches) == 1 else f"cycles, branch {number + 1}"
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], label)
         _band(axes, branch, values, [_eccentricity_error(point, film) for point in branch.points], number)
         _whirls(axes, branch, [whirl.eccentricity_max[film] for whirl in branch.with_unbalance], number)
     for kind, (marker, label) in MARKS.items():
-        points = found.of(kind)
+        points = diagram.of(kind)
         at = [point.value for point in points], [point.eccentricity_max[film] for point in points]
         if points:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
             errors = [each.value_uncertainty for each in points], [_eccentricity_error(each, film) for each in points]
             _bars(axes, *at, *errors)
     axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel(f"largest eccentricity\n{found.films[film].replace('_', ' ')}".rstrip())
+    axes.set_ylabel(f"largest eccentricity\n{diagram.films[film].replace('_', ' ')}".rstrip())
 
 
-def _drawn(found: LimitCycles) -> list[tuple[int, CycleBranch]]:
+def _drawn(diagram: LimitCycles) -> list[tuple[int, CycleBranch]]:
     """The branches with points, by their numbers."""
-    return [(number, branch) for number, branch in enumerate(found.branches) if branch.points]
+    return [(number, branch) for number, branch in enumerate(diagram.branches) if branch.points]
 
 
 def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
@@ -108,31 +108,31 @@ def _runs(axes: Axes, tracks: Sequence[RunTrack], film: str) -> None:
                       zorder=1.8)  # fmt: skip
 
 
-def _frequencies(axes: Axes, found: LimitCycles) -> None:
-    speeds = np.array([point.value for point in found.equilibria])
+def _frequencies(axes: Axes, diagram: LimitCycles) -> None:
+    speeds = np.array([point.value for point in diagram.equilibria])
     ends = np.array([speeds.min(initial=speeds.max()), speeds.max()])
-    rotor = np.array([point.speed_Hz for point in found.equilibria])
+    rotor = np.array([point.speed_Hz for point in diagram.equilibria])
     axes.plot(speeds, 0.5 * rotor, color=GREY, linestyle=(0, (1, 2)), label="0.5X")
-    rings = np.array([point.ring_speeds_Hz for point in found.equilibria])
+    rings = np.array([point.ring_speeds_Hz for point in diagram.equilibria])
     for ring in range(rings.shape[1] if rings.size else 0):
         own = rings[:, ring]
         labels = ("(ω$_R$ + ω$_F$)/2", "ω$_F$/2") if ring == 0 else (None, None)
         axes.plot(speeds, 0.5 * (rotor + own), color=GREY, linestyle=(0, (5, 3)), label=labels[0])
         axes.plot(speeds, 0.5 * own, color=GREY, linestyle="-", linewidth=0.7, label=labels[1])
-    for number, branch in _drawn(found):
+    for number, branch in _drawn(diagram):
         values = np.array([point.frequency_Hz for point in branch.points])
         _curve(axes, branch, values, COLOURS[number % len(COLOURS)], None)
         _band(axes, branch, values, [point.frequency_uncertainty_Hz for point in branch.points], number)
-        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, told=False)
+        _whirls(axes, branch, [whirl.frequency_Hz for whirl in branch.with_unbalance], number, in_legend=False)
     for kind, (marker, _) in MARKS.items():
-        points = found.of(kind)
+        points = diagram.of(kind)
         at = [point.value for point in points], [point.frequency_Hz for point in points]
         axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, zorder=4)
         frequencies = [point.frequency_uncertainty_Hz for point in points]
         _bars(axes, *at, [point.value_uncertainty for point in points], frequencies)
     axes.set_xlim(float(ends[0]), float(ends[1]))
     axes.set_ylim(0.0, ROOM * axes.get_ylim()[1])
-    axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.unit))
+    axes.set_xlabel("rotor speed in Hz" if diagram.over == SPEED else name_of_key(diagram.over, diagram.unit))
     axes.set_ylabel("frequency in Hz")
 
 
@@ -152,8 +152,8 @@ def _curve(axes: Axes, branch: CycleBranch, y: Array, colour: str, label: str | 
 
 def _eccentricity_error(point: CyclePoint | SpecialPoint, film: int) -> float:
     """Uncertainty of the largest eccentricity in a film, NaN where it is not known."""
-    found = point.eccentricity_max_uncertainty
-    return np.nan if found is None else float(found[film])
+    uncertainties = point.eccentricity_max_uncertainty
+    return np.nan if uncertainties is None else float(uncertainties[film])
 
 
 def _band(axes: Axes, branch: CycleBranch, y: Array, errors: Sequence[float], number: int) -> None:
@@ -173,9 +173,9 @@ def _bars(axes: Axes, x: Sequence[float], y: Sequence[float], by_x: Sequence[flo
         axes.errorbar(x, y, halves[1], halves[0], linestyle="", color=BLACK, linewidth=1.0, capsize=2.0, zorder=4)
 
 
-def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, told: bool = True) -> None:
+def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: int, in_legend: bool = True) -> None:
     """The whirls of a branch that have locked in with the unbalance, as dots."""
-    colour, named = COLOURS[number % len(COLOURS)], told and WHIRL not in axes.get_legend_handles_labels()[1]
+    colour, named = COLOURS[number % len(COLOURS)], in_legend and WHIRL not in axes.get_legend_handles_labels()[1]
     if values:
         axes.plot([whirl.speed_Hz for whirl in branch.with_unbalance], values, linestyle="", marker="o", markersize=3.2,
                   color=colour, label=WHIRL if named else None, clip_on=False, zorder=3)  # fmt: skip
@@ -184,6 +184,6 @@ def _whirls(axes: Axes, branch: CycleBranch, values: Sequence[float], number: in
 def _line(axes: Axes, x: Array, y: Array, stable: Truths, colour: str, label: str | None) -> None:
     """A curve, solid where stable and dashed where not; a piece between the two belongs to the unstable part."""
     unstable = ~stable
-    beside = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)
+    dashed = unstable | np.append(unstable[1:], False) | np.insert(unstable[:-1], 0, False)
     axes.plot(x, np.where(stable, y, np.nan), color=colour, linestyle=STABLE, label=label)
-    axes.plot(x, np.where(beside, y, np.nan), color=colour, linestyle=UNSTABLE)
+    axes.plot(x, np.where(dashed, y, np.nan), color=colour, linestyle=UNSTABLE)

@@ -42,97 +42,97 @@ APART = 0.04  # of the range of speeds: labels of critical speeds that are neare
 LABEL_LENGTH, LEVELS = 0.45, 2  # of the height of the axes
 
 
-def response_figure(found: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
+def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figure:
     """Amplitude and phase over the rotor speed, the forward motion in the complex plane, the bearing forces, and the
     orbits at two speeds, see _orbit_speeds.
 
     Dotted where a whirl grows, so that the motion is not seen. tracks: synchronous motion in a run, of points of the
     response by their signals, drawn over it as thin black lines.
     """
-    case = found.case
+    case = motion.case
     with styled():
-        grows = ", dotted where a whirl grows and hides it" if (found.growth > 0.0).any() else ""
-        figure = new_figure(case.heading, f"linear {found.what} about the resting position{grows}", 9.6, 10.8)
+        grows = ", dotted where a whirl grows and hides it" if (motion.growth > 0.0).any() else ""
+        figure = new_figure(case.heading, f"linear {motion.what} about the static equilibrium{grows}", 9.6, 10.8)
         amplitude, phase, polar, force, first, second = figure.subplots(3, 2).ravel()
-        draw_amplitude(amplitude, found)
-        for number in range(len(found.points)):
+        draw_amplitude(amplitude, motion)
+        for number in range(len(motion.points)):
             colour, dash = _line_of(number)
-            _line(phase, found, found.phase_deg[:, number], colour, dash, None)
-            _polar(polar, found, number, colour, dash)
-        sizes = larger_semi_axis(found.forces)
-        for number, name in enumerate(found.bearings):
-            _line(force, found, sizes[:, number], *_line_of(number), name or "bearing")
+            _line(phase, motion, motion.phase_deg[:, number], colour, dash, None)
+            _polar(polar, motion, number, colour, dash)
+        sizes = larger_semi_axis(motion.forces)
+        for number, name in enumerate(motion.bearings):
+            _line(force, motion, sizes[:, number], *_line_of(number), name or "bearing")
         for track in tracks:
             size = np.abs(track.forward) + np.abs(track.backward)
             amplitude.plot(track.speed_Hz, MICRO * size, color=BLACK, linewidth=0.6, label=f"{track.signal} in the run")
         phase.set_ylabel("phase of the forward motion in °")
         force.set_ylabel("force amplitude of a bearing in N")
         for panel in (phase, force):
-            _speed_axis(panel, found)
-            _doubts(panel, found)
+            _speed_axis(panel, motion)
+            _doubts(panel, motion)
         for panel in (amplitude, force):
             panel.set_ylim(bottom=0.0)
         polar.set_aspect("equal", adjustable="datalim")
-        polar.set_xlabel(f"forward motion along the {'mark' if found.excitation == UNBALANCE else 'load'}, µm")
+        polar.set_xlabel(f"forward motion along the {'mark' if motion.excitation == UNBALANCE else 'load'}, µm")
         polar.set_ylabel("across it, µm")
         names = (
             "Bode diagram: amplitude", "Bode diagram: phase", "polar diagram; dots: highest speed", "bearing forces"
         )  # fmt: skip
         for panel, name in zip((amplitude, phase, polar, force), names, strict=True):
             panel.set_title(name)
-        for panel, speed in zip((first, second), _orbit_speeds(found), strict=False):
-            _orbits(panel, found, speed)
-        if len(_orbit_speeds(found)) < 2:
+        for panel, speed in zip((first, second), _orbit_speeds(motion), strict=False):
+            _orbits(panel, motion, speed)
+        if len(_orbit_speeds(motion)) < 2:
             second.set_visible(False)
         legend_below(figure, amplitude, columns=4)
         legend_beside(force)
     return figure
 
 
-def _orbit_speeds(found: Response) -> list[int]:
-    """The numbers of the speeds of the orbits, ascending: that of the largest amplitude and the highest one, or where
-    both are one, the middle one and the highest."""
-    last = len(found.speeds_Hz) - 1
-    largest = int(np.argmax(found.amplitude.max(axis=1)))
+def _orbit_speeds(motion: Response) -> list[int]:
+    """The numbers of the speeds of the orbits, ascending: the speed of the largest amplitude and the highest one, or
+    where both are one, the middle one and the highest."""
+    last = len(motion.speeds_Hz) - 1
+    largest = int(np.argmax(motion.amplitude.max(axis=1)))
     return sorted({largest if largest != last else last // 2, last})
 
 
-def draw_amplitude(axes: Axes, found: Response) -> None:
+def draw_amplitude(axes: Axes, motion: Response) -> None:
     """The larger semi-axes of all points over the rotor speed on axes of a figure, with bands of their expected errors
     and the critical speeds."""
-    for number, name in enumerate(found.points):
-        size, error = (MICRO * values[:, number] for values in (found.amplitude, found.amplitude_error))
-        _line(axes, found, size, *_line_of(number), name.replace("_", " "))
+    for number, name in enumerate(motion.points):
+        size, error = (MICRO * values[:, number] for values in (motion.amplitude, motion.amplitude_error))
+        _line(axes, motion, size, *_line_of(number), name.replace("_", " "))
         axes.fill_between(
-            found.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
+            motion.speeds_Hz, size - error, size + error, color=_line_of(number)[0], alpha=BAND, linewidth=0.0
         )
-    close = APART * float(np.ptp(found.speeds_Hz))
-    for number, peak in enumerate(found.critical_speeds):
+    close = APART * float(np.ptp(motion.speeds_Hz))
+    for number, peak in enumerate(motion.critical_speeds):
         label = None if number else "critical speed"
         axes.axvline(peak.speed_Hz, color=GREY, linewidth=0.6, linestyle=(0, (4, 3)), label=label)
-        lower = sum(peak.speed_Hz - other.speed_Hz < close for other in found.critical_speeds[:number])
+        lower = sum(peak.speed_Hz - other.speed_Hz < close for other in motion.critical_speeds[:number])
         factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
         top = 1.0 - LABEL_LENGTH * (lower % LEVELS)
-        at = found.case.speed_unit.words(peak.speed_Hz)
+        at = motion.case.speed_unit.words(peak.speed_Hz)
         axes.annotate(f"{at}, {peak.direction}{factor}", (peak.speed_Hz, top), (-2, -3),
                       xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=6,
                       ha="right", va="top", color=GREY)  # fmt: skip
-    if set(found.validity) != {SOUND}:
-        _doubts(axes, found, labelled=True)
-        for number, clearance in enumerate(np.unique(found.clearances, axis=1).T):
+    if set(motion.validity) != {SOUND}:
+        _doubts(axes, motion, labelled=True)
+        for number, clearance in enumerate(np.unique(motion.clearances, axis=1).T):
             label = None if number else "clearance"
-            axes.plot(found.speeds_Hz, MICRO * clearance, color=BLACK, linewidth=0.8, linestyle=GAP, label=label)
+            axes.plot(motion.speeds_Hz, MICRO * clearance, color=BLACK, linewidth=0.8, linestyle=GAP, label=label)
     axes.set_ylabel("amplitude in µm (larger semi-axis)")
-    _speed_axis(axes, found)
+    _speed_axis(axes, motion)
     axes.set_ylim(bottom=0.0)
 
 
-def _doubts(axes: Axes, found: Response, labelled: bool = False) -> None:
+def _doubts(axes: Axes, motion: Response, labelled: bool = False) -> None:
     """Shades the speeds at which linear coefficients are doubtful, darker where an orbit leaves its gap."""
-    speeds = found.speeds_Hz
+    speeds = motion.speeds_Hz
     edges = np.concatenate([speeds[:1], 0.5 * (speeds[1:] + speeds[:-1]), speeds[-1:]])
     for kind, depth in SHADES.items():
-        there = np.array([validity == kind for validity in found.validity])
+        there = np.array([validity == kind for validity in motion.validity])
         begins = np.flatnonzero(there & ~np.insert(there[:-1], 0, False))
         ends = np.flatnonzero(there & ~np.append(there[1:], False))
         for number, (begin, end) in enumerate(zip(begins, ends, strict=True)):
@@ -140,25 +140,25 @@ def _doubts(axes: Axes, found: Response, labelled: bool = False) -> None:
             axes.axvspan(edges[begin], edges[end + 1], color=GREY, alpha=depth, linewidth=0.0, zorder=0.2, label=label)
 
 
-def _orbits(axes: Axes, found: Response, speed: int) -> None:
-    """The orbits of all points about their resting positions at a speed, by its number; a dot where each is while the
+def _orbits(axes: Axes, motion: Response, speed: int) -> None:
+    """The orbits of all points about their static equilibrium at a speed, by its number; a dot where each is while the
     mark of the rotor points along x, or the angle of the load that excites alone is 0."""
-    for number in range(len(found.points)):
+    for number in range(len(motion.points)):
         colour, dash = _line_of(number)
-        x, y = MICRO * found.orbit(speed, number).T
+        x, y = MICRO * motion.orbit(speed, number).T
         axes.plot(np.append(x, x[0]), np.append(y, y[0]), color=colour,
-                  linestyle=GROWING if found.growth[speed] > 0.0 else dash)  # fmt: skip
+                  linestyle=GROWING if motion.growth[speed] > 0.0 else dash)  # fmt: skip
         axes.plot(x[0], y[0], color=colour, marker="o", markersize=4.0)
     axes.set_aspect("equal", adjustable="datalim")
-    dots = "mark along x" if found.excitation == UNBALANCE else f"{found.excitation} at angle 0"
-    axes.set_title(f"orbits at {found.speeds_Hz[speed]:.4g} Hz; dots: {dots}")
+    dots = "mark along x" if motion.excitation == UNBALANCE else f"{motion.excitation} at angle 0"
+    axes.set_title(f"orbits at {motion.speeds_Hz[speed]:.4g} Hz; dots: {dots}")
     axes.set_xlabel("x in µm")
     axes.set_ylabel("y in µm")
 
 
-def _speed_axis(axes: Axes, found: Response) -> None:
+def _speed_axis(axes: Axes, motion: Response) -> None:
     axes.set_xlabel("rotor speed in Hz")
-    axes.set_xlim(0.0, float(found.speeds_Hz[-1]))
+    axes.set_xlim(0.0, float(motion.speeds_Hz[-1]))
 
 
 def _line_of(number: int) -> tuple[str, object]:
@@ -166,56 +166,56 @@ def _line_of(number: int) -> tuple[str, object]:
     return COLOURS[number % len(COLOURS)], DASHES[number // len(COLOURS) % len(DASHES)]
 
 
-def _line(axes: Axes, found: Response, values: Array, colour: str, dash: object, label: str | None) -> None:
+def _line(axes: Axes, motion: Response, values: Array, colour: str, dash: object, label: str | None) -> None:
     """A curve over the speed, dotted where a whirl grows."""
-    grows = found.growth > 0.0
-    axes.plot(found.speeds_Hz, np.where(grows, np.nan, values), color=colour, linestyle=dash, label=label)
+    grows = motion.growth > 0.0
+    axes.plot(motion.speeds_Hz, np.where(grows, np.nan, values), color=colour, linestyle=dash, label=label)
     if grows.any():
-        beside = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
-        axes.plot(found.speeds_Hz, np.where(beside, values, np.nan), color=colour, linestyle=GROWING)
+        dotted = grows | np.append(grows[1:], False) | np.insert(grows[:-1], 0, False)
+        axes.plot(motion.speeds_Hz, np.where(dotted, values, np.nan), color=colour, linestyle=GROWING)
 
 
-def _polar(axes: Axes, found: Response, number: int, colour: str, dash: object) -> None:
-    forward = MICRO * found.forward[:, number]
-    grows = found.growth > 0.0
+def _polar(axes: Axes, motion: Response, number: int, colour: str, dash: object) -> None:
+    forward = MICRO * motion.forward[:, number]
+    grows = motion.growth > 0.0
     axes.plot(np.where(grows, np.nan, forward.real), forward.imag, color=colour, linestyle=dash)
     axes.plot(np.where(grows, forward.real, np.nan), forward.imag, color=colour, linestyle=GROWING)
     axes.plot(forward.real[-1], forward.imag[-1], color=colour, marker="o", markersize=4.0)
 
 
-def critical_map_figure(found: CriticalMap) -> Figure:
+def critical_map_figure(speeds: CriticalMap) -> Figure:
     """Critical speeds of forward and backward whirls over the stiffness of a bearing, both logarithmic; red, what the
     films have at each speed: where the curves cross, the rotor has a critical speed, less what damping moves it."""
-    case = found.case
+    case = speeds.case
     with styled():
         figure = new_figure(case.heading, "undamped critical speeds over the stiffness of each bearing")
         axes = figure.subplots()
-        draw_critical_map(axes, found)
+        draw_critical_map(axes, speeds)
         legend_below(figure, axes)
     return figure
 
 
-def draw_critical_map(axes: Axes, found: CriticalMap) -> None:
+def draw_critical_map(axes: Axes, speeds: CriticalMap) -> None:
     """The map on axes of a figure: critical speeds in Hz over the stiffness in N/m."""
     for values, colour, dashes, name in (
-        (found.forward, BLUE, "-", "forward whirl"), (found.backward, ORANGE, (0, (5, 2)), "backward whirl"),
+        (speeds.forward, BLUE, "-", "forward whirl"), (speeds.backward, ORANGE, (0, (5, 2)), "backward whirl"),
     ):  # fmt: skip
         for number, curve in enumerate(values.T):
-            axes.plot(found.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
-    for number, springs in enumerate(found.film_stiffness.T if len(found.film_speeds_Hz) else ()):
+            axes.plot(speeds.stiffness, curve, color=colour, linestyle=dashes, label=name if number == 0 else None)
+    for number, springs in enumerate(speeds.film_stiffness.T if len(speeds.film_speeds_Hz) else ()):
         if np.isnan(springs).all():
             continue
-        bearing = found.case.bearings[number].name
+        bearing = speeds.case.bearings[number].name
         label = ", ".join(word for word in ("stiffness of the films", bearing) if word)
         marker = FILM_MARKS[number % 3] if len(springs) < FEW else ""
-        axes.plot(springs, found.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
+        axes.plot(springs, speeds.film_speeds_Hz, color=VERMILION, linestyle=FILM_DASHES[number % 3], marker=marker,
                   markersize=5.0, label=label)  # fmt: skip
-    top = max(abs(found.case.speed.start), abs(found.case.speed.end))
+    top = max(abs(speeds.case.speed.start), abs(speeds.case.speed.end))
     axes.axhline(top, color=GREY, linewidth=0.8, linestyle=(0, (1, 2)), label="highest speed of the case")
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlim(float(found.stiffness[0]), float(found.stiffness[-1]))
-    lowest = float(np.nanmin([found.forward, found.backward]))
+    axes.set_xlim(float(speeds.stiffness[0]), float(speeds.stiffness[-1]))
+    lowest = float(np.nanmin([speeds.forward, speeds.backward]))
     axes.set_ylim(max(lowest, 0.02 * top), 20.0 * top)
     axes.set_xlabel("stiffness of a bearing in N/m")
     axes.set_ylabel("critical speed in Hz")

@@ -26,41 +26,41 @@ from frbcli.plot.style import (
 HOPF_STYLES = {
     SUPERCRITICAL: (BLUE, "-", "Hopf points, soft"),
     SUBCRITICAL: (VERMILION, "-", "Hopf points, hard"),
-    None: (GREY, "--", "Hopf points, soft or hard not told"),
+    None: (GREY, "--", "Hopf points, soft or hard unknown"),
 }
 MARKS = {BAUTIN: ("o", "soft changes to hard"), CUSP: ("^", "cusp of folds")}
 UNSTABLE = "#f3e3d3"
 MARGIN = 0.15  # of the range of the curves, on both sides
 
 
-def stability_map_figure(found: StabilityMap) -> Figure:
+def stability_map_figure(chart: StabilityMap) -> Figure:
     """The curves with the first number to the right and the second one upwards; shaded where rest is unstable."""
-    case = found.case
+    case = chart.case
     with styled():
         figure = new_figure(case.heading, "curves of Hopf points and folds of limit cycles")
         axes = figure.subplots()
-        _shade(axes, found)
-        for curve in found.curves:
+        _shade(axes, chart)
+        for curve in chart.curves:
             _curve(axes, curve)
         for kind, (marker, label) in MARKS.items():
-            at = [(point.over, point.value) for point in found.special if point.kind == kind]
+            at = [(point.over, point.value) for point in chart.special if point.kind == kind]
             if at:
                 over, values = zip(*at, strict=True)
                 axes.plot(over, values, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label)
-        axes.set_xlim(*_limits(found))
-        axes.set_ylim(found.growth.values[0], found.growth.values[-1])
-        axes.set_xlabel("rotor speed in Hz" if found.over == SPEED else name_of_key(found.over, found.over_unit))
-        axes.set_ylabel(name_of_key(found.key, found.unit))
+        axes.set_xlim(*_limits(chart))
+        axes.set_ylim(chart.growth.values[0], chart.growth.values[-1])
+        axes.set_xlabel("rotor speed in Hz" if chart.over == SPEED else name_of_key(chart.over, chart.over_unit))
+        axes.set_ylabel(name_of_key(chart.key, chart.unit))
         _legend_once(axes)
         legend_below(figure, axes)
     return figure
 
 
-def _limits(found: StabilityMap) -> tuple[float, float]:
+def _limits(chart: StabilityMap) -> tuple[float, float]:
     """Where the curves and the marks are, with a margin, within the range of the map; all of it without any."""
-    low, high = float(found.growth.over[0]), float(found.growth.over[-1])
-    over = np.array([point.over for curve in found.curves for point in curve.points]
-                    + [point.over for point in found.special])  # fmt: skip
+    low, high = float(chart.growth.over[0]), float(chart.growth.over[-1])
+    over = np.array([point.over for curve in chart.curves for point in curve.points]
+                    + [point.over for point in chart.special])  # fmt: skip
     over = over[(low <= over) & (over <= high)]
     if not len(over) or not np.ptp(over) > 0.0:
         return low, high
@@ -68,12 +68,12 @@ def _limits(found: StabilityMap) -> tuple[float, float]:
     return max(low, float(over.min()) - margin), min(high, float(over.max()) + margin)
 
 
-def _shade(axes: Axes, found: StabilityMap) -> None:
-    """Where the resting position is unstable."""
-    grid = np.where(np.isnan(found.growth.rate), -1.0, found.growth.rate)
+def _shade(axes: Axes, chart: StabilityMap) -> None:
+    """Where the static equilibrium is unstable."""
+    grid = np.where(np.isnan(chart.growth.rate), -1.0, chart.growth.rate)
     if grid.max() > 0.0:
-        axes.contourf(found.growth.over, found.growth.values, grid, levels=[0.0, grid.max()], colors=[UNSTABLE])
-        axes.fill([], [], color=UNSTABLE, label="resting position unstable")
+        axes.contourf(chart.growth.over, chart.growth.values, grid, levels=[0.0, grid.max()], colors=[UNSTABLE])
+        axes.fill([], [], color=UNSTABLE, label="static equilibrium unstable")
 
 
 def _curve(axes: Axes, curve: MapCurve) -> None:

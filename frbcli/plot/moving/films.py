@@ -1,5 +1,5 @@
 """A film of a run on its way, as far as the run has kept it: oil fraction and free gas over the whole gap, at some
-moments beside each other, or as a moving picture."""
+moments side by side, or as a moving picture."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from frbcli.results.files.container import refuse
 from frbcli.results.kept_films import KeptFilm, kept_film
 from frbcli.results.store import Run
 
-MOMENTS = 6  # beside each other in a picture that does not move
+MOMENTS = 6  # side by side in a still picture
 COLUMNS, COURSE = 256, 400  # of a map around, and points of a curve over time
 MAP_HEIGHT, COURSE_HEIGHT, WIDTH = 0.75, 1.5, 8.0  # inches
 TICKS = 5  # of a scale, at most
@@ -43,7 +43,7 @@ def film_moments_figure(
         for row, frame in zip(maps, chosen, strict=True):
             above.axvline(kept.times[frame], color=GREY, linewidth=0.8)
             _draw_maps(row, kept, frame)
-            row[0].set_title(_told(run, kept, frame), fontsize=8.0, loc="left")
+            row[0].set_title(_moment(run, kept, frame), fontsize=8.0, loc="left")
     return figure
 
 
@@ -54,7 +54,7 @@ def animate_films(
     """Write a film as a moving picture of at most `frames` of the moments that a run has kept from from_time to to_time
     in s.
 
-    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    force: also replace a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
     the run has kept none.
     """
     path = Path(path)
@@ -66,7 +66,7 @@ def animate_films(
         _draw_course(above, run, kept, first, last)
         now = above.axvline(kept.times[first], color=VERMILION, linewidth=1.2)
         images, lines = _draw_maps(row, kept, first)
-        told = row[0].set_title(_told(run, kept, first), fontsize=9.0, loc="left")
+        title = row[0].set_title(_moment(run, kept, first), fontsize=9.0, loc="left")
 
         def draw(number: int) -> None:
             frame = chosen[number]
@@ -75,7 +75,7 @@ def animate_films(
                 image.set_data(kept.around(frame, values[frame], COLUMNS).T)
             for line in lines:
                 line.set_xdata([np.degrees(kept.narrowest(frame))] * 2)
-            told.set_text(_told(run, kept, frame))
+            title.set_text(_moment(run, kept, frame))
 
         write_animation(path, figure, draw, len(chosen), dpi, observe, force)
     return path
@@ -157,7 +157,7 @@ def _draw_maps(row: Any, kept: KeptFilm, frame: int) -> tuple[list[Any], list[An
     return images, lines
 
 
-def _told(run: Run, kept: KeptFilm, frame: int) -> str:
+def _moment(run: Run, kept: KeptFilm, frame: int) -> str:
     now = float(kept.times[frame])
     speed = given_speed_unit(run.case_text).words(speed_at(run, now), 1)
     return f"{now:.4f} s, {speed}, eccentricity {np.hypot(*kept.places[frame]):.3f}"

@@ -29,7 +29,7 @@ def animate_orbits(
 ) -> Path:  # fmt: skip
     """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
 
-    force: also in place of a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    force: also replace a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
     the run has no samples between these times.
     """
     path = Path(path)
@@ -58,7 +58,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
     unit = given_speed_unit(run.case_text)
-    told = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
+    caption = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
 
     def draw(frame: int) -> None:
         last = (frame + 1) * BETWEEN
@@ -67,7 +67,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
             trail.set_data(x[first:last], y[first:last])
             dot.set_data(x[last - 1 : last], y[last - 1 : last])
         now = float(times[last - 1])
-        told.set_text(f"{now:.4f} s, {unit.words(speed_at(run, now), 1)}")
+        caption.set_text(f"{now:.4f} s, {unit.words(speed_at(run, now), 1)}")
 
     return figure, draw
 

@@ -27,7 +27,7 @@ Observer = Callable[[int, int], None]  # frames drawn, and how many there are
 
 def check_animation(path: Path, force: bool = False) -> None:
     """Raises InputError if a moving picture cannot have this name or this place, or its program is missing. force: also
-    in place of a file that frb did not write."""
+    replace a file that frb did not write."""
     if path.suffix.lower() not in FORMATS:
         raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
     if path.suffix.lower() == ".mp4" and _ffmpeg() is None:
@@ -37,8 +37,8 @@ def check_animation(path: Path, force: bool = False) -> None:
 
 def _ffmpeg() -> str | None:
     """The program ffmpeg, not one of the current folder; None if there is none."""
-    found = shutil.which(mpl.rcParams["animation.ffmpeg_path"])
-    return found if found is not None and os.path.isabs(found) else None
+    program = shutil.which(mpl.rcParams["animation.ffmpeg_path"])
+    return program if program is not None and os.path.isabs(program) else None
 
 
 def write_animation(
@@ -51,11 +51,11 @@ def write_animation(
     moving: Any = FuncAnimation(figure, draw, frames=frames, blit=False)
     as_film = path.suffix.lower() == ".mp4"
     writer: Any = FFMpegWriter(PER_SECOND, metadata={"comment": MARK}) if as_film else PillowWriter(PER_SECOND)
-    told = None if observe is None else lambda frame, _: observe(frame + 1, frames)
+    progress = None if observe is None else lambda frame, _: observe(frame + 1, frames)
     with written(path, PICTURES[path.suffix.lower()], force=force) as part, TemporaryDirectory(prefix="frb-") as folder:
         drawn = Path(folder) / f"moving{path.suffix.lower()}"  # by which its writers know the format
         with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg() or ""}):
-            moving.save(str(drawn), writer=writer, dpi=dpi, progress_callback=told)
+            moving.save(str(drawn), writer=writer, dpi=dpi, progress_callback=progress)
         if not as_film:
             _comment(drawn)
         shutil.copyfile(drawn, part)

@@ -50,10 +50,10 @@ def draw_eccentricity(
 ) -> None:
     """The curves of some films, or of all, on axes of a figure, labelled with run and film where there are several."""
     names = names or list(films(runs[0].signals)) or [""]
-    told = [_without_side(name) if len(names) < len(list(films(runs[0].signals))) else name for name in names]
+    film_labels = [_without_side(name) if len(names) < len(list(films(runs[0].signals))) else name for name in names]
     curves = [
         (label.replace("_", " "), [run.signal(joined("eccentricity", name)) for run in runs])
-        for label, name in zip(told, names, strict=True)
+        for label, name in zip(film_labels, names, strict=True)
     ]
     draw_curves(axes, runs, curves, over, span)
     axes.set_ylim(0.0, 1.0)
@@ -61,10 +61,10 @@ def draw_eccentricity(
 
 
 def _groups(run: Run) -> list[tuple[str, list[str]]]:
-    """The films of a panel: those inside of rings, those outside of them, those without."""
-    found = list(films(run.signals)) or [""]
-    groups = [(side, [name for name in found if name.split("_")[-1] == side]) for side in SIDES]
-    groups.append(("", [name for name in found if name.split("_")[-1] not in SIDES]))
+    """The films of each panel: films inside of rings, films outside of rings, and all others."""
+    all_films = list(films(run.signals)) or [""]
+    groups = [(side, [name for name in all_films if name.split("_")[-1] == side]) for side in SIDES]
+    groups.append(("", [name for name in all_films if name.split("_")[-1] not in SIDES]))
     return [(side, names) for side, names in groups if names]
 
 

@@ -76,11 +76,11 @@ def extremes(column: EnvelopeColumn, first: int, last: int) -> tuple[float, floa
 
 def at_times(run: Run, column: EnvelopeColumn, times: Array) -> Array:
     """The values (k,) of a column at ascending times (k,) in s, on the line between the samples."""
-    found = np.empty(len(times))
+    values = np.empty(len(times))
     for start, stop in pieces(0, len(run)):
         stop = min(stop + 1, len(run))  # up to the first sample of the next piece
         time_s = run.read(TIME, start, stop)
         first = 0 if start == 0 else np.searchsorted(times, time_s[0])
         here = slice(first, len(times) if stop == len(run) else np.searchsorted(times, time_s[-1]))
-        found[here] = np.interp(times[here], time_s, column[start:stop])
-    return found
+        values[here] = np.interp(times[here], time_s, column[start:stop])
+    return values

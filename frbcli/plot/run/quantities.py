@@ -26,9 +26,9 @@ PANEL_HEIGHT = 2.4  # inches
 
 @dataclass(frozen=True)
 class Panel:
-    """One quantity. begin, end: of the names of its signals, between which stands that of a film, ring or wall; label:
-    of the axis, in whose unit the signals are times `factor` plus `offset`; low, high: ends of the axis, None for those
-    of the curves; uncertainty: its key in the error of a run."""
+    """One quantity. begin, end: of the names of its signals, with the name of a film, ring or wall in between; label:
+    of the axis, in whose unit the signals are times `factor` plus `offset`; low, high: ends of the axis, None for the
+    range of the curves; uncertainty: its key in the error of a run."""
 
     begin: str
     end: str
@@ -40,15 +40,15 @@ class Panel:
     uncertainty: str = ""
 
     def signals(self, run: Run) -> dict[str, str]:
-        """The signals of a run by what stands between."""
+        """The signals of a run by the name of the film, ring or wall in them."""
         names = (name for name in run.signals if name.startswith(self.begin) and name.endswith(self.end))
         return {name.removeprefix(self.begin).removesuffix(self.end).strip("_"): name for name in names}
 
 
 @dataclass(frozen=True)
 class Subject:
-    """Quantities that are drawn together. missing, remedy: what is said of a run without them; {models} are those that
-    keep oil; alone: name of a signal with nothing between; height: in inches, None for that of its panels."""
+    """Quantities that are drawn together. missing, remedy: message for a run without them, with the mass-conserving
+    models as {models}; alone: name of a signal with nothing between; height: in inches, None: the sum of its panels."""
 
     panels: tuple[Panel, ...]
     missing: str

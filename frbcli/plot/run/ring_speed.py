@@ -1,4 +1,4 @@
-"""Speed of floating rings over that of the rotor."""
+"""Speed of floating rings over the rotor speed."""
 
 from __future__ import annotations
 
@@ -60,13 +60,13 @@ def ring_speed_figure(
 
 
 def _draw_concentric(axes: Axes, concentric: dict[str, float]) -> None:
-    """A dashed line for each ratio of concentric surfaces, with the ring that has it where they differ."""
+    """A dashed line for each ratio of concentric surfaces, labelled with its ring where the ratios differ."""
     for value in sorted(set(concentric.values())):
         alike = [name for name, own in concentric.items() if own == value]
-        told = alike[0] if len(alike) < len(concentric) else ""
+        ring = alike[0] if len(alike) < len(concentric) else ""
         axes.axhline(value, color=GREY, linestyle=(0, (5, 3)), linewidth=0.9)
         axes.annotate(
-            " ".join(word for word in ("concentric", told) if word) + f" {value:.3f}",
+            " ".join(word for word in ("concentric", ring) if word) + f" {value:.3f}",
             (1.0, value), (-4, 3), xycoords=axes.get_yaxis_transform(), textcoords="offset points",
             ha="right", va="bottom", color=GREY, bbox=PAPER,
         )  # fmt: skip
@@ -78,7 +78,7 @@ def _turning(run: Run) -> list[str]:
 
 @dataclass(frozen=True)
 class _Ratio:
-    """Speed of a ring over that of the rotor, NaN where the rotor hardly turns: below `least` Hz."""
+    """Speed of a ring over the rotor speed, NaN where the rotor hardly turns: below `least` Hz."""
 
     ring: Signal
     rotor: Signal

@@ -1,4 +1,4 @@
-"""Orbits and spectra of a run at chosen moments, one beside the other."""
+"""Orbits and spectra of a run at chosen moments, side by side."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ TURNS = 12.0  # revolutions of an orbit
 LONGEST_s, SHORTEST_s = 0.2, 2e-3
 WIDTH, ROW = 7.2, 2.5  # inches
 FINE = 40.0  # points of a revolution: through fewer samples a curve would have corners
-BESIDE = 12  # samples on either side that values between samples need
+MARGIN = 12  # samples on either side that values between samples need
 ENLARGED = 0.1  # of the clearance: a smaller orbit is drawn without it
 AHEAD = 2.2  # of the rotor speed: up to where a spectrum is drawn
 CLEAR = {"facecolor": "white", "alpha": 0.8, "edgecolor": "none", "pad": 0.5}  # behind a name: lines of others
@@ -35,7 +35,7 @@ CLOSE, LINE_pt = 0.2, 10.0  # share of an axis within which names stand one belo
 
 
 def speeds_figure(
-    run: Run, times_s: Sequence[float], found: Spectrogram, signal: str = "journal",
+    run: Run, times_s: Sequence[float], spectra: Spectrogram, signal: str = "journal",
     words: Callable[[float], str] = "{:.4g} Hz".format,
 ) -> Figure:  # fmt: skip
     """A row for each of some moments in s: the orbit of the last revolutions until then, and the spectrum of the
@@ -48,14 +48,14 @@ def speeds_figure(
         rows = figure.subplots(len(times_s), 2, squeeze=False, width_ratios=(1.0, 2.0))
         for (left, right), time_s in zip(rows, times_s, strict=True):
             draw_orbit_until(left, run, time_s, signal)
-            draw_spectrum_at(right, run, time_s, found, signal)
+            draw_spectrum_at(right, run, time_s, spectra, signal)
             left.set_title(f"{words(speed_at(run, time_s))}, {time_s:.4g} s")
     return figure
 
 
 def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal") -> None:
-    """The orbit of the last revolutions before a time in s, in its clearance if it is that of a journal and not
-    too small to be seen in it."""
+    """The orbit of the last revolutions before a time in s; with the clearance for a journal whose orbit is not too
+    small to be seen in it."""
     speed = max(abs(speed_at(run, time_s)), 1e-9)
     begin, end = ends(run)
     until = min(max(time_s, begin + SHORTEST_s), end)
@@ -81,27 +81,27 @@ def draw_orbit_until(axes: Axes, run: Run, time_s: float, signal: str = "journal
 
 
 def between(part: Signal, first: int, last: int, times: int) -> Values:
-    """The samples of a motion from `first` to before `last`, and values between them, `times` as many: those of the
-    motion whose frequencies stay below half of the rate of the samples. At an end of the run, beyond which nothing is
-    known, the last few samples are left out."""
-    whole = part[max(first - BESIDE, 0) : min(last + BESIDE, len(part))]
-    if times <= 1 or len(whole) <= 4 * BESIDE:
+    """The samples of a motion from `first` to before `last`, and `times` as many values between them, interpolated as
+    band-limited to half of the sampling rate. At an end of the run, beyond which nothing is known, the last few samples
+    are left out."""
+    whole = part[max(first - MARGIN, 0) : min(last + MARGIN, len(part))]
+    if times <= 1 or len(whole) <= 4 * MARGIN:
         return part[first:last]
-    rest = BESIDE * times
-    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - BESIDE - 1) * times + 1])
+    rest = MARGIN * times
+    return np.asarray(resample_poly(whole, times, 1, padtype="line")[rest : (len(whole) - MARGIN - 1) * times + 1])
 
 
-def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, signal: str = "journal") -> None:
+def draw_spectrum_at(axes: Axes, run: Run, time_s: float, spectra: Spectrogram, signal: str = "journal") -> None:
     """Peak amplitudes over frequency of the spectrum nearest to a time in s, with the frequencies of interest."""
-    column = int(np.argmin(np.abs(found.time_s - time_s)))
-    speed = abs(float(found.speed_Hz[column]))
-    highest = min(float(found.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / found.window_s))
-    kept = found.frequency_Hz <= highest
-    axes.plot(found.frequency_Hz[kept], MICRO * found.amplitude[kept, column], color=BLUE)
+    column = int(np.argmin(np.abs(spectra.time_s - time_s)))
+    speed = abs(float(spectra.speed_Hz[column]))
+    highest = min(float(spectra.frequency_Hz[-1]), max(AHEAD * speed, 8.0 / spectra.window_s))
+    kept = spectra.frequency_Hz <= highest
+    axes.plot(spectra.frequency_Hz[kept], MICRO * spectra.amplitude[kept, column], color=BLUE)
     if highest > 0.0:
         axes.set_xlim(0.0, highest)
     axes.set_ylim(bottom=0.0)
-    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, found))
+    lines = sorted((float(abs(frequencies[column])), name) for name, frequencies in orders(run, signal, spectra))
     last, lower = -np.inf, 0.0
     for at, name in lines:
         if 0.0 < at < highest:
@@ -117,14 +117,14 @@ def draw_spectrum_at(axes: Axes, run: Run, time_s: float, found: Spectrogram, si
 def times_of_speeds(run: Run, speeds_Hz: Sequence[float]) -> list[float]:
     """The first time in s at which the rotor turns as fast as each of some speeds; those it does not reach are left
     out."""
-    found = []
+    times = []
     for wanted in speeds_Hz:
         before = 0.0
         for start, stop in pieces(0, len(run)):
             speed = np.abs(run.read(SPEED, start, stop))
             reached = np.flatnonzero((speed >= abs(wanted)) & (before <= abs(wanted)))
             if len(reached):
-                found.append(float(run.read("time_s", start + int(reached[0]), start + int(reached[0]) + 1)[0]))
+                times.append(float(run.read("time_s", start + int(reached[0]), start + int(reached[0]) + 1)[0]))
                 break
             before = float(speed[-1])
-    return found
+    return times

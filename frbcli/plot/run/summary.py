@@ -77,12 +77,12 @@ def summary_figure(run: Run) -> Figure:
         above.set_xlim(begin, end)
         legend_beside(above)
         if len(run) >= FEWEST_SAMPLES:
-            found = run_spectra(run, SIGNAL, None, "x")
-            mesh = draw_levels(middle, run, SIGNAL, found, "time")
+            spectra = run_spectra(run, SIGNAL, None, "x")
+            mesh = draw_levels(middle, run, SIGNAL, spectra, "time")
             bar = figure.colorbar(mesh, ax=[above, middle, below], location="bottom", shrink=0.6, pad=0.02,
                                   extend="both", aspect=40)  # fmt: skip
             label = level_label(run, SIGNAL).replace("amplitude", "amplitude of the journal")
-            bar.set_label(f"{label}; {reading(found)}".replace(": ", ":\n"))  # a line of both is wider than the picture
+            bar.set_label(f"{label}; {reading(spectra)}".replace(": ", ":\n"))  # one line is wider than the picture
             bar.outline.set_visible(False)
         _draw_speed(below, run)
         for axes in (above, middle):
@@ -91,7 +91,7 @@ def summary_figure(run: Run) -> Figure:
         for axes in (above, middle):
             for time, half in bands:
                 axes.axvspan(time - half, time + half, color=GREY, alpha=BAND, linewidth=0.0)
-        left_out = mark_times((above, middle), [time for time, _ in marked], [told for _, told in marked])
+        left_out = mark_times((above, middle), [time for time, _ in marked], [text for _, text in marked])
         if left_out:
             words.append(f"{left_out} of {len(marked)} events have no room for their names")
             set_title(figure, title, ", ".join(word for word in words if word))
@@ -112,10 +112,10 @@ def _draw_speed(axes: Axes, run: Run) -> None:
     axes.set_ylabel("speed in Hz")
 
 
-def _marks(found: list[dict[str, Any]], unit: SpeedUnit) -> list[tuple[float, str]]:
+def _marks(happened: list[dict[str, Any]], unit: SpeedUnit) -> list[tuple[float, str]]:
     """Time and words of what is marked; of the whirls of floating rings the first onset of each that has a name."""
     marks, known = [], set()
-    for event, name in zip(found, whirl_names(found), strict=True):
+    for event, name in zip(happened, whirl_names(happened), strict=True):
         if not name:
             marks.append((event["t_s"], _words(event, unit)))
         elif event["kind"] == "onset" and name not in known:

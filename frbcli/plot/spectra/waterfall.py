@@ -5,31 +5,38 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 
+from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectra.spectrum import waterfall as spectra
 from frbcli.arrays import Array
+from frbcli.case.course.speed import given_speed_unit
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.plot.run.envelope import at_times, extremes
 from frbcli.plot.signals import MICRO, bearing_of, case_tables, clearance, ends, heading, motion
-from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, new_figure, styled
+from frbcli.plot.style import BLACK, BLUE, GREY, LEVEL_MAP, new_figure, plain, styled
+from frbcli.results.columns import event_name
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
 from frbcli.scene.machine.elements import harmonics_of
+from frbcli.units import SpeedUnit
 
 Over = Literal["time", "speed"]
+AXES: dict[Over, str] = {"time": "time in s", "speed": "rotor speed in Hz"}
+FEWEST_BOTH = 3  # spectra of a picture with an axis of the time and one of the speed
 
 LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
 ABOVE_SYNCHRONOUS = 1.2  # how far the frequency axis goes, relative to the highest rotor speed
@@ -42,6 +49,10 @@ FEWEST_COLUMNS, COLUMNS = 50, 2000  # spectra: the latter are more than a pictur
 SAME_LINE = 0.1  # share of the rotor speed below which two lines need not be parted
 UNKNOWN_m = 1.0  # stands for the clearance of a measurement without one, whose amplitudes are drawn in µm
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
+
+MOST_NUMBERED = 10  # events, the first ones
+MARK_pt = 6.5  # height of the number of an event
+ONE_WAY = 0.8  # share of the spectra of a run that only rises or only falls, which is drawn over its speed
 
 CURVES = 60
 HEIGHT = 0.25  # of a curve from the lowest to the highest level, relative to the depth of the stack
@@ -75,7 +86,7 @@ DECIBELS = LevelScale()
 
 def waterfall_figure(
     run: Run,
-    over: Over = "time",
+    over: Over | None = None,
     signal: str = "journal",
     cascade: bool = False,
     window_s: float | None = None,
@@ -83,40 +94,109 @@ def waterfall_figure(
     log: bool = False,
     found: Spectrogram | None = None,
     scale: LevelScale = DECIBELS,
+    unit: SpeedUnit | None = None,
 ) -> Figure:
     """Levels in dB relative to the clearance, of a floating ring to C_i + C_o, with the rotor speed and the frequencies
-    of free whirls drawn in: half of it, or (omega_R + omega_F)/2 and omega_F/2.
+    of free whirls drawn in, half of it, or (omega_R + omega_F)/2 and omega_F/2, and the recorded events by number.
 
-    over: the axis; over "speed" a run that goes up and down is drawn in two parts. signal: "journal", "disk" or
-    "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum, behind each other; window_s
-    (None: as the ramp asks for) and direction as `waterfall` of analysis/spectra/spectrum.py; log: logarithmic
-    frequency; found: the spectra of `run_spectra`, where they are known; scale: what the colours or heights are.
+    over: the axis, None for that of `natural_axis`; over "speed" a run that goes up and down is drawn in two parts.
+    signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum,
+    behind each other; window_s (None: as the ramp asks for) and direction as `waterfall` of
+    analysis/spectra/spectrum.py; log: logarithmic frequency; found: the spectra of `run_spectra`, where they are known;
+    scale: what the colours or heights are; unit: of the speeds of the events, None for that of the case.
 
     Raises InputError if the run does not have the signal, is shorter than a window, or lacks the clearance of levels.
     """
     if not scale.linear:
         clearance(run, bearing_of(run, signal))  # raises without one
     found = found or run_spectra(run, signal, window_s, direction)
+    over = over or natural_axis(found)
     parts = _parts(run, found) if over == "speed" else [("", found)]
     point = joined(*located(run, signal)).replace("_", " ")
     what = f"{'forward motion' if direction == 'forward' else direction} of the {point}"
     title, subtitle = heading([run])
-    told = f"{subtitle}, {what}\n{reading(found)}" if subtitle else f"{what}, {reading(found)}"
+    subtitle = ", ".join(word for word in (subtitle, what, reading(found)) if word)
     with styled():
-        figure = new_figure(title, told, height=4.0 + 0.6 * len(parts))
+        figure = new_figure(title, subtitle, height=4.4 + 0.6 * len(parts))
         panels = figure.subplots(1, len(parts), squeeze=False, sharey=not cascade)[0]
         for axes, (name, part) in zip(panels, parts, strict=True):
             axes.set_title(name)
             if cascade:
-                values, limits, unit = scale.of(part)
-                draw_cascade(axes, part, over, values, limits, unit, orders(run, signal, part, scale.orders))
+                values, limits, measure = scale.of(part)
+                draw_cascade(axes, part, over, values, limits, measure, orders(run, signal, part, scale.orders))
             else:
                 mesh = draw_levels(axes, run, signal, part, over, log, scale)
+                number_events(axes, run, part, over)
+                _draw_other_axis(axes, part, over)
+        _list_events(figure, run, unit or given_speed_unit(run.case_text))
         if not cascade:
             bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
             bar.set_label("amplitude in µm" if scale.linear else level_label(run, signal))
             bar.outline.set_visible(False)
     return figure
+
+
+def natural_axis(found: Spectrogram) -> Over:
+    """The axis of a waterfall that nobody chose: the rotor speed where it rises or falls nearly all the time."""
+    change = np.diff(np.abs(found.speed_Hz))
+    least = TURNING * float(np.max(np.abs(found.speed_Hz)))
+    way = max(np.count_nonzero(change > least), np.count_nonzero(change < -least))
+    return "speed" if len(change) and way >= ONE_WAY * len(change) else "time"
+
+
+def number_events(axes: Axes, run: Run, part: Spectrogram, over: Over) -> None:
+    """Mark the first events of a run within a part of its spectra by their numbers, each at its frequency."""
+    bottom, top = axes.get_ylim()
+    begin, end = sorted((float(part.time_s[0]), float(part.time_s[-1])))
+    for number, event in enumerate(run.events[:MOST_NUMBERED], start=1):
+        if begin <= event["t_s"] <= end:
+            frequency = event.get("frequency_Hz") or abs(event["speed_Hz"])
+            axes.annotate(
+                str(number),
+                (event["t_s"] if over == "time" else event["speed_Hz"], min(max(frequency, bottom), top)),
+                ha="center",
+                va="center",
+                fontsize=MARK_pt,
+                bbox={"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": BLACK, "linewidth": 0.6},
+            )
+
+
+def _list_events(figure: Figure, run: Run, unit: SpeedUnit) -> None:
+    """The numbered events in words, below the picture."""
+    lines = [
+        f"{number}  {event_name(event)}, {unit.words(event['speed_Hz'], 1)}"
+        for number, event in enumerate(with_whirl_names(run.events[:MOST_NUMBERED]), start=1)
+    ]
+    if len(run.events) > MOST_NUMBERED:
+        lines.append(f"and {len(run.events) - MOST_NUMBERED} more")
+    if lines:
+        figure.legend([Line2D([], [])] * len(lines), [plain(line) for line in lines], loc="outside lower left",
+                      ncols=2, fontsize="small", handlelength=0.0, handletextpad=0.0)  # fmt: skip
+
+
+def _draw_other_axis(axes: Axes, part: Spectrogram, over: Over) -> None:
+    """Above the picture the time of a speed, or the speed at a time, where one follows from the other."""
+    time, speed = part.time_s, part.speed_Hz
+    if len(time) < FEWEST_BOTH or not (np.all(np.diff(speed) > 0.0) or np.all(np.diff(speed) < 0.0)):
+        return
+    if not (np.all(np.diff(time) > 0.0) or np.all(np.diff(time) < 0.0)):
+        return
+    here, there = (time, speed) if over == "time" else (speed, time)
+    name = AXES["speed" if over == "time" else "time"]
+    axes.secondary_xaxis("top", functions=(_along(here, there), _along(there, here))).set_xlabel(name)
+
+
+def _along(places: Array, values: Array) -> Callable[[Any], Any]:
+    """Values (n,) at places (n,) that rise or fall, on beyond the ends as straight lines."""
+    x, y = (places, values) if places[0] < places[-1] else (places[::-1], values[::-1])
+    first, last = (y[1] - y[0]) / (x[1] - x[0]), (y[-1] - y[-2]) / (x[-1] - x[-2])
+
+    def at(wanted: Any) -> Any:
+        wanted = np.asarray(wanted, dtype=np.float64)
+        inside = np.interp(wanted, x, y)
+        return inside + first * np.minimum(wanted - x[0], 0.0) + last * np.maximum(wanted - x[-1], 0.0)
+
+    return at
 
 
 def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direction) -> Spectrogram:
@@ -194,7 +274,7 @@ def draw_levels(
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
         _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
     axes.grid(False)
-    axes.set_xlabel("time in s" if over == "time" else "rotor speed in Hz")
+    axes.set_xlabel(AXES[over])
     axes.set_ylabel("frequency in Hz")
     return mesh
 
@@ -260,7 +340,7 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
 def draw_cascade(
     axes: Axes,
     found: Spectrogram,
-    over: Literal["time", "speed"],
+    over: Over,
     values: Array,
     limits: tuple[float, float],
     unit: str,
@@ -298,7 +378,7 @@ def draw_cascade(
     axes.annotate(f"{limits[1] - limits[0]:.3g} {unit}", (right, depth[-1] + HEIGHT * span / 2), (-4, 0),
                   textcoords="offset points", ha="right", va="center")  # fmt: skip
     axes.set_xlabel("frequency in Hz")
-    axes.set_ylabel("time in s" if over == "time" else "rotor speed in Hz")
+    axes.set_ylabel(AXES[over])
 
 
 def _draw_frame(axes: Axes, depth: Array, shift: Array, width: float, span: float) -> None:

@@ -11,7 +11,7 @@ from frbcli.plot.style import BLACK, COLOURS, GREY, legend_below, new_figure, pl
 from frbcli.studies.ladder import AccuracyLadder, Rung, RungResult
 
 MARKS = ("o", "s", "^", "D", "v", "P", "X")
-SMALLEST = 1e-16  # stands for no deviation at all
+SMALLEST = 1e-16  # drawn for no deviation at all
 COST_SPAN = 4.0  # of the axis at least: costs that differ by the noise of a clock lie side by side
 
 

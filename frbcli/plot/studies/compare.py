@@ -9,8 +9,6 @@ from matplotlib.figure import Figure
 
 from frbcli.analysis.signals import films, joined
 from frbcli.case.course.speed import given_speed_unit
-from frbcli.case.film_tables import THEORIES
-from frbcli.film.bearing_model.table import label_of as bearing_label
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import curve
 from frbcli.plot.signals import ends
@@ -106,6 +104,4 @@ def _name(variant: Variant, several: bool) -> str:
     if not several:
         return variant.coupled
     name = f"{label_of(variant.cavitation)}, {variant.theory}"
-    if variant.theory not in THEORIES:
-        name = bearing_label(variant.theory)
     return name if variant.coupling == "auto" else f"{name},\n{variant.coupling}"

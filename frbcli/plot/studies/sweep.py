@@ -132,15 +132,15 @@ def _linked(sweep: Sweep, key: str, other: str) -> bool:
 
 def _scale(key: str, texts: list[str]) -> _Scale:
     read = [_QUANTITY.fullmatch(text) for text in texts]
-    units = {"" if found is None else found.group(2) for found in read}
+    units = {"" if match is None else match.group(2) for match in read}
     if None in read or len(units) > 1:
         return _Scale(key, tuple(texts), None)
     return _Scale(key, tuple(sorted(texts, key=_number)), units.pop())
 
 
 def _number(text: str) -> float:
-    found = _QUANTITY.fullmatch(text)
-    return math.nan if found is None else float(found.group(1))
+    match = _QUANTITY.fullmatch(text)
+    return math.nan if match is None else float(match.group(1))
 
 
 def _speed(sweep: Sweep, point: SweepPoint) -> float:
@@ -148,18 +148,18 @@ def _speed(sweep: Sweep, point: SweepPoint) -> float:
     return math.nan if event is None else float(event["speed_Hz"])
 
 
-def scatter_figure(title: str, found: Scatter) -> Figure:
+def scatter_figure(title: str, scatter: Scatter) -> Figure:
     """The share of machines that begin to whirl below each speed, as a curve of steps, with the speed of interest."""
-    speeds = found.speeds_Hz[np.isfinite(found.speeds_Hz)]
-    share = 100.0 * np.arange(1, len(speeds) + 1) / found.count
+    speeds = scatter.speeds_Hz[np.isfinite(scatter.speeds_Hz)]
+    share = 100.0 * np.arange(1, len(speeds) + 1) / scatter.count
     with styled():
-        figure = new_figure(title, f"{found.count} machines with scattered numbers")
+        figure = new_figure(title, f"{scatter.count} machines with scattered numbers")
         axes = figure.subplots()
         axes.step(speeds, share, where="post", color=BLUE)
-        axes.axvline(found.below_Hz, color=VERMILION, linestyle="--")
-        low, high = (100.0 * limit for limit in found.interval)
-        text = f"{100.0 * found.share:.1f} % below {found.below_Hz:.4g} Hz\n({low:.1f} to {high:.1f} %)"
-        axes.annotate(text, (found.below_Hz, 0.5), xycoords=("data", "axes fraction"), ha="right", va="center",
+        axes.axvline(scatter.below_Hz, color=VERMILION, linestyle="--")
+        low, high = (100.0 * limit for limit in scatter.interval)
+        text = f"{100.0 * scatter.share:.1f} % below {scatter.below_Hz:.4g} Hz\n({low:.1f} to {high:.1f} %)"
+        axes.annotate(text, (scatter.below_Hz, 0.5), xycoords=("data", "axes fraction"), ha="right", va="center",
                       xytext=(-6, 0), textcoords="offset points")  # fmt: skip
         axes.set_ylim(0.0, 100.0)
         axes.set_xlabel("rotor speed in Hz")

@@ -30,7 +30,7 @@ LARGEST = 8 * 1024**3  # bytes; the longest run that a case may ask for has abou
 SUFFIXES = (".h5", ".hdf5")
 OTHERS = (".png", ".pdf", ".svg", ".html", ".csv", ".json", ".toml", ".mat", ".parquet", ".xlsx", ".gif", ".mp4")
 PIECE = 4 * 1024**2  # bytes of a file that are held at a time
-# Of a collection: what it begins with, the bytes of its head and of that of an object.
+# Of a collection: its first bytes, the size of its head and of an object's head.
 COLLECTION, HEAD = b"GCOL\x01", 16
 MOST_COLLECTIONS, MOST_IN_THEM = 10_000, 16 * 1024**2  # a run has a handful; bytes
 SUPERBLOCK = 24  # bytes
@@ -49,7 +49,7 @@ def seal(content: memoryview) -> bytes:
 
 
 def write_whole(path: Path, content: memoryview) -> None:
-    """Put `content` in place of `path` in one step: a reader of `path` finds either the complete old or new file.
+    """Replace `path` by `content` in one step: a reader of `path` finds either the complete old or new file.
 
     Raises InputError if the disk or the directory does not take it.
     """
@@ -138,10 +138,10 @@ def _ends(collection: bytes) -> bool:
     at = HEAD
     while at + HEAD <= len(collection):
         index, _, size = struct.unpack_from("<HH4xQ", collection, at)
-        taken = size if index == 0 else HEAD + -(-size // 8) * 8
-        if taken < HEAD:
+        span = size if index == 0 else HEAD + -(-size // 8) * 8
+        if span < HEAD:
             return False
-        at += taken
+        at += span
     return at <= len(collection)
 
 
@@ -154,7 +154,7 @@ def _user_block(length: int, checksum: int) -> bytes:
 
 
 def check_output(path: Path) -> None:
-    """See that a run can be written to `path`: a new file, or in place of an older run of frb.
+    """See that a run can be written to `path`: a new file, or one that replaces an older run of frb.
 
     Raises RunFileError for a file that is something else, a missing directory or one without permission to write, or a
     name that is too long.

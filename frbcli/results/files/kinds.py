@@ -1,8 +1,8 @@
-"""The kinds of files that frb writes, and what tells its files from those of others: a text in their metadata, a
-checksum in tables as CSV. A result takes the place of a file of its kind alone.
+"""The kinds of files that frb writes, and what marks them as its own: a text in their metadata, a checksum in tables
+as CSV. A result replaces only a file of its own kind.
 
-A table as CSV has no place for a text that other programs do not take for data. Its checksum stands behind the digits
-of its last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
+A table as CSV has no place for a text that other programs do not take for data. Its checksum follows the digits of its
+last number, so far behind that the number stays the same to the last bit. A table that somebody has changed does
 not fit its checksum any more, and is theirs.
 """
 
@@ -18,7 +18,7 @@ from typing import BinaryIO
 
 MARK = "frbcli: written by frb"
 ENDS = 65_536  # bytes at both ends of a file in which the mark is looked for
-ZEROS, DIGITS = 25, 10  # between the digits of the number and those of the checksum; of the checksum
+ZEROS, DIGITS = 25, 10  # between the digits of the number and of the checksum; of the checksum
 PIECE = 4 * 1024**2  # bytes of a file that are held at a time
 
 # Numbers of fields, their digits and their exponents
@@ -53,9 +53,9 @@ def has_checksum(path: Path) -> bool:
     with path.open("rb") as file:
         begin, tail = _tail(file)
         for at, number in _numbers(tail):
-            if found := _CHECKSUM.search(number[1]):
-                before = _checksum(file, begin + at + number.start(1) + found.start())
-                return zlib.crc32(tail[at + number.end(1) :], before) == int(found[1])
+            if match := _CHECKSUM.search(number[1]):
+                before = _checksum(file, begin + at + number.start(1) + match.start())
+                return zlib.crc32(tail[at + number.end(1) :], before) == int(match[1])
     return False
 
 
@@ -80,7 +80,7 @@ def _numbers(tail: bytes) -> Iterator[tuple[int, re.Match[bytes]]]:
 
 
 def _checksum(file: BinaryIO, length: int) -> int:
-    """Of the first bytes of a file."""
+    """Checksum of the first `length` bytes of a file."""
     checksum = 0
     file.seek(0)
     while length and (piece := file.read(min(PIECE, length))):
@@ -115,7 +115,7 @@ def kind(name: str, head: bytes, marked: Callable[[Path], bool] = has_mark, forc
 
 
 def _by_head(_: Path) -> bool:
-    """Of kinds that no other program writes."""
+    """True: no other program writes files of these kinds."""
     return True
 
 

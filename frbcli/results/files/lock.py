@@ -17,7 +17,7 @@ from frbcli.results.files.write import PART, TOKEN, part_of, real, refused
 LOCK = ".lock"
 MARK = "frb "  # begins the text of a lock, which is followed by process and machine
 LONGEST = 200  # bytes of that text
-TAKEN = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)  # by another one
+HELD = (errno.EWOULDBLOCK, errno.EAGAIN, errno.EACCES, errno.EDEADLK)  # by another one
 BEYOND = 1 << 20  # the byte that Windows locks: what is before can be read
 
 if sys.platform == "win32":
@@ -43,7 +43,7 @@ def locked(path: Path) -> Iterator[None]:
     path = real(path)
     lock = path.with_name(path.name + LOCK)
     try:
-        descriptor = _taken(path, lock)
+        descriptor = _acquired(path, lock)
     except OSError as error:
         raise refused(lock, f"cannot be used: {error.strerror}.", "Choose another name with -o.") from error
     try:
@@ -52,7 +52,7 @@ def locked(path: Path) -> Iterator[None]:
         _release(descriptor, lock)
 
 
-def _taken(path: Path, lock: Path) -> int:
+def _acquired(path: Path, lock: Path) -> int:
     """The descriptor of the lock, which is held now; a killed holder's half-written files are removed. Raises
     InputError and OSError."""
     while True:
@@ -62,7 +62,7 @@ def _taken(path: Path, lock: Path) -> int:
             try:
                 _lock(descriptor)
             except OSError as error:
-                if error.errno in TAKEN:
+                if error.errno in HELD:
                     raise _busy(path, descriptor) from None
             if _is_at(descriptor, lock):  # else its holder has just removed it
                 if _text(descriptor):
@@ -85,7 +85,7 @@ def _remove_parts(path: Path) -> None:
 
 
 def _require_own(descriptor: int, lock: Path) -> None:
-    """Raises InputError if there is a file of the user in place of the lock."""
+    """Raises InputError if a file of the user has the name of the lock."""
     status = os.fstat(descriptor)
     if not stat.S_ISREG(status.st_mode) or (status.st_size and not _text(descriptor).startswith(MARK)):
         raise refused(lock, "is in the way: frb keeps a lock there.", "Rename it, or choose another name with -o.")

@@ -24,14 +24,14 @@ class NoText(Unreadable):
 def require_file(path: Path, largest: int) -> None:
     """Raises Unreadable if a path names no regular file of at most `largest` bytes: a pipe or device may never end."""
     try:
-        found = path.stat()
+        status = path.stat()
     except FileNotFoundError:
         raise NoFile("does not exist.") from None
     except (OSError, ValueError) as error:
         raise _unreadable(error) from None
-    if not stat.S_ISREG(found.st_mode):
+    if not stat.S_ISREG(status.st_mode):
         raise NoFile("is not a file.")
-    if found.st_size > largest:
+    if status.st_size > largest:
         raise _too_large(largest)
 
 
@@ -40,12 +40,12 @@ def content_of(path: Path, largest: int) -> bytes:
     require_file(path, largest)
     try:
         with path.open("rb") as file:
-            found = file.read(largest + 1)
+            content = file.read(largest + 1)
     except (OSError, ValueError) as error:
         raise _unreadable(error) from None
-    if len(found) > largest:
+    if len(content) > largest:
         raise _too_large(largest)
-    return found
+    return content
 
 
 def begins_with(path: Path, head: bytes) -> bool:

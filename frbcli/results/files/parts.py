@@ -37,10 +37,10 @@ def names(inside: h5py.Group, what: str) -> list[str]:
     """The names in a group, in the order in which they were written. Raises WrongPart if they cannot be a run's."""
     if len(inside) > MOST_PARTS:
         raise WrongPart(f"{what} holds more than {MOST_PARTS} parts")
-    found = list(inside)
-    if not all(_NAME.fullmatch(name) for name in found):
+    members = list(inside)
+    if not all(_NAME.fullmatch(name) for name in members):
         raise WrongPart(f"{what} holds a part with a wrong name")
-    return found
+    return members
 
 
 def array(inside: h5py.Group, name: str, place: RunPlace, dimensions: int | None = None) -> Stored:
@@ -58,10 +58,10 @@ def text(inside: h5py.Group, name: str) -> str:
     data = _member(inside, name, h5py.Dataset)
     if data.shape != () or not _is_text(data.dtype) or not _in_one_piece(data):
         raise WrongPart(f"{name} is not a text")
-    found = str(data.asstr()[()])
-    if len(found) > LARGEST_TEXT:
+    content = str(data.asstr()[()])
+    if len(content) > LARGEST_TEXT:
         raise WrongPart(f"{name} is too long")
-    return found
+    return content
 
 
 def record(inside: h5py.Group, name: str) -> Any:
@@ -88,8 +88,8 @@ def has(inside: h5py.Group, name: str) -> bool:
 
 
 def rest(arrays: Iterable[Stored], length: int) -> int:
-    """How many of the bytes of a file are not those of its arrays; negative where arrays share them."""
-    return length - sum(found.bytes for found in arrays)
+    """How many bytes of a file do not belong to its arrays; negative where arrays share bytes."""
+    return length - sum(stored.bytes for stored in arrays)
 
 
 def _member(inside: h5py.Group, name: str, kind: type[Any]) -> Any:
@@ -97,24 +97,24 @@ def _member(inside: h5py.Group, name: str, kind: type[Any]) -> Any:
     links = inside.id.links
     if not links.exists(name.encode()) or links.get_info(name.encode()).type != h5l.TYPE_HARD:
         raise WrongPart(f"{name} is missing")
-    found = inside[name]
-    if not isinstance(found, kind):
+    member = inside[name]
+    if not isinstance(member, kind):
         raise WrongPart(f"{name} is of another kind")
-    return found
+    return member
 
 
 def _attribute(of: h5py.HLObject, name: str, fits: Callable[[np.dtype[Any]], bool]) -> Any:
     if not h5py.h5a.exists(of.id, name.encode()):
         raise WrongPart(f"{name} is missing")
-    found = of.attrs.get_id(name)
-    if found.shape != () or not fits(found.dtype):
+    attribute = of.attrs.get_id(name)
+    if attribute.shape != () or not fits(attribute.dtype):
         raise WrongPart(f"{name} is of another kind")
     return of.attrs[name]
 
 
 def _is_text(dtype: np.dtype[Any]) -> bool:
-    found = h5py.check_string_dtype(dtype)
-    return found is not None and found.length is None
+    info = h5py.check_string_dtype(dtype)
+    return info is not None and info.length is None
 
 
 def _in_one_piece(data: h5py.Dataset) -> bool:

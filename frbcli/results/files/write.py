@@ -1,5 +1,5 @@
-"""The one way in which frb writes a file: as a whole beside its place, then moved there in one step. What a file may
-not take the place of is checked before the work and again when it is written.
+"""The one way in which frb writes a file: as a whole next to its place, then moved there in one step. Files that must
+not be replaced are checked before the work and again when it is written.
 
 Whoever reads the place finds either the complete old or the complete new file, also if the process is interrupted or
 killed, or the disk becomes full.
@@ -45,14 +45,14 @@ def wrong_place(path: Path, kind: Kind, reads: Iterable[Path] = (), force: bool 
     are followed. Whether the disk has room for it is known when it is written.
     """
     try:
-        found = _status(path)
-        if found is not None and stat.S_ISDIR(found.st_mode):
+        status = _status(path)
+        if status is not None and stat.S_ISDIR(status.st_mode):
             return "is not a file.", "Give -o the name of a file."
-        if found is not None and any(os.path.samestat(found, other) for other in map(_status, reads) if other):
+        if status is not None and any(os.path.samestat(status, other) for other in map(_status, reads) if other):
             return "is read by this command, and would be lost.", "Choose another name."
-        if found is not None and not stat.S_ISREG(found.st_mode):  # a device or a pipe takes what is written
+        if status is not None and not stat.S_ISREG(status.st_mode):  # a device or a pipe takes what is written
             return None if os.access(path, os.W_OK) else NOT_ALLOWED
-        return _wrong_file(real(path), kind, found is not None, force and kind.forced)
+        return _wrong_file(real(path), kind, status is not None, force and kind.forced)
     except (OSError, ValueError) as error:
         return f"cannot be used: {getattr(error, 'strerror', None) or error}.", "Choose another name with -o."
 
@@ -131,14 +131,14 @@ def written(path: Path, kind: Kind, remedy: str = REMEDY, force: bool = False) -
 
 
 def write(path: Path, kind: Kind, content: bytes | str, force: bool = False) -> None:
-    """Make `content` that of a file, text in UTF-8. Raises InputError as `written` does."""
+    """Write `content` as a whole file, text in UTF-8. Raises InputError as `written` does."""
     with written(path, kind, force=force) as part:
         part.write_bytes(content.encode() if isinstance(content, str) else content)
 
 
 @contextmanager
 def _part(path: Path) -> Iterator[Path]:
-    """A new file beside `path` with its permissions, which replaces it, or is removed after an error."""
+    """A new file next to `path` with its permissions, which replaces it, or is removed after an error."""
     part = part_of(path, secrets.token_hex(TOKEN // 2))
     try:
         os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))

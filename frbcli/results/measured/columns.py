@@ -28,10 +28,10 @@ INTERVAL = re.compile(r"(?:dt|ts|t_?s|.*(?:increment|interval|delta[_ ]?[tx]|ste
 class Columns:
     """Columns (n,) of a file by their names.
 
-    rate: samples per second where the file has it, as WAV does; numbers: single numbers beside the columns, such as a
-    sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
-    doubtful: what is wrong with columns that cannot be used; shapes: of variables as they stand in the file, where
-    that has shapes; own_times: times in s (m,) of columns (m,) that were sampled at others than the rest.
+    rate: samples per second where the file states it, as WAV does; numbers: single numbers besides the columns, such as
+    a sampling rate; units: of columns that have one in the file; lines: of a text, the number of the line of each row;
+    doubtful: what is wrong with columns that cannot be used; shapes: of variables as they are in the file, where that
+    has shapes; own_times: times in s (m,) of columns (m,) that were sampled at others than the rest.
     """
 
     path: Path
@@ -77,7 +77,7 @@ class Columns:
         raise wrong_file(self.path, f'has no column "{name}".', meant + self._known())
 
     def unit(self, name: str) -> str | None:
-        """The unit of a column, None where the file does not tell it."""
+        """The unit of a column, None where the file does not state it."""
         return self._unit(self.named(name))
 
     def _unit(self, name: str) -> str | None:
@@ -112,8 +112,8 @@ def unit_in(name: str) -> str | None:
     plain = without_unit(name).strip()
     if ITSELF.fullmatch(plain):
         return plain
-    found = SUFFIX.fullmatch(plain)
-    return None if found is None else found.group(1) or found.group(2)
+    match = SUFFIX.fullmatch(plain)
+    return None if match is None else match.group(1) or match.group(2)
 
 
 def is_interval(name: str) -> bool:

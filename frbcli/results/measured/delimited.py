@@ -1,7 +1,7 @@
 """Tables of numbers in text, as measuring instruments write them: a head, names, perhaps units, and rows of numbers.
 
 The rows begin at the first whole row: one that has a number, or a word for a missing one, wherever most rows have a
-number. Names and units are sought above it; what else the head holds is left out, except single numbers beside a word,
+number. Names and units are sought above it; what else the head holds is left out, except single numbers after a word,
 such as a sampling interval.
 """
 
@@ -60,7 +60,7 @@ class NoTable(ValueError):
 
 @dataclass(frozen=True)
 class DelimitedTable:
-    """names (k,), those of blank ones are numbers from 1, and units (k,), "" where there is none; values: columns 0 to
+    """names (k,), blank ones replaced by numbers from 1, and units (k,), "" where there is none; values: columns 0 to
     k - 1, text where they hold some; lines: number of the line of each row; numbers: of the head, by their words; mark:
     the decimal mark."""
 
@@ -101,10 +101,10 @@ class _Layout:
         """Whether a row has a number, or a gap, in all places in which most rows have one, and a number in some."""
         if len(row) < self.width or any(row[self.width :]):
             return False
-        found = [self.is_number(row[at]) for at in self.numbers]
+        filled = [self.is_number(row[at]) for at in self.numbers]
         gaps = (row[at].lower() in GAPS for at in self.numbers)
         stamped = all(STAMP.fullmatch(row[at]) for at in self.stamps)
-        return stamped and any(found) and all(map(max, found, gaps))
+        return stamped and any(filled) and all(map(max, filled, gaps))
 
     def is_labelled(self, row: Sequence[str]) -> bool:
         """Whether a row has a word in the first place where others have a number or a time stamp."""
@@ -115,7 +115,7 @@ class _Layout:
 
 @dataclass(frozen=True)
 class _Head:
-    """What stands above the rows. begin: the first row; names and units: (k,); numbers: by their words."""
+    """The lines above the rows. begin: the first row; names and units: (k,); numbers: by their words."""
 
     begin: int
     names: tuple[str, ...]
@@ -133,14 +133,14 @@ def read_table(content: bytes) -> DelimitedTable:
     layout = _layout(ending[:: max(1, len(ending) // LOOKED_AT)], numbered[-2:][0][1])
     comments = [line.lstrip().lstrip(COMMENT) for number, line in lines if line.lstrip().startswith(COMMENT)]
     head = _head([layout.split(line) for _, line in numbered], layout, comments)
-    found, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
+    line_numbers, rows = zip(*_even_rows(numbered[head.begin :], layout.delimiter, len(head.names)), strict=True)
     import pandas as pd
 
     values = pd.read_csv(
         io.StringIO("\n".join(rows)), sep=r"\s+" if layout.delimiter == " " else layout.delimiter, header=None,
         decimal=layout.mark, names=range(len(head.names)), skipinitialspace=True, low_memory=False,
     )  # fmt: skip
-    return DelimitedTable(head.names, head.units, values, found, head.numbers, layout.mark)
+    return DelimitedTable(head.names, head.units, values, line_numbers, head.numbers, layout.mark)
 
 
 def fields(line: str, delimiter: str) -> list[str]:
@@ -202,11 +202,11 @@ def _decimal_mark(delimiter: str, rows: Sequence[Sequence[str]]) -> str:
     """The mark between whole number and decimals."""
     if delimiter == ",":
         return "."
-    found = {mark for row in rows for field in row for mark in ".," if mark in field and _number(field, mark)}
-    if len(found) > 1:
+    marks = {mark for row in rows for field in row for mark in ".," if mark in field and _number(field, mark)}
+    if len(marks) > 1:
         problem = "it has numbers both with a decimal point and with a decimal comma"
         raise NoTable(problem, "Write all with one of them, without marks between thousands.")
-    return found.pop() if found else "."
+    return marks.pop() if marks else "."
 
 
 def _number(field: str, mark: str) -> bool:
@@ -221,9 +221,9 @@ def _head(rows: Sequence[Sequence[str]], layout: _Layout, comments: Sequence[str
     first = _first_row(rows, whole, layout)
     names_at, units_at = _names_at(rows[:first], layout), None
     if names_at is None:
-        found = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
+        words_above = next((words for words in map(layout.split, reversed(comments)) if _are_words(words, layout)
                       and len(words) == layout.width), [""] * layout.width)  # fmt: skip
-        head = _Head(first, tuple(found), tuple(map(_unit_in, found)), {})
+        head = _Head(first, tuple(words_above), tuple(map(_unit_in, words_above)), {})
     else:
         units_at = _units_at(rows[:first], names_at, layout)
         begin = next(at for at in range(max(names_at, units_at or 0) + 1, first + 1)
@@ -254,7 +254,7 @@ def _first_row(rows: Sequence[Sequence[str]], whole: Sequence[int], layout: _Lay
 
 
 def _single_names(rows: Sequence[Sequence[str]], names_at: int) -> tuple[str, ...]:
-    """The names of a line; those that stand there several times are taken from the line above, where it has others."""
+    """The names of a line; repeated ones are taken from the line above, where it has others."""
     names = _without_end(rows[names_at])
     above = _without_end(rows[names_at - 1]) if names_at else []
     double = {name for name, count in Counter(names).items() if count > 1}
@@ -299,17 +299,17 @@ def _is_called_units(row: Sequence[str]) -> bool:
 def _units_of(
     rows: Sequence[Sequence[str]], units_at: int | None, names: tuple[str, ...], layout: _Layout
 ) -> tuple[tuple[str, ...], dict[str, float]]:
-    """The units of columns, and the numbers that stand among them in columns without any number."""
+    """The units of columns, and the numbers in the row of units of columns without any other number."""
     if units_at is None:
         return tuple(map(_unit_in, names)), {}
     row = rows[units_at]
-    found = [*([""] if _is_called_units(row) else row[:1]), *row[1:], *[""] * len(names)][: len(names)]
+    row_of_units = [*([""] if _is_called_units(row) else row[:1]), *row[1:], *[""] * len(names)][: len(names)]
     numbers = {
         name: float(field.replace(layout.mark, "."))
-        for at, (name, field) in enumerate(zip(names, found, strict=True))
+        for at, (name, field) in enumerate(zip(names, row_of_units, strict=True))
         if at not in layout.numbers and layout.is_number(field)
     }
-    units = (_unit(field) for field in found)
+    units = (_unit(field) for field in row_of_units)
     named = zip(names, units, strict=True)
     return tuple("" if name in numbers else unit or _unit_in(name) for name, unit in named), numbers
 
@@ -323,18 +323,18 @@ def _are_units(row: Sequence[str], layout: _Layout) -> bool:
 
 def _numbers_of(head: Sequence[Sequence[str]], layout: _Layout) -> dict[str, float]:
     """The numbers of lines of a word and a number, or of the same one for each channel."""
-    found: dict[str, float] = {}
+    numbers: dict[str, float] = {}
     for row in head:
         values = {field for field in row[1:] if layout.is_number(field)}
         if row[0] and not layout.is_number(row[0]) and len(values) == 1 and layout.is_number(row[1]):
-            found[row[0].rstrip(":= ")] = float(values.pop().replace(layout.mark, "."))
-    return found
+            numbers[row[0].rstrip(":= ")] = float(values.pop().replace(layout.mark, "."))
+    return numbers
 
 
-def _without_end(found: Sequence[str]) -> list[str]:
+def _without_end(cells: Sequence[str]) -> list[str]:
     """The fields up to the last one that is not empty."""
-    filled = [place for place, field in enumerate(found) if field]
-    return list(found[: max(filled, default=0) + 1])
+    filled = [place for place, field in enumerate(cells) if field]
+    return list(cells[: max(filled, default=0) + 1])
 
 
 def _unit(text: str) -> str:
@@ -362,9 +362,9 @@ def _even_rows(numbered: Sequence[tuple[int, str]], delimiter: str, width: int) 
         if count == width:
             yield number, line
             continue
-        found = fields(line, delimiter)
-        if count < width or any(found[width:]):
+        cells = fields(line, delimiter)
+        if count < width or any(cells[width:]):
             problem = f"row {row} (line {number}) has {count} fields, and the line of names {width}"
             remedy = DECIMAL_COMMA if delimiter == "," and width < count and "." not in line else UNEVEN
             raise NoTable(problem, remedy)
-        yield number, delimiter.join(found[:width])
+        yield number, delimiter.join(cells[:width])

@@ -27,44 +27,44 @@ MATLAB_CLASS, EMPTY, SPARSE = "MATLAB_class", "MATLAB_empty", "MATLAB_sparse"
 def read_mat(path: Path) -> Columns:
     """Vectors, rows or columns, by their names; the columns of matrices, or their rows where they have more columns
     than rows, as NAME.1, NAME.2; the fields of structs as STRUCT.FIELD, of arrays of structs as STRUCT.1.FIELD, what
-    stands in cells as NAME.1. A single number is one of `numbers`. Raises what scipy and h5py raise."""
+    cells hold as NAME.1. A single number is one of `numbers`. Raises what scipy and h5py raise."""
     values: dict[str, Array] = {}
     numbers: dict[str, float] = {}
     doubtful: dict[str, str] = {}
     shapes: dict[str, tuple[int, ...]] = {}
-    for count, (name, found) in enumerate(_leaves_7_3(path) if h5py.is_hdf5(path) else _leaves_5(path)):
+    for count, (name, leaf) in enumerate(_leaves_7_3(path) if h5py.is_hdf5(path) else _leaves_5(path)):
         if count >= MOST_VARIABLES:
             raise ValueError(f"it has more than {MOST_VARIABLES} variables")
-        if isinstance(found, str):
-            doubtful[name] = found
+        if isinstance(leaf, str):
+            doubtful[name] = leaf
             continue
-        shapes[name] = found.shape
-        problem = _problem(found)
+        shapes[name] = leaf.shape
+        problem = _problem(leaf)
         if problem:
             doubtful[name] = problem
-        elif found.size == 1:
-            numbers[name] = float(found.ravel()[0])
-        elif found.size:
-            values |= _columns(name, np.asarray(found, dtype=np.float64))
+        elif leaf.size == 1:
+            numbers[name] = float(leaf.ravel()[0])
+        elif leaf.size:
+            values |= _columns(name, np.asarray(leaf, dtype=np.float64))
     return Columns(path, values, doubtful=doubtful, numbers=numbers, shapes=shapes)
 
 
-def _problem(found: Numbers) -> str:
+def _problem(leaf: Numbers) -> str:
     """Why numbers cannot be columns, nothing if they can."""
-    if found.ndim > 2:
-        return f"has {found.ndim} dimensions"
-    if np.iscomplexobj(found):
+    if leaf.ndim > 2:
+        return f"has {leaf.ndim} dimensions"
+    if np.iscomplexobj(leaf):
         return "holds complex numbers"
-    if min(found.shape, default=0) > MOST_COLUMNS:
-        return f"has {' x '.join(map(str, found.shape))} values, more than {MOST_COLUMNS} columns"
+    if min(leaf.shape, default=0) > MOST_COLUMNS:
+        return f"has {' x '.join(map(str, leaf.shape))} values, more than {MOST_COLUMNS} columns"
     return ""
 
 
-def _columns(name: str, found: Array) -> dict[str, Array]:
+def _columns(name: str, leaf: Array) -> dict[str, Array]:
     """A vector, or the columns of a matrix; samples are along its longer side."""
-    if found.ndim < 2 or 1 in found.shape:
-        return {name: found.ravel()}
-    along = found if found.shape[0] >= found.shape[1] else found.T
+    if leaf.ndim < 2 or 1 in leaf.shape:
+        return {name: leaf.ravel()}
+    along = leaf if leaf.shape[0] >= leaf.shape[1] else leaf.T
     return {f"{name}.{number}": np.ascontiguousarray(column) for number, column in enumerate(along.T, start=1)}
 
 
@@ -76,7 +76,7 @@ def _leaves_5(path: Path) -> Iterator[Leaf]:
     from scipy.io import loadmat
 
     with warnings.catch_warnings():
-        warnings.simplefilter("error")  # of a variable that stands there twice
+        warnings.simplefilter("error")  # of a variable that occurs twice
         for coming in (DeprecationWarning, FutureWarning):  # of scipy, about what it will return: not of the file
             warnings.simplefilter("ignore", coming)
         variables = loadmat(path)
@@ -130,7 +130,7 @@ def _inside_7_3(name: str, value: Any, file: Any, deeper: int) -> Iterator[Leaf]
         for number, reference in enumerate(value[()].T.ravel(order="F"), start=1):
             if kind == "cell":
                 yield from _inside_7_3(f"{name}.{number}", file[reference], file, deeper - 1)
-            else:  # what stands in an object, or a field of an array of structs without its struct
+            else:  # the content of an object, or a field of an array of structs without its struct
                 yield name, OBJECT
                 return
     elif kind not in ("", "char", "cell") and not _is_matlab_number(kind):
@@ -166,9 +166,9 @@ def _numbers_7_3(value: Any) -> Numbers | str:
     """The values of a dataset in MATLAB's shape; HDF5 has its axes in the reverse order."""
     if value.nbytes > LARGEST_FILE:
         raise ValueError(f"{value.name} has more than {LARGEST_FILE // 1024**2} MB")
-    found: Numbers = value[()]
+    numbers: Numbers = value[()]
     if value.dtype.names == ("real", "imag"):
-        return np.asarray(found["real"] + 1j * found["imag"]).T
+        return np.asarray(numbers["real"] + 1j * numbers["imag"]).T
     if not _is_number(value.dtype):
         return "holds no numbers"
-    return np.asarray(found).T
+    return np.asarray(numbers).T

@@ -20,7 +20,7 @@ from frbcli.results.measured.mat import read_mat
 from frbcli.results.measured.time_stamps import seconds
 from frbcli.results.records import MOST_SAMPLES
 
-TOLD = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read
+READABLE = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read
 NO_TABLE = "Write CSV with one line of names, and numbers below."
 OTHERS = {".tdms": "TDMS", ".xlsx": "Excel", ".xls": "Excel", ".mdf": "MDF", ".mf4": "MDF", ".dxd": "Dewesoft"}
 
@@ -56,19 +56,19 @@ def read_columns(path: Path) -> Columns:
             what, remedy = f"is a file of {other}, which is not read.", "Export its channels as CSV or MAT."
         raise wrong_file(path, what, remedy)
     try:
-        found = reader(path)
+        columns = reader(path)
     except InputError:
         raise
     except Exception as error:  # of several libraries, which raise errors of their own
-        reason = " ".join(str(error).split()) if isinstance(error, TOLD) else "it is damaged"
+        reason = " ".join(str(error).split()) if isinstance(error, READABLE) else "it is damaged"
         problem = f"cannot be read: {printable(reason)[:200].rstrip('.')}."
         raise wrong_file(path, problem, error.remedy if isinstance(error, NoTable) else NO_TABLE) from None
-    counts = [len(values) for values in found.values.values()]
-    if not found.doubtful and (not counts or min(counts) < 2):
+    counts = [len(values) for values in columns.values.values()]
+    if not columns.doubtful and (not counts or min(counts) < 2):
         raise wrong_file(path, "holds no columns of numbers.", NO_TABLE)
     if max(counts, default=0) > MOST_SAMPLES:
         raise wrong_file(path, f"has more than {MOST_SAMPLES} samples.", "Cut it into several files.")
-    return found
+    return columns
 
 
 def _csv(path: Path) -> Columns:
@@ -110,12 +110,12 @@ def _numbers(table: DelimitedTable, place: int) -> tuple[Array, bool]:
 
 
 def _wav(path: Path) -> Columns:
-    """Channels from -1 to 1. Whole numbers of 8 bits have no sign: 128 is zero. Those of 24 bits come as ones of 32."""
+    """Channels from -1 to 1. Whole numbers of 8 bits have no sign: 128 is zero. 24 bits are read as 32 bits."""
     from scipy.io import wavfile
 
     with warnings.catch_warnings():
         warnings.simplefilter("error", wavfile.WavFileWarning)  # a file that ends too early
-        warnings.filterwarnings("ignore", "Chunk .*not understood", wavfile.WavFileWarning)  # notes beside the samples
+        warnings.filterwarnings("ignore", "Chunk .*not understood", wavfile.WavFileWarning)  # notes besides the samples
         rate, samples = wavfile.read(path)
     if not samples.size:
         raise ValueError("it has no samples")
@@ -147,9 +147,9 @@ def read_uff(path: Path) -> Columns:
         warnings.simplefilter("ignore")  # of data sets of other kinds
         file = pyuff.UFF(str(path))
         kinds = [int(kind) for kind in file.get_set_types()]
-        found = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == FUNCTION]
+        sets = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == FUNCTION]
         lengths = [file.read_sets(place) for place, kind in enumerate(kinds) if kind == UNITS]
-    responses = [one for one in found if one.get("func_type") == TIME_RESPONSE]
+    responses = [one for one in sets if one.get("func_type") == TIME_RESPONSE]
     if not responses:
         listed = sorted(set(kinds))
         raise ValueError(f"it has no response over time (data set 58, function 1), but the data sets {listed}")
@@ -182,17 +182,17 @@ def _length(factor: float) -> str | None:
 
 
 def _unit_of_kind(kind: int, length: str | None) -> str:
-    """The unit of a data type, "" where it is not known; without data set 164 that of something else than a length."""
+    """The unit of a data type, "" where it is not known or, without data set 164, is not a length."""
     per = RATES.get(kind)
     if per is None:
         return ""
     return f"{length or 'm'}{per}" if per or length else ""
 
 
-def _name(response: dict[str, Any], taken: set[str]) -> str:
+def _name(response: dict[str, Any], used: set[str]) -> str:
     node, direction = int(response["rsp_node"]), DIRECTIONS.get(int(response["rsp_dir"]), "")
     name = f"{node}:{direction}" if direction else f"{node}"
-    return next(each for each in (name, *(f"{name}.{k}" for k in range(2, len(taken) + 3))) if each not in taken)
+    return next(each for each in (name, *(f"{name}.{k}" for k in range(2, len(used) + 3))) if each not in used)
 
 
 def _same(times: Array, others: Array) -> bool:

@@ -34,9 +34,9 @@ def seconds(stamps: pd.Series) -> Array | None:
     half = parts[4].str.lower()
     hours = hours.where(half.isna(), hours % 12) + 12.0 * (half == "pm")
     of_day = hours * 3600.0 + parts[2].astype(float) * 60.0 + parts[3].str.replace(",", ".").astype(float)
-    found = of_day.to_numpy(dtype=np.float64)
+    clock_s = of_day.to_numpy(dtype=np.float64)
     first = int(np.argmax(known))
-    return np.asarray(found - found[first] + DAY_s * _days(parts[0], found, known))
+    return np.asarray(clock_s - clock_s[first] + DAY_s * _days(parts[0], clock_s, known))
 
 
 def _days(dates: pd.Series, of_day: Array, known: Array) -> Array:

@@ -12,7 +12,7 @@ from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED
 from frbcli.scene.costs.cost import clock
 from frbcli.units import HERTZ, SpeedUnit
 
-LATE = 0.5  # of the time until which the error is stated: from then on its growth is told
+LATE = 0.5  # of the time until which the error is stated: from then on its growth is reported
 SLOW_WORDS = (
     ("ring_speed_uncertainty_Hz", "ring speeds", " Hz"),
     ("temperature_uncertainty_K", "temperatures", " K"),
@@ -78,7 +78,7 @@ def _of(run: Run) -> str:
 
 
 def _compiled(cost: Mapping[str, Any]) -> list[tuple[str, str, str]]:
-    """What a first start takes beside the run."""
+    """What a first start takes in addition to the run."""
     spent = cost.get("compile_cpu_s", 0.0)
     return [("CPU time of compiling", f"{spent:.3g} s", "once: kernels are kept")] if spent > 0.0 else []
 

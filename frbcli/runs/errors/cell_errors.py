@@ -27,9 +27,9 @@ class CellErrors:
 @dataclass(frozen=True)
 class FewerCells:
     """A run on fewer cells. share: of the difference between the runs that the error of the finer one may be; samples:
-    at the same times as those of the run, see March; the last ones may be missing; least: error of the eccentricity
-    that is stated even if both runs agree, which they may by chance; no more than the largest eccentricity. expected:
-    eccentricity that it was told for; more is stated of a run with a smaller gap."""
+    at the same times as the samples of the run, see March; the last ones may be missing; least: error of the
+    eccentricity that is stated even if both runs agree, which they may by chance; no more than the largest
+    eccentricity. expected: eccentricity that `least` holds for; a run with a smaller gap states more."""
 
     share: float
     samples: Array

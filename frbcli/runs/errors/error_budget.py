@@ -1,5 +1,5 @@
-"""The error budget of a run: the error of each approximation, that of the film forces by films that are solved again
-on a finer mesh, and the total error of the displacements."""
+"""The error budget of a run: the error of each approximation, with the error of the film forces from films that are
+solved again on a finer mesh, and the total error of the displacements."""
 
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def budget_of_segments(
         )
     keys = {key: None for budget in budgets for key in budget}
     values = {key: [value for budget in budgets if (value := budget.get(key)) is not None] for key in keys}
-    return {key: max(found, default=None) for key, found in values.items()}
+    return {key: max(errors, default=None) for key, errors in values.items()}
 
 
 def summed(errors: Array, share: float) -> tuple[float, float]:
@@ -119,8 +119,8 @@ def grows_from(
     """Time in s until which a run has only GROWN of the error of its eccentricities that it states until a time; None
     if the run on fewer cells does not reach that far. errors: of State; end: of the run, s; others: see error_budget.
 
-    An error that arises late is that of the phase of a vibration which grows slowly: it begins to part two runs long
-    before it is found.
+    An error that arises late is an error of the phase of a vibration which grows slowly: it begins to part two runs
+    long before it is found.
     """
     quiet = times[times <= until]
 
@@ -225,13 +225,13 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
     times: (m,) s; samples: (m, 2 n + 1 or more) displacements, velocities, rotor speed in rad/s; where heat or inputs
     change films the last columns are clearances in m and scales of the films, see FilmNumbers: s times the scale gives
     the force of s times the velocities. For the short-bearing theory this is the error of the theory itself. In contact
-    it is that of the film in the contact gap. Mass-conserving films are compared in their steady state; where there is
+    it refers to the film in the contact gap. Mass-conserving films are compared in their steady state; where there is
     none, they are left out.
     """
     forces = system.films.compared()
     if forces is None:
         return FilmErrors(*np.zeros((3, 0)))
-    control, count, found = control_of(case, plan), len(system.names), []
+    control, count, rows = control_of(case, plan), len(system.names), []
     changing = films_change(case)
     every = max(1, len(samples) // (system.films.compared_states or len(samples) or 1))
     for t, sample in zip(times[::every], samples[::every], strict=True):
@@ -248,6 +248,6 @@ def film_force_errors(plan: Plan, system: System, case: Case, times: Array, samp
                 exact, force = forces(i, at, scale * rate, scale * total)
             except NotConverged:
                 continue
-            found.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))
-    table = np.array(found).reshape(-1, 3)
+            rows.append((float(t), float(np.hypot.reduce(force - exact)), float(np.hypot.reduce(exact))))
+    table = np.array(rows).reshape(-1, 3)
     return FilmErrors(table[:, 0], table[:, 1], table[:, 2])

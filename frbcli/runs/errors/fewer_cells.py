@@ -31,11 +31,11 @@ from frbcli.solve.state import RUNNING
 
 Observer = Callable[[Progress], None]
 
-# Errors differ from those of the shipped cases, beside openings (grooves, slots, pockets, feed holes) by their order,
-# too; most of all those of rings at rest beside a journal that turns.
+# Errors differ from the shipped cases, near openings (grooves, slots, pockets, feed holes) also by their order; most
+# of all the errors of rings at rest around a journal that turns.
 SAFETY, SAFETY_OF_OPENINGS, SAFETY_OF_RINGS, SAFETY_OF_RINGS_AT_REST = 1.5, 2.0, 2.5, 4.0
-QUARTER = 0.25  # of the steps of a run without films, in the run that tells its error
-LONG_s = 20.0  # CPU time of a run without films above which its error is that of all local errors, which is larger
+QUARTER = 0.25  # of the steps of a run without films, in the run that its error is computed from
+LONG_s = 20.0  # CPU time of a run without films above which its error is the sum of all local errors, which is larger
 LEAST = 0.5  # of the error that these cells were expected to make, which is 1.3 to 7 times the true one
 
 
@@ -68,7 +68,7 @@ def in_finer_steps(march: March, run: Run, until: float, observe: Observer | Non
     other one does not get as far. run: what the march has recorded.
 
     Nothing damps a vibration of such a rotor but what the case gives, so that no sum of local errors bounds its error.
-    Errors fall at least as the steps do: those of the other run are a quarter at most, and the error is at most 4/3 of
+    Errors fall at least as the steps do: the other run has a quarter of them at most, and the error is at most 4/3 of
     the difference.
     """
     plan = march.plan
@@ -102,8 +102,8 @@ def in_finer_steps(march: March, run: Run, until: float, observe: Observer | Non
 
 
 def _looser(case: Case, coarser: float) -> float:
-    """Tolerance of the run on fewer cells over that of the run, for an error of the cells that is larger by `coarser`:
-    the same for elastic rotors, whose disks vibrate long enough for a phase to shift with the steps."""
+    """Tolerance of the run on fewer cells over the tolerance of the run, for an error of the cells that is larger by
+    `coarser`: the same for elastic rotors, whose disks vibrate long enough for a phase to shift with the steps."""
     return 1.0 if shaft_of(case).elastic else coarser**FRONT_ORDER
 
 

@@ -57,7 +57,7 @@ def second_run(march: March, run: Run, observe: Observer | None = None) -> Secon
         chunks.append(signals)
         if observe is not None:
             observe(other.progress(run.t_end_s))
-    # One signal at a time: all of them are held once, beside those of the run.
+    # One signal at a time: all of them are held once, in addition to the run's.
     joined = {name: np.concatenate([chunk.pop(name) for chunk in chunks]) for name in tuple(chunks[0])}
     ended = {RUNNING: "interrupted", FINISHED: "finished", CONTACT: "contact", STANDSTILL: "standstill"}
     return SecondRun(joined, run.references, ended.get(status, "not-converged"))
@@ -69,8 +69,8 @@ def with_second_run(march: March, run: Run, observe: Observer | None = None) -> 
     second = second_run(march, run, observe)
     if second is None:
         return run.events, run.error
-    found = [asdict(event) for event in find_events(second)]
-    events = with_uncertainties(run, run.events, found, _least_amplitude(run.error), _share(march))
+    events_of_second = [asdict(event) for event in find_events(second)]
+    events = with_uncertainties(run, run.events, events_of_second, _least_amplitude(run.error), _share(march))
     if march.plan.form.table_of_solutions:
         events = [_shared(event) for event in events]
     return events, {**run.error, **slow_uncertainties(run, second)}
@@ -92,7 +92,7 @@ def _shared(event: Record) -> Record:
 
 
 def _least_amplitude(error: Record) -> float:
-    """Least uncertainty of amplitudes: the error of the eccentricities before a whirl, without that of the
+    """Least uncertainty of amplitudes: the error of the eccentricities before a whirl, without the error of the
     short-bearing theory, which both runs have."""
     own = error.get("eccentricity") if error.get("model_relative") is None else error.get("time_integration")
     return float(own or 0.0)

@@ -44,11 +44,11 @@ def tried_error(case: Case, trial: Trial) -> TriedError | None:
     plans = trial.plan, trial.finer
     cells = tuple(n for plan in plans for n in plan.cells or ())
     numbers = (*trial.profile.times.tolist(), *trial.profile.speeds.tolist(), *(plan.tolerance for plan in plans))
-    found = float(kept_beside(film_newton)(trial_difference)(case.model_dump_json(), cells, numbers)[0])
-    if not (math.isfinite(found) and found > 0.0):
+    difference = float(kept_beside(film_newton)(trial_difference)(case.model_dump_json(), cells, numbers)[0])
+    if not (math.isfinite(difference) and difference > 0.0):
         return None
     speed = abs(float(trial.profile.speeds[-1])) / (2.0 * math.pi)
-    return TriedError(SAFETY * found, trial.profile.end, speed, (cells[2], cells[3]))
+    return TriedError(SAFETY * difference, trial.profile.end, speed, (cells[2], cells[3]))
 
 
 def _difference(case: Case, trial: Trial) -> float:
@@ -64,8 +64,8 @@ def _difference(case: Case, trial: Trial) -> float:
             return math.nan
     except FrbError:  # a run that does not begin says why
         return math.nan
-    found = FewerCells(1.0, finer.samples).error(own.samples, own.system)
-    return math.nan if found is None else found.eccentricity
+    errors = FewerCells(1.0, finer.samples).error(own.samples, own.system)
+    return math.nan if errors is None else errors.eccentricity
 
 
 def _marched(march: March) -> bool:

@@ -14,8 +14,8 @@ from frbcli.scene.machine.system import System
 class FilmNumbers:
     """The numbers of films that heat and inputs change, at k samples, or once for all: (k, films) or (1, films) each.
 
-    clearances m; drags N m s; scales: 12 eta / psi^2 over that of the films as they were made, over the share of their
-    gauge supply pressures.
+    clearances m; drags N m s; scales: 12 eta / psi^2 over its value for the films as they were made, over the share of
+    their gauge supply pressures.
     """
 
     clearances: Array

@@ -1,7 +1,7 @@
 """Film signals that a run records on request (`output.signals`), at the samples of its file.
 
 The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
-is that of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
+is the force of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
 """
 
 from __future__ import annotations
@@ -66,11 +66,11 @@ def film_signals(
 
     force: on the journal by one bearing, N; film-thickness: the smallest gap, m; torque: of the film on its journal,
     by (4.17), N m; power: what journal and shell put into the film, by turning and by moving, W; oil-flow: that leaves
-    the film through its open ends, m^3/s. Between rough surfaces force, torque and power are those of film and summits;
+    the film through its open ends, m^3/s. Between rough surfaces force, torque and power include film and summits;
     asperity-share: of the summits in both forces; contact-power: of their friction, W. ends: the flows of tabulated
     films (Films.end_flows), if these are asked for their oil; warm: what heat has changed.
     """
-    found, films = dict[str, Array](), warm or unchanged(system)
+    signals, films = dict[str, Array](), warm or unchanged(system)
     if samples.noted.shape[1] and (system.rotation is not None or any(kind in OF_THE_STEPS for kind in kinds)):
         forces = film_forces(system.rotor, samples)
         summits = _summits(system, films, samples)
@@ -80,41 +80,41 @@ def film_signals(
         flows = _flows(system, films, samples)
         if ends:
             flows = _flows_of_motions(system, films, control, samples, ends)
-        found |= friction_signal(system, torques)
+        signals |= friction_signal(system, torques)
     for i, name in enumerate(system.names):
         for kind in kinds:
             if kind == FORCE:
-                found |= dict(zip(signal_names(kind, name), forces[:, i].T, strict=True))
+                signals |= dict(zip(signal_names(kind, name), forces[:, i].T, strict=True))
             elif kind == THICKNESS:
-                found[signal_names(kind, name)[0]] = _thickness(system, films, control, i, samples.q)
+                signals[signal_names(kind, name)[0]] = _thickness(system, films, control, i, samples.q)
             else:
                 known = {POWER: powers, TORQUE: torques, FLOW: flows, SHARE: shares, FRICTION: summits[..., 3]}
-                found[signal_names(kind, name)[0]] = known[kind][:, i]
-    return found
+                signals[signal_names(kind, name)[0]] = known[kind][:, i]
+    return signals
 
 
 def port_signals(system: System, samples: Samples) -> dict[str, Array]:
     """The signals (k,) of forces that are not linear."""
-    found: dict[str, Array] = {}
+    by_name: dict[str, Array] = {}
     for port in system.rotor.ports:
         speed = samples.rotation.speeds
         angle = samples.rotation.states[2] if port.law.turns else np.zeros(len(speed))
         signals = port.signals(samples.q, samples.v, speed, angle)
-        found |= {name: values for name, (_, values) in signals.items()}
-    return found
+        by_name |= {name: values for name, (_, values) in signals.items()}
+    return by_name
 
 
 def _summits(system: System, films: FilmNumbers, samples: Samples) -> Array:
     """(k, films, 4) of rub_along; 0 between smooth surfaces."""
-    found = np.zeros((len(samples.times), len(system.names), 4))
+    summits = np.zeros((len(samples.times), len(system.names), 4))
     if system.asperities is None:
-        return found
+        return summits
     for i in range(len(system.names)):
         clearances, motions = film_motions(system, films, samples, i)
         own = np.zeros((len(motions), 4))
         rub_along(system.asperities, i, clearances, motions, own)
-        found[:, i] = own
-    return found
+        summits[:, i] = own
+    return summits
 
 
 def film_motions(system: System, films: FilmNumbers, samples: Samples, i: int) -> tuple[Array, Array]:
@@ -136,10 +136,10 @@ def tilt_signals(system: System, q: Array) -> dict[str, Array]:
     the larger of the eccentricities at both ends."""
     if system.films.coordinates == len(PLANE):
         return {}
-    found, ends = dict[str, Array](), system.eccentricities(q.T)
+    signals, ends = dict[str, Array](), system.eccentricities(q.T)
     for name, journal, at_ends in zip(system.names, system.journals_of(q.T), ends, strict=True):
-        found |= dict(zip(tilt_names(name), (*journal[len(PLANE) :], at_ends), strict=True))
-    return found
+        signals |= dict(zip(tilt_names(name), (*journal[len(PLANE) :], at_ends), strict=True))
+    return signals
 
 
 def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
@@ -165,7 +165,7 @@ def film_forces(rotor: LinearRotor, samples: Samples) -> Array:
 
 
 def _torques(system: System, films: FilmNumbers, samples: Samples, forces: Array) -> tuple[Array, Array]:
-    """(k, films) torque on the journals in N m, as spin_up of solve/ring_spin.py has it, and power in W."""
+    """(k, films) torque on the journals in N m, as in spin_up of solve/ring_spin.py, and power in W."""
     n, count = system.rotor.size, len(system.names)
     total, slip = (_speeds(system, samples, row) for row in (SUM, SLIP))
     drag = samples.noted[:, n + DRAG * count : n + (DRAG + 1) * count]
@@ -189,7 +189,7 @@ def _flows_of_motions(
 ) -> Array:
     """(k, films) m^3/s of oil that leaves tabulated films: it follows from how their journals move. It is homogeneous
     in their motion and the given pressures, which are divided by the scale."""
-    found = np.empty((len(samples.times), len(ends)))
+    flows = np.empty((len(samples.times), len(ends)))
     total = _speeds(system, samples, SUM)
     for i, end in enumerate(ends):
         clearance, scale = films.clearances[:, i : i + 1], films.scales[:, i : i + 1]
@@ -198,8 +198,8 @@ def _flows_of_motions(
             d[k], v[k] = felt_motion(control, d[k], v[k])
         w = v + 0.5 * total[:, i : i + 1] * np.column_stack([d[:, 1], -d[:, 0]])
         motions = np.column_stack([d, scale * w])
-        found[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions)
-    return found
+        flows[:, i] = clearance[:, 0] / scale[:, 0] * end_flows(end, motions)
+    return flows
 
 
 def _flows(system: System, films: FilmNumbers, samples: Samples) -> Array:

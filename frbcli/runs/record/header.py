@@ -16,6 +16,7 @@ from frbcli.arrays import Array
 from frbcli.case.bearing import SIDES
 from frbcli.case.schema import Case
 from frbcli.elements.pin import pin_torque
+from frbcli.elements.spring import law_record
 from frbcli.results.columns import AXIAL_SIGNALS
 from frbcli.results.store import CLEARANCE_STEP, CRITICAL_SPEED, CRITICAL_SPEEDS, LOSS, Header
 from frbcli.rotor.body import PLANE
@@ -25,14 +26,13 @@ from frbcli.runs.heat import heat_units
 from frbcli.runs.inputs import RunInputs
 from frbcli.scene.changes import loss_times, step_times
 from frbcli.scene.machine.elements import element_parts
-from frbcli.scene.machine.machine_films import model_record
 from frbcli.scene.machine.segments import Segment
 from frbcli.scene.machine.system import System
 from frbcli.solve.ring_spin import STIFFNESS
 
 PACKAGES = ("numpy", "scipy", "numba", "scikit-fem", "h5py")
 PROGRAM = "frbcli"
-# Of a film, by choice: its quantity and unit as they stand in the name, and the unit.
+# Of a film, by choice: its quantity and unit as in the name, and the unit.
 THICKNESS, FORCE, POWER, TORQUE, FLOW = "film-thickness", "force", "power", "torque", "oil-flow"
 SHARE, FRICTION = "asperity-share", "contact-power"  # of rough surfaces, always
 TILT = "tilt"  # of every film whose journal tilts
@@ -67,7 +67,7 @@ def ring_names(system: System) -> dict[str, int]:
 
 
 def signal_names(kind: str, film: str) -> list[str]:
-    """The signals of a film that a kind of FILM_SIGNALS stands for: x and y of a force and of a tilt."""
+    """The signals of a film for a kind of FILM_SIGNALS: x and y of a force and of a tilt."""
     quantity, unit, _ = FILM_SIGNALS[kind]
     ends = (f"_x_{unit}", f"_y_{unit}") if kind in (FORCE, TILT) else (f"_{unit}" if unit else "",)
     return [f"{named(quantity, film)}{end}" for end in ends]
@@ -92,12 +92,12 @@ def signal_units(system: System, kinds: Sequence[str]) -> dict[str, str]:
 
 def pin_names(system: System) -> dict[int, tuple[str, str]]:
     """The signals of the angle and of the torque of each ring with a pin by its number: one pair of a cartridge."""
-    found: dict[int, list[str]] = {}
+    names: dict[int, list[str]] = {}
     for name, ring in turning_rings(system):
         if ring < len(system.pins) and system.pins[ring, STIFFNESS] > 0.0:
-            found.setdefault(ring, []).append(name)
+            names.setdefault(ring, []).append(name)
     own = {
-        ring: ends[0] if len(ends) == 1 else ends[0].removesuffix(SIDES[0]).rstrip("_") for ring, ends in found.items()
+        ring: ends[0] if len(ends) == 1 else ends[0].removesuffix(SIDES[0]).rstrip("_") for ring, ends in names.items()
     }
     return {ring: (f"{named('pin_angle', name)}_rad", f"{named('pin_torque', name)}_N_m") for ring, name in own.items()}
 
@@ -109,18 +109,18 @@ def pin_units(system: System) -> dict[str, str]:
 
 def pin_signals(system: System, q: Array, v: Array) -> dict[str, Array]:
     """The signals (k,) of pins, of displacements q and velocities v (k, n)."""
-    found: dict[str, Array] = {}
+    signals: dict[str, Array] = {}
     for ring, (angle, torque) in pin_names(system).items():
-        found[angle] = q[:, system.spins[ring]].copy()
-        found[torque] = pin_torque(system.pins[ring], found[angle], v[:, system.spins[ring]])
-    return found
+        signals[angle] = q[:, system.spins[ring]].copy()
+        signals[torque] = pin_torque(system.pins[ring], signals[angle], v[:, system.spins[ring]])
+    return signals
 
 
 def port_units(system: System) -> dict[str, str]:
     """Names and units of the signals of forces that are not linear."""
     still, zero = np.zeros((1, system.rotor.size)), np.zeros(1)
-    told = (port.signals(still, still, zero, zero) for port in system.rotor.ports)
-    return {name: unit for signals in told for name, (unit, _) in signals.items()}
+    of_ports = (port.signals(still, still, zero, zero) for port in system.rotor.ports)
+    return {name: unit for signals in of_ports for name, (unit, _) in signals.items()}
 
 
 def header(
@@ -151,7 +151,7 @@ def header(
         units=units,
         versions={PROGRAM: version_of(PROGRAM), "python": platform.python_version()}
         | {package: version_of(package) for package in PACKAGES}
-        | model_record(case),
+        | law_record(case),
         references=({} if system.names else {"length_m": system.length})
         | ({"contact_eccentricity": case.contact.eccentricity, "clearance_m": system.length} if system.names else {})
         | {named("clearance_m", name): length for name, length in zip(system.names, system.clearances, strict=True)}
@@ -169,24 +169,24 @@ def _numbered(name: str, times: Sequence[float]) -> dict[str, float]:
 
 
 def forcing(case: Case) -> tuple[list[ForcedLine], list[str]]:
-    """What forces the machine of a case beside its unbalance: harmonics but those of order 1, and the largest lines of
-    tables over time; and the names of tables whose lines do not hold nearly all of their change."""
-    found, broad = list[ForcedLine](), list[str]()
+    """What forces the machine of a case in addition to its unbalance: harmonics except order 1, and the largest lines
+    of tables over time; and the names of tables whose lines do not hold nearly all of their change."""
+    lines, broad = list[ForcedLine](), list[str]()
     for _, load in element_parts(case).loads:
         if isinstance(load, Tabulated):
             frequencies, whole = lines_of_table(load.times, load.factors(load.times, load.times).T)
-            found += [ForcedLine(frequency_Hz=frequency) for frequency in frequencies]
+            lines += [ForcedLine(frequency_Hz=frequency) for frequency in frequencies]
             broad += [] if whole else [load.name]
         elif isinstance(load, Harmonic) and not load.synchronous:
-            found.append(ForcedLine(abs(load.frequency) / (2.0 * math.pi), abs(load.order)))
-    return list(dict.fromkeys(found)), list(dict.fromkeys(broad))
+            lines.append(ForcedLine(abs(load.frequency) / (2.0 * math.pi), abs(load.order)))
+    return list(dict.fromkeys(lines)), list(dict.fromkeys(broad))
 
 
 @cache
 def version_of(package: str) -> str:
     """The version of an installed package, as it is written into runs. What is imported says it by itself, at once."""
-    told = getattr(sys.modules.get(package), "__version__", None)
+    version_here = getattr(sys.modules.get(package), "__version__", None)
     try:
-        return told or version(package)
+        return version_here or version(package)
     except PackageNotFoundError:  # run from a checkout that is not installed
         return "unknown"

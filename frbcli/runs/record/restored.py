@@ -25,9 +25,9 @@ class WrongCheckpoint(Exception):
 
 
 def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfile, output_step: float) -> State:
-    """The state of a checkpoint. fresh: that at the beginning of the run; output_step: of its samples, s.
+    """The state of a checkpoint. fresh: the state at the beginning of the run; output_step: of its samples, s.
 
-    Raises WrongCheckpoint unless all arrays are there, of the shape of those at the beginning, with finite numbers, and
+    Raises WrongCheckpoint unless all arrays are there, of the same shape as at the beginning, with finite numbers, and
     time, piece of the profile and number of samples fit together.
     """
     state = State(*(array(checkpoint, name, part.shape) for name, part in fresh._asdict().items()))
@@ -49,7 +49,7 @@ def restored(checkpoint: Mapping[str, Array], fresh: State, profile: SpeedProfil
 
 def check_samples(run: Run, count: int, profile: SpeedProfile, output_step: float, is_free: bool) -> None:
     """Raise WrongCheckpoint unless a run had `count` samples at its checkpoint, at the times and speeds of this one.
-    is_free: whether its speed is, and not that of the profile."""
+    is_free: whether the speed is free, and does not follow the profile."""
     if run.checkpoint_samples != count:
         raise WrongCheckpoint(f"it belongs to {count} samples, not {run.checkpoint_samples}")
     fastest = float(np.max(np.abs(profile.speeds)))
@@ -68,17 +68,17 @@ def number_of(run: Run, name: str, place: int) -> float | None:
     an array that has no such number."""
     if run.checkpoint is None or name not in run.checkpoint:
         return None
-    found = np.asarray(run.checkpoint[name])
-    if found.ndim != 1 or len(found) <= place or not abs(found[place]) <= LARGEST:
-        raise refuse(run.path, f"has a checkpoint whose {name} are not those of a run.", "Run the case again.")
-    return float(found[place])
+    numbers = np.asarray(run.checkpoint[name])
+    if numbers.ndim != 1 or len(numbers) <= place or not abs(numbers[place]) <= LARGEST:
+        raise refuse(run.path, f"has a checkpoint whose {name} do not belong to a run.", "Run the case again.")
+    return float(numbers[place])
 
 
 def array(checkpoint: Mapping[str, Array], name: str, shape: tuple[int, ...]) -> Array:
     """A copy of an array of a checkpoint. Raises WrongCheckpoint unless it has that shape and finite numbers."""
-    found = np.array(checkpoint[name]) if name in checkpoint else None
-    if found is None or found.dtype != np.float64 or found.shape != shape:
+    copied = np.array(checkpoint[name]) if name in checkpoint else None
+    if copied is None or copied.dtype != np.float64 or copied.shape != shape:
         raise WrongCheckpoint(f"{name} is missing or has another shape")
-    if not np.all(np.abs(found) <= LARGEST):
+    if not np.all(np.abs(copied) <= LARGEST):
         raise WrongCheckpoint(f"{name} holds invalid numbers")
-    return found
+    return copied

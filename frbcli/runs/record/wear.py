@@ -1,4 +1,4 @@
-"""Wear, and machines that stand.
+"""Wear, and the run that a file holds already.
 
 Wear of rough surfaces over a run, by Archard: an estimate. The gap of the run does not follow it.
 
@@ -7,7 +7,7 @@ specific wear rate k, volume over force and path. A shell that turns, a ring, an
 
 Source: Archard: Contact and rubbing of flat surfaces. J. Appl. Phys. 24 (1953), 981-988.
 
-The run that stands in a file already: it is gone on with, returned, replaced or kept, by one rule.
+A run that the file holds already: it is continued, returned, replaced or kept, by one rule.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from frbcli.arrays import Array
 from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
 from frbcli.compiled import Indices
+from frbcli.elements.spring import LAWS, law_record
 from frbcli.errors import InputError, RunFileError, input_error
 from frbcli.film.roughness.asperities import wear_along
 from frbcli.results.files.container import refuse
@@ -30,7 +31,6 @@ from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
 from frbcli.runs.record.film_signals import Samples, film_motions
 from frbcli.runs.record.header import PROGRAM, version_of
 from frbcli.runs.record.restored import WrongCheckpoint, array
-from frbcli.scene.machine.machine_films import RECORD, model_record
 from frbcli.scene.machine.system import System
 
 ANGLES = 72  # places around a shell, evenly from the top on, counter-clockwise
@@ -66,7 +66,7 @@ class RunWear:
                 raise WrongCheckpoint("wear holds depths that no shell has")
             self._depths = depths
 
-    def told(self) -> dict[str, float]:
+    def deepest(self) -> dict[str, float]:
         """The largest depth in m and phi of its place in degrees, 0 all around a shell that turns."""
         if not len(self._depths):
             return {}
@@ -135,8 +135,8 @@ def _otherness(command: str, case: Case, run: Run) -> str:
     """The way in which a run differs from a case; "" if it is of this one."""
     if run.command != command or not describes(run.case_text, case):
         return f"holds a {run.command} of another case ({run.case_name or 'unnamed'}) or of this one with other keys."
-    if run.versions.get(RECORD) != model_record(case).get(RECORD):
-        return f"was made with another bearing model of the name {case.film.theory} than this process has."
+    if run.versions.get(LAWS) != law_record(case).get(LAWS):
+        return "was made with other force laws of these names than this process has."
     return ""
 
 

@@ -3,10 +3,9 @@
     CPU time of the loop = film solves x time of a film solve + steps x a large rotor's own share
 
 The numbers of steps and film solves are in course.py. Times of a film solve, the share of a small rotor included, were
-measured on the shipped cases on one machine and stand in forms/; docs/accuracy.md compares predicted and
-real cost. The cost before and after the loop is in preparation.py. No measurement is made before a run: on a busy
-machine its error is larger than the difference between machines.
-"""
+measured on the shipped cases on one machine and are in forms/; docs/accuracy.md compares predicted and real cost. The
+cost before and after the loop is in preparation.py. No measurement is made before a run: on a busy machine its error is
+larger than the difference between machines. """
 
 from __future__ import annotations
 
@@ -25,8 +24,8 @@ from frbcli.scene.shafts.table import shaft_of
 
 DAY_s = 86_400.0
 GROWING = 0.2  # share of a run with films that run nearly dry until their whirl has grown: 0.05 to 0.3 as measured
-# Of a rotor with n degrees of freedom and m coordinates of its journals beyond those of the shipped ones: ns per n^3 of
-# a step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
+# Of a rotor with n degrees of freedom and m coordinates of its journals in excess of the shipped ones: ns per n^3 of a
+# step, which needs a new inverse now and then, per n^2 of a stage, and per m^3 of an iteration.
 SMALL_ROTOR, INVERSE_ns, PRODUCTS_ns, JOURNALS_ns = 30, 3.6, 3.0, 0.4
 
 
@@ -34,7 +33,7 @@ SMALL_ROTOR, INVERSE_ns, PRODUCTS_ns, JOURNALS_ns = 30, 3.6, 3.0, 0.4
 class ExpectedCost:
     """steps, film_solves: of the whole run; cpu_s: of its time loop; before_s: of tables, reduction of the shaft and
     the first state; after_s: of the stated error; memory_B: bytes of the process; second_s: of a second run that is
-    made unasked or asked for, see coarser_plan.py. CPU times are those of the reference machine."""
+    made unasked or asked for, see coarser_plan.py. CPU times are for the reference machine."""
 
     steps: int
     film_solves: int
@@ -66,7 +65,7 @@ def expected_cost(case: Case, plan: Plan, profile: SpeedProfile) -> ExpectedCost
     steps, solves = float(course.steps[-1]), float(course.solves[-1])
     films = len(film_places(case))
     iterations = solves / max(steps * STAGES[plan.method] * films, 1e-300) if films else 0.0
-    asked = solves if films else steps * STAGES[plan.method]  # without films, what a stage costs beside them
+    asked = solves if films else steps * STAGES[plan.method]  # without films, the rest of the cost of a stage
     loop_s = 1e-6 * asked * plan.form.solve_us(case, plan) + 1e-9 * steps * _rotor_ns(case, plan, iterations)
     samples = profile.end / case.output.step
     before, after = before_s(case, plan), after_s(case, plan, loop_s * _quiet_share(case, profile, course), samples)
@@ -82,8 +81,8 @@ def _quiet_share(case: Case, profile: SpeedProfile, course: RunCourse) -> float:
 
 
 def _rotor_ns(case: Case, plan: Plan, iterations: float) -> float:
-    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of that of a film solve, but for an
-    inverse that is renewed in every stage."""
+    """Time of a step in the rotor, ns; 0 for a small rotor, whose time is part of a film solve's, unless an inverse is
+    renewed in every stage."""
     n, m, stages = max(rotor_size(case), SMALL_ROTOR), 2 * len(film_places(case)), STAGES[plan.method]
     shaft = shaft_of(case)
     follows = changes_with_speed(case) or shaft.internally_damped or (not case.films and shaft.gyroscopic)

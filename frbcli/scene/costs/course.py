@@ -2,8 +2,8 @@
 
 Before a whirl the journal moves little: a film needs few steps per revolution, and the guess of each stage is nearly
 its solution. In a whirl the journal moves through most of the gap. Where half the rotor speed comes near to the natural
-frequency of a stiff shaft, the whirl presses the journal into the shell. A film that keeps its oil and has no inflow is
-never quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
+frequency of a stiff shaft, the whirl presses the journal into the shell. A mass-conserving film without inflow is never
+quiet: it runs nearly dry and whirls from the start, and the fronts of its oil cross cells.
 
 All numbers were measured on the shipped cases and on `jeffcott` with each cavitation law; docs/accuracy.md compares
 predicted and real cost.
@@ -36,8 +36,8 @@ ERROR_ORDERS = {"trbdf2": 3, "esdirk3": 3, "esdirk4": 4}  # powers of the step s
 
 
 RING_SOLVES = 1.5  # of a stage, of a finite-volume film at a ring that keeps no oil
-# Steps of a journal that a whirl presses into an elastic shell over those of one that it presses into the oil alone:
-# 1.3 to 3.4.
+# Steps of a journal that a whirl presses into an elastic shell over the steps of one that it presses into the oil
+# alone: 1.3 to 3.4.
 ELASTIC = 1.7
 LONGEST_STEP_s = 1e-3  # of a run: also at low speed the rotor falls and its shaft vibrates
 MOST_SAMPLES = 1000  # that a step may pass: what a run holds in memory before it writes them
@@ -57,7 +57,7 @@ SLOWEST_Hz = 1e-6  # rotor speed below which revolutions are not counted
 
 @dataclass(frozen=True)
 class RunCourse:
-    """times: (k,) s; steps, solves: (k,) numbers until then, of film solves those of all films."""
+    """times: (k,) s; steps, solves: (k,) numbers until then, solves summed over all films."""
 
     times: Array
     steps: Array
@@ -127,7 +127,7 @@ def whirl_speed(case: Case) -> float:
 
 
 def runs_nearly_dry(case: Case) -> bool:
-    """Whether a film keeps its oil and no pressure pushes oil into it, nor draws it in."""
+    """Whether a film is mass-conserving and no pressure pushes oil into it, nor draws it in."""
     return bool(_dry_laws(case))
 
 
@@ -135,10 +135,10 @@ def _dry_laws(case: Case) -> tuple[type[Law], ...]:
     """The laws of the films that run nearly dry."""
     if not form_of(case).solved:
         return ()
-    found = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
+    laws = ((law_named(case.cavitation(place.geometry)), place) for place in film_places(case))
     return tuple(
         law
-        for law, place in found
+        for law, place in laws
         if law.keeps_oil and law.starves and no_inflow(film_section(case, place.geometry, place.feed_holes))
     )
 
@@ -160,8 +160,8 @@ def _solves_of_a_stage(case: Case, plan: Plan, whirls: NDArray[np.bool_], per_tu
     if turning_rings(case) and not any(law_named(name).keeps_oil for name in case.cavitations):
         return np.full_like(per_turn, RING_SOLVES)
     turning = any(turns_with_oil(case, place) for place in film_places(case))
-    found = plan.form.solves_of_a_stage(plan, per_turn, turning)
-    return np.where(whirls, work.whirling, work.quiet) if found is None else found
+    solves = plan.form.solves_of_a_stage(plan, per_turn, turning)
+    return np.where(whirls, work.whirling, work.quiet) if solves is None else solves
 
 
 def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArray[np.bool_]) -> Array:
@@ -177,7 +177,7 @@ def _resolving(case: Case, plan: Plan, times: Array, omega: Array, whirls: NDArr
 
     turned = shaft.eccentricity + shaft.bow
     rate = np.maximum(steps(omega, turned), np.where(whirls, steps(HARMONICS * omega, clearance), 0.0))
-    if shaft.compliance and case.start.position == "centre":  # it falls to its resting position
+    if shaft.compliance and case.start.position == "centre":  # it falls to its static equilibrium
         natural = 1.0 / math.sqrt(shaft.compliance)
         left = np.exp(-FADING * natural * (times - times[0]))
         rate = np.maximum(rate, steps(natural, case.rotor.gravity * shaft.compliance * left))

@@ -37,7 +37,7 @@ def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:
         problem = f"asks for a tolerance of {plan.tolerance:.1g} of the clearance, which is below round-off."
         yield Fault(key, f"{value:g}", None, problem, "Take a larger one, e.g. a target of 1e-3.")
         return
-    for words, amount, most, told in (
+    for words, amount, most, written in (
         ("needs {} of memory", cost.memory_B, MOST_MEMORY_B, memory),
         ("takes {} before the first step", cost.before_s, LONGEST_PREPARATION_s, clock),
         ("takes {} for one time step", cost.step_s, LONGEST_WAIT_s, clock),
@@ -46,7 +46,7 @@ def cost_faults(case: Case, plan: Plan, cost: ExpectedCost) -> Iterator[Fault]:
         if not amount <= most:
             limited = (*_by_accuracy(case, plan), *_by_machine(case), *_by_speed(case))
             asked = max(limited, key=lambda each: each.times)
-            problem = f"{words.format(told(amount))}; {told(most)} is the limit."
+            problem = f"{words.format(written(amount))}; {written(most)} is the limit."
             yield Fault(asked.key, asked.value, None, problem, asked.remedy)
             return
 
@@ -58,7 +58,7 @@ def memory(number: float) -> str:
 
 @dataclass(frozen=True)
 class _Limited:
-    """The demand of a key. times: over that of usual cases."""
+    """The demand of a key. times: over the demand of usual cases."""
 
     times: float
     key: str

@@ -41,8 +41,8 @@ HEAT_SIGNALS, WALL_SIGNALS = 5, 2  # of a film; of shaft and housing, or of a ri
 
 def compile_s(cases: Iterable[Case], kernels: Kernels = "loop") -> float:
     """CPU time of the compilation at the first start, for each kind of films that the cases have: short bearings have
-    a time loop of their own beside that of tabulated films. kernels: those of a time loop, of films at rest, or both,
-    each with its own machine code of what both call."""
+    their own time loop, different from tabulated films. kernels: of a time loop, of films at rest, or both, each
+    with its own machine code of what both call."""
     cases, spent = list(cases), 0.0
     if kernels != "loop":
         spent += AT_REST * sum({form: form.compiling[0] for form in map(form_of, cases)}.values())
@@ -58,7 +58,7 @@ def _kind(case: Case) -> tuple[FilmForm, bool]:
 
 
 def compile_B(case: Case) -> float:
-    """Memory in bytes of a process that compiles the kernels for a case: that of the first start."""
+    """Memory in bytes of a process that compiles the kernels for a case, at the first start."""
     return _compilation(case)[1]
 
 
@@ -72,17 +72,17 @@ def before_s(case: Case, plan: Plan) -> float:
     """CPU time before the first step."""
     machines, films, form = 1 + len(step_times(case)), len(film_places(case)), plan.form
     resting = case.start.position == "resting" and case.start.displacement is None
-    found = machines * (films * form.table_s(plan) + _reduction_s(case))
+    spent_s = machines * (films * form.table_s(plan) + _reduction_s(case))
     if not rings(case) and form_of(full_films(case)).by_cells:
-        found += machines * CRITICAL_s
-    return found + form.first_state_s(plan, films, resting)
+        spent_s += machines * CRITICAL_s
+    return spent_s + form.first_state_s(plan, films, resting)
 
 
 def after_s(case: Case, plan: Plan, loop_s: float, samples: float) -> float:
     """CPU time after a time loop of loop_s: events and stated error. samples: number that the run writes."""
     again = plan.form.again_share() * loop_s
-    told = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
-    return told + again + film_error_s(case, plan)
+    evaluated = SAMPLE_s * samples + (1 + len(step_times(case))) * _reduction_s(case)
+    return evaluated + again + film_error_s(case, plan)
 
 
 def film_error_s(case: Case, plan: Plan) -> float:
@@ -94,22 +94,22 @@ def memory_B(case: Case, plan: Plan, samples: float, second: Plan | None = None)
     """Largest memory of the process in bytes. samples: number that the run writes; second: plan of a second run."""
     n, films = rotor_size(case), len(film_places(case))
     kept = KEPT if second is None else KEPT_OF_BOTH
-    found = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_of(case).beam_freedoms
-    found += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + kept * samples)
-    return found + sum(each.form.memory_B(each, films) for each in (plan, second) if each is not None)
+    needed = PROGRAM_B + 8.0 * MATRICES * n**2 + 8.0 * MATRICES * MOST * shaft_of(case).beam_freedoms
+    needed += 8.0 * signal_count(case) * (COPIES * SAMPLES_HELD + kept * samples)
+    return needed + sum(each.form.memory_B(each, films) for each in (plan, second) if each is not None)
 
 
 def signal_count(case: Case) -> int:
     """Signals that a run records; with heat at most."""
     places, floating = film_places(case), rings(case)
     disks = shaft_of(case).disk_count
-    found = 2 + 2 * (len(case.placed_bearings) + len(floating) + disks) + len(turning_rings(case))
-    found += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
-    found += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
-    found += 3 * len(places) if case.contact.rough else 0
+    count = 2 + 2 * (len(case.placed_bearings) + len(floating) + disks) + len(turning_rings(case))
+    count += sum(1 + law_named(case.cavitation(place.geometry)).keeps_oil for place in places)
+    count += len(places) * sum(2 if kind == "force" else 1 for kind in case.output.signals)
+    count += 3 * len(places) if case.contact.rough else 0
     if case.heat is not None:
-        found += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
-    return found
+        count += HEAT_SIGNALS * len(places) + WALL_SIGNALS * (1 + len(floating))
+    return count
 
 
 def rotor_size(case: Case) -> int:

@@ -5,8 +5,7 @@ What the steps of a run resolve of loads and inputs that change with time, and w
 Steps end at the rows of a table, so that each row is followed; between rows a table is a line. The samples of a run
 file show frequencies below half of their rate.
 
-The length that displacements of a machine without films are compared with, in place of a clearance.
-"""
+The length that displacements of a machine without films are compared with, instead of a clearance. """
 
 from __future__ import annotations
 
@@ -60,7 +59,7 @@ def resolution_decisions(case: Case, plan: Plan) -> Iterator[Decision]:
 def _of_table(name: str, times: Array, values: Array, step: float, shown: float) -> tuple[str, str]:
     """Value and reason of the decision about a table."""
     shortest = float(np.diff(times).min())
-    told = f"{name}: {len(times)} rows, at least {shortest:.4g} s apart"
+    size = f"{name}: {len(times)} rows, at least {shortest:.4g} s apart"
     if shortest >= step:
         reason = f"{shortest / step:.0f} steps of {step:.2g} s between them at the top speed"
     else:
@@ -68,7 +67,7 @@ def _of_table(name: str, times: Array, values: Array, step: float, shown: float)
     highest = highest_frequency(times, values)
     if highest > 0.0:
         reason += f"; content up to {highest:.3g} Hz{_unseen(highest, shown)}"
-    return told, reason
+    return size, reason
 
 
 def _unseen(frequency: float, shown: float) -> str:
@@ -115,5 +114,5 @@ def _sag(rotor: LinearRotor, omega: float) -> float:
         shape = held_rotor(rotor, omega).shape
     except NotConverged:
         return 0.0
-    found = max((float(np.hypot(*(place @ shape))) for _, place in rotor.points), default=0.0)
-    return found if found < LARGEST else 0.0
+    deflection = max((float(np.hypot(*(place @ shape))) for _, place in rotor.points), default=0.0)
+    return deflection if deflection < LARGEST else 0.0

@@ -21,11 +21,11 @@ if TYPE_CHECKING:
     from frbcli.scene.planning.planned import Plan
 
 STEADY_s, STEADY_CELLS, STEADY_POWER = 0.012, 1152, 1.1  # of a steady film, a state of its own; its cells
-RESTING = 3.0  # factor for a resting position, found by Newton's method
+RESTING = 3.0  # factor for a static equilibrium, found by Newton's method
 COMPILING = 36.0, 5e8  # at the first start: CPU time in s, memory in bytes
 AGAIN = 0.5  # of the loop: the run on fewer cells
 FIXED = 0.1  # share of a solve on USUAL cells that does not depend on the cells
-# Solves of a stage of a film that keeps its oil, whose cells turn with it: at least, and for every cell that passes a
+# Solves of a stage of a mass-conserving film, whose cells turn with it: at least, and for every cell that passes a
 # front in a step.
 KEEPING_SOLVES, FRONT_SOLVES = 2.2, 0.55
 # Fronts that cross cells make the local error of second order; the steps fall with the size of the cells.
@@ -41,7 +41,7 @@ class CellForm(FilmForm):
     by_cells: ClassVar[bool] = True
     chosen_by_target: ClassVar[bool] = True
     fine_when_static: ClassVar[bool] = True
-    told_by_eccentricity: ClassVar[bool] = True
+    error_by_eccentricity: ClassVar[bool] = True
     turns_cells: ClassVar[bool] = True
     lengths: ClassVar[tuple[int, ...]] = ALONG  # cells along to choose from
     compiling: ClassVar[tuple[float, float]] = COMPILING
@@ -80,32 +80,32 @@ class CellForm(FilmForm):
         return float(fronts * plan.tolerance ** (-1.0 / FRONT_ORDER) * coarse**FRONT_CELLS)
 
     def fewer_cells(self, case: Case, plan: Plan) -> tuple[int, int] | None:
-        found = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
-        return None if found is None else self.of_whole(found)
+        cells = coarser_cells(worst_film(case, plan.eccentricity), self.of_half(cells_of(plan)))
+        return None if cells is None else self.of_whole(cells)
 
     def of_whole(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """Cells (around, along) of a plan, of those of a section."""
+        """Cells (around, along) of a plan, from the cells of a section."""
         return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         assert films.cells is not None
         around, along = films.cells
-        told = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
+        rows = [("film", f"{around} x {along} cells", f"finite volumes, around x along; {films.mesh_why}")]
         if films.eccentricity is not None:
-            told.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
+            rows.append(("eccentricity", f"{films.eccentricity:.2f}", EXPECTED))
         if is_published(case) and (transport := self.transport(case)) is not None:
-            told += [("form", "published", PUBLISHED), transport]
-        return tuple(told)
+            rows += [("form", "published", PUBLISHED), transport]
+        return tuple(rows)
 
     def remedies(self, case: Case) -> tuple[str, ...]:
         if not is_published(case):
             return ()
-        two_phase, found = case.film.two_phase, ['film.two-phase.form = "conservative"']
+        two_phase, changes = case.film.two_phase, ['film.two-phase.form = "conservative"']
         if two_phase.diffusion != "consistent":
-            found.append('film.two-phase.diffusion = "consistent"')
+            changes.append('film.two-phase.diffusion = "consistent"')
         if two_phase.steepness > GENTLE:
-            found.append(f"film.two-phase.steepness = {GENTLE:g} in place of {two_phase.steepness:g}")
-        return tuple(found)
+            changes.append(f"film.two-phase.steepness = {GENTLE:g} instead of {two_phase.steepness:g}")
+        return tuple(changes)
 
 
 def cells_of(plan: Plan) -> tuple[int, int]:

@@ -39,7 +39,7 @@ BLOCKS, CELL_B = 25, 6000  # of a film with cells: full rows of cells along held
 @dataclass(frozen=True)
 class SolveCounts:
     """Counts of films of a form. crowded: steps over the least number of steps; quiet, whirling: film solves of a
-    stage; pressed: steps and solves of a stage over those of another whirl, where it presses the journal into the
+    stage; pressed: steps and solves of a stage over the numbers in another whirl, where it presses the journal into the
     shell."""
 
     crowded: float
@@ -62,7 +62,7 @@ class FilmForm:
     fine_when_static: ClassVar[bool] = False  # whether static results are computed on finer cells than a run
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
-    told_by_eccentricity: ClassVar[bool] = False  # whether its error is that of eccentricities, not of forces
+    error_by_eccentricity: ClassVar[bool] = False  # whether its error is of eccentricities, not of forces
     solved: ClassVar[bool] = (
         True  # whether its pressure is solved, on a mesh whose error is known
     )
@@ -72,13 +72,12 @@ class FilmForm:
     turns_cells: ClassVar[bool] = False  # whether its cells may turn with the oil
     as_exact: ClassVar[float] = 1.0  # share of its cells along that are as exact in a film whose errors are tabulated
     any_theory: ClassVar[bool] = False  # whether the theory of the short bearing applies to it, too
-    same_in_tests: ClassVar[bool] = False  # whether kinematic tests have the same films
     modal: ClassVar[bool] = False  # whether kinematic tests take the pressure from the modal film
     theory_in_tests: ClassVar[str] = "finite"
     parts: ClassVar[tuple[str, str]] = "cells", "around x along"  # of a film in kinematic tests, and what they count
     why: ClassVar[str] = "rectangular gap: the force turns with the line of centres"
     elements: ClassVar[str] = "quadratic elements"
-    follows_supply: ClassVar[bool] = True  # whether its pressures may follow those of the supply over time
+    follows_supply: ClassVar[bool] = True  # whether its pressures may follow the supply's over time
     compiling: ClassVar[tuple[float, float]] = 16.0, 3.6e8  # at the first start: CPU time in s, memory in bytes
     rules: ClassVar[tuple[Rule, ...]] = ()  # what it is not made for, and why
 
@@ -99,7 +98,7 @@ class FilmForm:
         return 0.0
 
     def first_state_s(self, plan: Plan, films: int, resting: bool) -> float:
-        """CPU time in s of the first state of a run. resting: whether a resting position is sought."""
+        """CPU time in s of the first state of a run. resting: whether a static equilibrium is sought."""
         return 0.0
 
     def again_share(self) -> float:
@@ -113,9 +112,9 @@ class FilmForm:
 
     def memory_B(self, plan: Plan, films: int) -> float:
         """Bytes that the films take, of tables the finer ones for the error, too."""
-        found = 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
+        needed = 8.0 * MATRICES * (2.0 * FINER * plan.mesh.axial) ** 2
         rows = -math.log(1.0 - LARGEST_ECCENTRICITY) / 0.1
-        return found + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
+        return needed + 8.0 * films * rows * 32.0 * plan.mesh.circumferential
 
     def solves_of_a_stage(self, plan: Plan, per_turn: Array, turning: bool) -> Array | None:
         """(n,) film solves, where they do not follow from `work`. per_turn (n,): steps per revolution; turning: whether
@@ -131,18 +130,18 @@ class FilmForm:
         return None
 
     def of_half(self, cells: tuple[int, int]) -> tuple[int, int]:
-        """Cells (around, along) of a section, up to a plane of symmetry, of those of a plan."""
+        """Cells (around, along) of a section, up to a plane of symmetry, from the cells of a plan."""
         return cells
 
     def decisions(self, case: Case, films: FilmChoice) -> tuple[tuple[str, str, str], ...]:
         """What a plan says of the films: choice, value, reason."""
-        told = [("film", self.name, self.why)]
+        rows = [("film", self.name, self.why)]
         if films.theory == "finite":
             meshes = [mesh for _, mesh in films.films] or [films.mesh]
             meshes = meshes[:1] if len(set(meshes)) == 1 else meshes
             sizes = ", ".join(f"{mesh.axial} x {mesh.circumferential}" for mesh in meshes)
-            told.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
-        return tuple(told)
+            rows.append(("mesh", sizes, f"{self.elements}, axial x around; {films.mesh_why}"))
+        return tuple(rows)
 
     def about_oil(self, case: Case, law: type[Law]) -> str:
         """What a law makes of the oil."""
@@ -167,10 +166,10 @@ class FilmForm:
         """The decision about the transport of oil: choice, value, reason."""
         if is_published(case):
             return "diffusion", case.film.two_phase.diffusion, DIFFUSIONS[case.film.two_phase.diffusion]
-        reason = "upwind flow through the faces of the cells: conserves oil, in place of an artificial diffusion"
+        reason = "upwind flow through the faces of the cells: conserves oil, instead of an artificial diffusion"
         return ("diffusion", "upwind", reason) if law_named(case.film.cavitation).published_form else None
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         """How the film of a kinematic test is computed: value and reason of a decision."""
         if is_published(case):
             return "finite volumes", PUBLISHED
@@ -182,7 +181,7 @@ class FilmForm:
         """Elements or cells (along, around) of a plan, as accuracy.mesh has them."""
         return (plan.mesh.axial, plan.mesh.circumferential) if plan.cells is None else (plan.cells[1], plan.cells[0])
 
-    def mesh_told(self, plan: Plan) -> str:
+    def mesh_text(self, plan: Plan) -> str:
         """The mesh of a plan in words."""
         if plan.cells is not None:
             return "{} x {} cells".format(*plan.cells)

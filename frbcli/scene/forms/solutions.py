@@ -23,7 +23,7 @@ SOLUTION_MESH = Mesh(axial=6, circumferential=48)  # cells
 SOLUTION_ERROR = 6e-3
 TABLE_TARGET = 5e-4  # the smallest target for which splines through some thousand solutions are sufficient
 TABULATING_s = 0.65  # of a table, on SOLUTION_MESH
-ONE_STATE = 1e-3  # one state in place of a table of thousands
+ONE_STATE = 1e-3  # one state instead of a table of thousands
 TURNING = "openings or lobes do not turn with the line of centres"
 
 
@@ -39,7 +39,7 @@ class SolutionForm(FilmForm):
     rules: ClassVar[tuple[Rule, ...]] = (
         refusal(
             (RUN,), "output.signals", oil_flow_signal,
-            "is not told by the tables of the penalty model", 'Write film.solution = "cells".',
+            "is not known from the tables of the penalty model", 'Write film.solution = "cells".',
         ),
     )  # fmt: skip
 

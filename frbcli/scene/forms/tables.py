@@ -20,7 +20,8 @@ MODES_s = 3e-9  # of the axial modes, per cube of the elements along
 DIRECT_s, STATE_s = 4.5e-7, 2e-3  # of a film solved at one state, per element around and mode along, and of any
 SHORT_POINTS = 96, 32  # around and along, in kinematic tests
 FIELD_ELEMENTS = 64  # around
-# Solves of a stage over those of another whirl, where a full film is pressed, whose journal comes to 2e-4 of the gap.
+# Solves of a stage over the number in another whirl, where a full film is pressed, whose journal comes to 2e-4 of the
+# gap.
 FULL_PRESSED = 6.0
 CHAIN_ELEMENTS, CHAIN_SHARE = 144, 0.55  # 3 x 48; share of a solve that grows with the elements
 
@@ -54,7 +55,7 @@ class FieldsForm(TableForm):
     solved_each_call: ClassVar[bool] = True
 
     def solve_us(self, case: Case, plan: Plan) -> float:
-        """See FilmForm: beside films that are cheap."""
+        """See FilmForm: 0 next to films that are cheap."""
         return mean_us(plan.films, self, self.us / FIELD_ELEMENTS)
 
 
@@ -64,7 +65,7 @@ class ModalForm(FilmForm):
 
     modal: ClassVar[bool] = True
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         return self.name, f"{law.name} in a rectangular gap; it has no state"
 
 
@@ -76,9 +77,9 @@ class ShortForm(FilmForm):
     parts: ClassVar[tuple[str, str]] = "points", "around x along"
 
     def parts_in_tests(self, case: Case) -> tuple[tuple[int, int], str] | None:
-        return SHORT_POINTS, "at which the pressure is told; the force is exact"
+        return SHORT_POINTS, "at which the pressure is given; the force is exact"
 
-    def told_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
+    def decision_in_tests(self, case: Case, law: type[Law]) -> tuple[str, str]:
         return self.name, f"{law.name} of the short bearing, set in the case; it has no state"
 
 

@@ -101,7 +101,7 @@ def run_faults(case: Case, without: str = WITHOUT) -> Iterator[Fault]:
         problem = "exchanges forces, and a film that tilts has moments, too."
         yield Fault("film.coupling", "co-simulation", None, problem, 'Write coupling = "auto".')
     if case.contact.policy == "elastic":
-        problem = "is that of a journal in the middle of its shell, and one that tilts touches at an end."
+        problem = "is made for a journal in the middle of its shell, and one that tilts touches at an end."
         yield Fault("contact.policy", "elastic", None, problem, f'Write policy = "stop". {without}')
     for place, key in zip(film_places(case), film_keys(case), strict=True):
         if getattr(place.geometry, "clearance_steps", ()) and law_named(case.cavitation(place.geometry)).keeps_oil:
@@ -116,7 +116,7 @@ def misalignment_faults(case: Case) -> Iterator[Fault]:
             most = bearing.films[-1].clearance / (0.5 * bearing.films[-1].width)
             if math.hypot(*bearing.misalignment) >= most:
                 key = f"{bearing_key(case, index)}.misalignment"
-                problem = "closes the gap at the ends of the bearing around what stands in its middle."
+                problem = "closes the gap at the ends of the bearing around a centred journal."
                 remedy = f"Write less than {1e3 * most:.3g} mrad."
                 yield Fault(key, as_text(bearing.misalignment), None, problem, remedy)
 
@@ -146,8 +146,8 @@ class TiltedForm(CellForm):
     )
 
     def cells_solved(self, case: Case, plan: Plan) -> float:
-        """See CellForm: of one land over the whole width, or of two beside a groove. All lands have equal numbers of
-        cells, so that a groove beside films without one doubles its own."""
+        """See CellForm: of one land over the whole width, or of two next to a groove. All lands have equal numbers of
+        cells, so that a groove doubles the cells of its film, even if other films have none."""
         around, along = cells_of(plan)
         lands = [HALVES if place.geometry.supply.splits else 1 for place in film_places(case)]
         return sum(lands) / len(lands) * cells_time(around, along // min(lands), FAST_TILTED)

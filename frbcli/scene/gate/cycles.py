@@ -23,7 +23,7 @@ from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
 
 CONSTANT = "these limit cycles are computed for one rotor with constant coefficients"
-HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film that of frb check or frb stability.'
+HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film the one of frb check or frb stability.'
 
 
 def coefficient_faults(case: Case) -> Iterator[Fault]:
@@ -50,7 +50,7 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
     if case.heat is None:
         return
     if by_shooting(case):
-        problem = "settles over many periods, and a film on cells has its cycle by one period of a run."
+        problem = "settles over many periods, and finite-volume films find cycles from one period of a run."
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
     for key in ("clearance", "centrifugal_growth"):
         if getattr(case.heat, key) == "follows":
@@ -101,7 +101,7 @@ def speed_range_faults(case: Case) -> Iterator[Fault]:
 
 
 def unbalance_faults(case: Case) -> Iterator[Fault]:
-    """Whirls with unbalance are those of rotors that have one."""
+    """Whirls with unbalance need a rotor with unbalance."""
     if not drives(case):
         problem, remedy = "is zero: no whirl can lock in with it.", 'Write e.g. rotor.unbalance = "3 g*mm".'
         yield Fault("disk.unbalance" if case.disks else "rotor.unbalance", "0 g*mm", None, problem, remedy)
@@ -115,14 +115,14 @@ def drives(case: Case) -> list[str]:
 
 
 def by_shooting(case: Case) -> bool:
-    """Whether limit cycles are found by shooting on the time loop: films keep their oil, or are on cells, where their
-    force has kinks."""
+    """Whether limit cycles are found by shooting on the time loop: films are mass-conserving, or are on cells, where
+    their force has kinks."""
     return keeps_oil(case) or (form_of(case).by_cells and not turning_openings(case))
 
 
 def turning_openings(case: Case) -> bool:
-    """Whether films on cells are tabulated as the mean over the angle of their openings: their gaps are even along the
-    axis, all solve a linear equation, and all openings turn."""
+    """Whether finite-volume films are tabulated as the mean over the angle of their openings: their gaps are even along
+    the axis, all solve a linear equation, and all openings turn."""
     if form_of(case).inclines or not all_clipped(case) or any(coupled_rings(case)):
         return False
     return all(

@@ -20,9 +20,9 @@ def sheet_faults(case: Case) -> Iterator[Fault]:
 
 
 def loaded_faults(case: Case) -> Iterator[Fault]:
-    """A given load is that of one film."""
+    """A given load acts on one film."""
     for each in DamperElement.of(case):
-        problem = "adds a film to that of the bearing, and a given load is the load of a single film."
+        problem = "adds a film to the bearing's, and a given load is the load of a single film."
         yield Fault(each.key, "", None, problem, "Leave the damper out: the sheet is of the film in its shell.")
 
 

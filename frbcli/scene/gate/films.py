@@ -42,18 +42,18 @@ def supply_faults(case: Case) -> Iterator[Fault]:
         if not law_named(case.cavitation(place.geometry)).keeps_oil:  # it makes its oil, and cannot run dry
             section = ends_at_ambient(section)
         at, value = (f"{key}.supply.kind", supply.kind) if runs_dry(section) else (key, place.name)
-        for found in section_faults(section):
-            yield Fault(at, value, None, f"cannot be solved: {found.problem}.", found.remedy)
+        for fault in section_faults(section):
+            yield Fault(at, value, None, f"cannot be solved: {fault.problem}.", fault.remedy)
 
 
 def limited_supply_faults(case: Case) -> Iterator[Fault]:
-    """Supplies that give a flow at the most, of films that are not solved so."""
+    """Flow-limited supplies of films that do not support them."""
     for at, place in _limited_films(case):
         form, oil = form_of(case), case.oil
         supply, law = place.geometry.supply, law_named(case.cavitation(place.geometry))
         least = max(oil.ambient_pressure, oil.cavitation_pressure)
         if not (form.by_cells and form.follows_supply) or tilts(case) or any(True for _ in misaligned(case)):
-            problem = "is given, and only films on cells without a tilt follow it."
+            problem = "is given, which only finite-volume films without tilt support."
             remedy = 'Write film.cavitation = "elrod" and no tilt; or leave it out.'
         elif not law.keeps_oil or law.carries_gas:
             problem = f"is given, and {law.name} does not conserve the oil, or has its gas to follow."
@@ -80,28 +80,28 @@ def bath_faults(case: Case) -> Iterator[Fault]:
         followed = form.by_cells and form.follows_supply and law.keeps_oil
         if not followed or law.carries_gas:
             why = "is not modelled with oil that carries free gas"
-            problem = f"parts the ends, which {why if followed else 'only films on cells that keep their oil follow'}."
+            problem = f"parts the ends, which {why if followed else 'only mass-conserving finite volumes support'}."
             remedy = f'Write film.cavitation = "peeken"; or {remedy[0].lower()}{remedy[1:]}'
         elif tilts(case) or any(True for _ in misaligned(case)):
             problem = "parts the ends, which is not modelled with a tilt."
         elif place.grid_body != HOUSING or place.feed_holes is not None:
             problem = "parts the ends, and the openings of the film turn against the bath."
         elif law.empties and oil.cavitation_pressure >= oil.ambient_pressure:
-            problem = "has no effect: the pressure is nowhere below that of the bath, so that no oil comes in."
+            problem = "has no effect: the pressure is nowhere below the bath's, so that no oil comes in."
         else:
             continue
         yield Fault(f"{key}.ends.bath_level", f"{film.bath:.3g} radii", None, problem, remedy)
 
 
 def _limited_films(case: Case) -> Iterator[tuple[str, FilmPlace]]:
-    """Keys of the flow of the supplies that give one at the most, and the films."""
+    """Keys of the flow of the supplies that give one at most, and the films."""
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         if math.isfinite(place.geometry.supply.largest_flow):
             yield f"{key}.supply.flow", place
 
 
 def saturation_faults(case: Case) -> Iterator[Fault]:
-    """Gas that dissolves in proportion to its pressure, as Henry's law has it."""
+    """Gas that dissolves in proportion to its pressure, by Henry's law."""
     pressure = case.film.bubbly.saturation_pressure if "bubbly" in case.cavitations else None
     if pressure is not None and pressure > HENRY:
         problem = f"is above {display(HENRY, 'Pa')}, up to which gas dissolves in proportion to its pressure."
@@ -142,9 +142,9 @@ def sealed_faults(case: Case) -> Iterator[Fault]:
         at = f"{key}.ends"
         if case.film.theory == "short" and film_form(case, film, "short") is CLIPPED:
             problem = "lets a cavity reach the ends, where a short bearing clips between the pressures of open ends."
-            yield Fault(at, _told(film), None, problem, 'Write film.theory = "finite".')
+            yield Fault(at, _shown(film), None, problem, 'Write film.theory = "finite".')
         elif form.by_cells:
-            yield from _enclosed(case, key, film)
+            yield from _enclosed(key, film)
 
 
 def published_faults(case: Case) -> Iterator[Fault]:
@@ -170,7 +170,7 @@ def published_tilt_faults(case: Case, tilted: bool) -> Iterator[Fault]:
 
 def enclosed_faults(case: Case) -> Iterator[Fault]:
     """Films whose oil is enclosed, in tests, which show their pressure on cells."""
-    return (fault for key, film in _sealed_films(case) for fault in _enclosed(case, key, film))
+    return (fault for key, film in _sealed_films(case) for fault in _enclosed(key, film))
 
 
 def _sealed_films(case: Case) -> Iterator[tuple[str, FilmGeometry]]:
@@ -179,15 +179,15 @@ def _sealed_films(case: Case) -> Iterator[tuple[str, FilmGeometry]]:
             yield key, place.geometry
 
 
-def _enclosed(case: Case, key: str, film: FilmGeometry) -> Iterator[Fault]:
+def _enclosed(key: str, film: FilmGeometry) -> Iterator[Fault]:
     """Oil that does not come in or leave has the pressure that it was enclosed with."""
-    if film.sealed < ENCLOSED and not film.supply.feeds and not case.film.bearing_model:
+    if film.sealed < ENCLOSED and not film.supply.feeds:
         problem = "encloses the oil, for nothing feeds the film: the level of its pressure is that of its filling."
         remedy = f"Give it a supply, or a share of at least {ENCLOSED:g}; runs with half-sommerfeld take any."
-        yield Fault(f"{key}.ends", _told(film), None, problem, remedy)
+        yield Fault(f"{key}.ends", _shown(film), None, problem, remedy)
 
 
-def _told(film: FilmGeometry) -> str:
+def _shown(film: FilmGeometry) -> str:
     return f"sealed = {film.sealed:g}"
 
 
@@ -201,7 +201,7 @@ def mesh_faults(case: Case) -> Iterator[Fault]:
 
 
 def rough_faults(case: Case) -> Iterator[Fault]:
-    """The gap between rough surfaces is that of plain cylinders."""
+    """The gap between rough surfaces has to be between plain cylinders."""
     contact = case.contact
     if contact.roughness is None:
         return
@@ -210,7 +210,7 @@ def rough_faults(case: Case) -> Iterator[Fault]:
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film = place.geometry
         if film.shell is not None:
-            problem = "is not modelled with asperities, whose gap is that of a plain cylinder."
+            problem = "is not modelled with asperities, which need the gap of a plain cylinder."
             yield Fault(f"{key}.{film.shell.key}", film.shell.words, None, problem, f"{SMOOTH}, or leave it out.")
         problem = f"is so large that summits meet all around a clearance of {display(film.clearance, 'm')}."
         if LAST * contact.roughness >= film.clearance:
@@ -220,10 +220,10 @@ def rough_faults(case: Case) -> Iterator[Fault]:
             remedy = f"Give less than {display(room, 'm')}."
             yield Fault("contact.mean_height", display(contact.mean_height, "m"), None, problem, remedy)
     if contact.flow_factors and (form := form_of(case)) not in (CELLS, TILTED, INCLINED):
-        problem = f"changes the flow of films on cells, and this one is: {form}."
+        problem = f"changes the flow of finite-volume films, and this film is: {form}."
         yield Fault("contact.flow_factors", "true", None, problem, "Write false.")
     if contact.shear != 0.0 and any((each.outside, each.grid_body) != (HOUSING,) * 2 for each in film_places(case)):
-        problem = "lets a surface carry more oil than the other, which is modelled beside shells and openings at rest."
+        problem = "lets a surface carry more oil than the other, which needs shells and openings at rest."
         value = display(contact.journal_roughness or 0.0, "m")
         yield Fault("contact.journal_roughness", value, None, problem, "Leave it out: both surfaces are equal then.")
     for key, value in misaligned(case):
@@ -250,5 +250,5 @@ def rough_coupling_faults(case: Case) -> Iterator[Fault]:
 def rough_heat_faults(case: Case) -> Iterator[Fault]:
     """Heat in cycles and in tests does not know of boundary friction."""
     if case.contact.rough and case.heat is not None:
-        problem = "makes heat by friction, and in cycles and tests the heat is that of the films alone."
+        problem = "makes heat by friction, and in cycles and tests the films alone make heat."
         yield Fault("contact.model", "asperities", None, problem, f'{SMOOTH}, or thermal.model = "none".')

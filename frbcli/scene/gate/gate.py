@@ -1,9 +1,8 @@
 """The gate: one table of rules, each with the analyses that it holds for. Every analysis asks it before a film is made.
 
-A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films
-or a coupling is not made for stands in its own row, see `rules` in scene/forms/form.py and scene/coupling.py.
-`docs/matrix.md` is made by asking this gate.
-"""
+A rule is a function of a case that yields the faults: key, value, problem, remedy. What a form of films or a coupling
+is not made for is in its own row, see `rules` in scene/forms/form.py and scene/coupling.py. `docs/matrix.md` is made by
+asking this gate. """
 
 from __future__ import annotations
 
@@ -141,19 +140,19 @@ def faults(case: Case, analysis: str = FILMS) -> list[Fault]:
     model of the case."""
     if alone := without_bearing(case):  # no other rule has a subject
         return alone
-    found: list[Fault] = []
+    reasons: list[Fault] = []
     whole = case
     if analysis in KINEMATIC:
-        found += choice_faults(case, analysis)
+        reasons += choice_faults(case, analysis)
         case = tested_case(case)
     for rule in sorted((*RULES, *form_of(case).rules, *coupling_of(case).rules), key=lambda rule: rule.last):
         asked = RUN if analysis == STILL and not rule.moving else analysis
-        if asked in rule.analyses and not (rule.last and found):
-            found += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
-    return list(dict.fromkeys(found))  # both ends of a cartridge have the same
+        if asked in rule.analyses and not (rule.last and reasons):
+            reasons += (replace(fault, key=key_in(whole, fault.key)) for fault in rule.of(case))
+    return list(dict.fromkeys(reasons))  # both ends of a cartridge have the same
 
 
 def require(case: Case, analysis: str = FILMS, more: Faults = ()) -> None:
     """Raises InputError with every reason why an analysis of a case is refused; more: found by its caller."""
-    if found := [*more, *faults(case, analysis)]:
-        raise InputError(case.name or "case", tuple(found))
+    if reasons := [*more, *faults(case, analysis)]:
+        raise InputError(case.name or "case", tuple(reasons))

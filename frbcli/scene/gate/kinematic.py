@@ -91,8 +91,8 @@ def tilt_faults(case: Case, test: str) -> Iterator[Fault]:
         return
     key, value = tilt_key(case)
     if motion.load is not None:
-        problem = "is given beside a load: a journal at rest takes the tilt at which the moment of its film vanishes."
-        yield Fault(key, value, None, problem, "Give an eccentricity in place of motion.load, or leave the tilt out.")
+        problem = "is given with a load: a journal at rest takes the tilt at which the moment of its film vanishes."
+        yield Fault(key, value, None, problem, "Give an eccentricity instead of motion.load, or leave the tilt out.")
 
 
 def end_faults(case: Case, test: str) -> Iterator[Fault]:

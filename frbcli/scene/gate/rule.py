@@ -64,7 +64,7 @@ def motion_omega(case: Case) -> float:
 
 FILMS = "films"  # whatever needs the films of a case and has no rules of its own
 RUN = "run"  # run-up, run-down, sweep, fit and compare
-STILL = "plan of films at rest"  # has the rules of a run but those of moving films
+STILL = "plan of films at rest"  # has the rules of a run except for moving films
 ROTATION, SQUEEZE, WHIRL = KINEMATIC = "rotation", "squeeze", "whirl"
 COMPARISON, LADDER = "comparison", "accuracy"
 HEAT = "heat"

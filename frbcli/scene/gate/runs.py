@@ -36,11 +36,11 @@ def form_faults(case: Case) -> Iterator[Fault]:
         return
     cells = form.by_cells
     chained = any(place.geometry.supply.divides for place in film_places(case))
-    if (found := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
-        yield found
+    if (fault := solution_fault(case, all_clipped(case), not (chained or cells))) is not None:
+        yield fault
     may_turn = cells and all(is_plain(place.geometry) for place in film_places(case))
     if case.film.grid == "half-speed" and not may_turn:
-        yield _missing("film.grid", "half-speed", "auto; it is for films on cells without openings and lobes")
+        yield _missing("film.grid", "half-speed", "auto; it is for finite-volume films without openings and lobes")
 
 
 def changing_supply_faults(case: Case) -> Iterator[Fault]:
@@ -99,7 +99,7 @@ def axial_heat_faults(case: Case) -> Iterator[Fault]:
         if isinstance(value, OverTime):
             problem = "changes over time, which the temperatures of the films on the pads do not follow."
             remedy = "Give one temperature, or leave [axial] out."
-            yield Fault(f"thermal.{key}", value.told, None, problem, remedy)
+            yield Fault(f"thermal.{key}", value.origin, None, problem, remedy)
 
 
 def drive_faults(case: Case) -> Iterator[Fault]:
@@ -108,10 +108,10 @@ def drive_faults(case: Case) -> Iterator[Fault]:
         return
     if coupling_of(case).in_turn:
         problem = "takes the rotor's speed as given, and [drive] leaves it free."
-        yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] in place of [drive].")
+        yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] instead of [drive].")
     if case.axial is not None:
         problem = "goes by a speed that is known beforehand, and [drive] leaves it free."
-        yield Fault("axial", "", None, problem, "Leave it out, or write [speed] in place of [drive].")
+        yield Fault("axial", "", None, problem, "Leave it out, or write [speed] instead of [drive].")
     if case.drive.reaction and case.bases:
         problem = "acts on a rotor whose ground is at rest, and [base] moves it."
         yield Fault("drive.reaction", "true", None, problem, "Leave one of the two out.")
@@ -121,7 +121,7 @@ def given_speed_faults(case: Case) -> Iterator[Fault]:
     """Limit cycles, kinematic tests and the ladder are at given speeds."""
     if case.drive is not None:
         problem = "leaves the speed free, and this analysis needs a given one."
-        yield Fault("drive", "", None, problem, "Write [speed] in place of [drive].")
+        yield Fault("drive", "", None, problem, "Write [speed] instead of [drive].")
 
 
 def speed_faults(case: Case) -> Iterable[Fault]:
@@ -133,7 +133,7 @@ def speed_faults(case: Case) -> Iterable[Fault]:
 def number_faults(case: Case) -> Iterator[Fault]:
     """A symmetric rotor has one bearing with a film for both."""
     if len(case.bearings) > 1 and case.rotor.symmetric:
-        both = "one bearing with a film, which stands for both of a symmetric rotor, and any with given coefficients"
+        both = "one bearing with a film, which represents both of a symmetric rotor, and any with given coefficients"
         yield _missing("bearing", f"{len(case.bearings)} bearings", both)
 
 

@@ -76,7 +76,7 @@ def held_ring_faults(case: Case) -> Iterator[Fault]:
 
 def held_film_faults(case: Case) -> Iterator[Fault]:
     """The film between a ring that does not turn and its shell has no coefficients where it cavitates at once, and no
-    rest where it keeps its oil."""
+    static equilibrium where it is mass-conserving."""
     for held in _held_rings(case):
         for film in held.outer:
             law = law_named(case.cavitation(film))

@@ -25,7 +25,7 @@ LEFT_OUT = {name: field.default for name, field in Case.model_fields.items() if 
 
 def tested_case(case: Case) -> Case:
     """The case of the film that motion.film names, without a rotor; the case itself where it names none. The tilt of
-    the journal is that of the motion."""
+    the journal is given by the motion."""
     if case.film.tilt != "none":
         case = altered(case, {"film": altered(case.film, {"tilt": "none"})})
     index = _index(case)
@@ -46,11 +46,11 @@ def choice_faults(case: Case, test: str) -> Iterator[Fault]:
     """A film that is not named among several, or is none of the case, or is not the film of one gap alone."""
     names = [place.name for place in bearing_films(case)]
     asked = "" if case.motion is None else case.motion.film
-    told = f"Films of the case: {', '.join(names)}."
+    hint = f"Films of the case: {', '.join(names)}."
     if not asked:
         if len(names) > 1:
             problem = f"is missing: the case has {len(names)} films, and a {test} moves the journal of one."
-            yield Fault("motion.film", "", None, problem, f'Write e.g. motion.film = "{names[0]}". {told}')
+            yield Fault("motion.film", "", None, problem, f'Write e.g. motion.film = "{names[0]}". {hint}')
         return
     index = _index(case)
     if index is None:

@@ -49,18 +49,18 @@ def site_of(case: Case) -> Site:
 def element_parts(case: Case) -> Parts:
     """What all elements of a case add to the machine."""
     site = site_of(case)
-    found = [element.parts(site) for element in elements_of(case)]
+    added = [element.parts(site) for element in elements_of(case)]
     return Parts(
-        bodies=tuple(body for parts in found for body in parts.bodies),
-        links=tuple(link for parts in found for link in parts.links),
-        forces=tuple(force for parts in found for force in parts.forces),
-        loads=tuple(load for parts in found for load in parts.loads),
-        ports=tuple(port for parts in found for port in parts.ports),
+        bodies=tuple(body for parts in added for body in parts.bodies),
+        links=tuple(link for parts in added for link in parts.links),
+        forces=tuple(force for parts in added for force in parts.forces),
+        loads=tuple(load for parts in added for load in parts.loads),
+        ports=tuple(port for parts in added for port in parts.ports),
     )
 
 
 def harmonics_of(case: Case) -> tuple[Harmonic, ...]:
-    """The harmonic loads of a case beside the unbalance, each on the x and y of its place."""
+    """The harmonic loads of a case besides the unbalance, each on the x and y of its place."""
     return tuple(load for _, load in element_parts(case).loads if isinstance(load, Harmonic))
 
 
@@ -118,13 +118,13 @@ def element_forces(
         return np.asarray(nodes[link.inside] @ q - outside)
 
     def force(parts: Parts) -> NDArray[np.complex128]:
-        found = np.zeros(2, dtype=np.complex128)
+        total = np.zeros(2, dtype=np.complex128)
         for link, part in parts.links:
             stiffness, damping, mass = part.at(omega)
-            found -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
+            total -= (stiffness + 1j * frequency * damping - frequency**2 * mass) @ motion(link)
         for name, link, _ in parts.ports:
-            found += (slopes[name].by_displacement + 1j * frequency * slopes[name].by_velocity) @ motion(link)
-        return found
+            total += (slopes[name].by_displacement + 1j * frequency * slopes[name].by_velocity) @ motion(link)
+        return total
 
     return np.array([force(element.parts(site)) for element in _bearing_elements(case)]).reshape(-1, 2)
 
@@ -143,7 +143,7 @@ def changes_with_speed(case: Case) -> bool:
 def element_decisions(case: Case) -> Iterator[Line]:
     """What the plan says of elements: choice, value, reason."""
     site = site_of(case)
-    return (element.told(site) for element in elements_of(case))
+    return (element.plan_line(site) for element in elements_of(case))
 
 
 def element_faults(case: Case) -> list[Fault]:
@@ -185,24 +185,24 @@ def first_without_film(case: Case) -> tuple[str, str]:
 
 def support_faults(case: Case, what: str, remedy: str) -> list[Fault]:
     """The faults of what is more than bearings on the ground, where `what` is of these alone."""
-    return [Fault(each.key, "", None, f"is beside the bearings, and {what}.", remedy) for each in beside_bearings(case)]
+    return [Fault(each.key, "", None, f"adds to the bearings, and {what}.", remedy) for each in beside_bearings(case)]
 
 
 def beside_bearings(case: Case) -> tuple[MachineElement, ...]:
-    """What lets the shells of bearings move, or pulls at the shaft beside them."""
-    return tuple(element for element in elements_of(case) if element.beside)
+    """What lets the shells of bearings move, or pulls at the shaft."""
+    return tuple(element for element in elements_of(case) if element.besides_bearings)
 
 
 def speed_dependent(case: Case, what: str) -> list[Fault]:
     """The faults of elements whose coefficients depend on the speed, where `what` needs constant ones."""
     problem = f"depends on the speed, and {what}."
     remedy = "Give constant stiffness, damping and mass, those at the speed of interest."
-    found = [
+    refusals = [
         Fault(f"{element.key}.over_speed", element.given.name, None, problem, remedy)
         for element in GivenCoefficients.of(case)
         if not element.linear.constant
     ]
     if shaft_of(case).internally_damped:
         turns = f"turns with the shaft, so that its force depends on the speed, and {what}."
-        found.append(Fault("rotor.internal_damping", "", None, turns, "Write 0, or take a run-up."))
-    return found
+        refusals.append(Fault("rotor.internal_damping", "", None, turns, "Write 0, or take a run-up."))
+    return refusals

@@ -21,7 +21,7 @@ from frbcli.scene.shafts.table import shaft_of
 from frbcli.units import display
 
 NEXT = 1e-6  # m: a bearing where two sections meet lies on both
-ALIKE = 0.1  # of the diameter of the shaft, by which that of a journal may differ
+ALIKE = 0.1  # of the diameter of the shaft, by which a journal's may differ
 
 
 @dataclass(frozen=True)
@@ -72,8 +72,8 @@ def findings(case: Case) -> Findings:
 
 
 def static_loads(case: Case) -> tuple[float, ...]:
-    """N on each film, in their order; that of a kinematic test; none where none is known, or where the bearings do not
-    hold the rotor."""
+    """N on each film, in their order; the load of a kinematic test; none where none is known, or where the bearings do
+    not hold the rotor."""
     if case.given_rotor is None:
         return () if case.motion is None or case.motion.load is None else (case.motion.load,)
     rotor = make_rotor(case)
@@ -81,8 +81,8 @@ def static_loads(case: Case) -> tuple[float, ...]:
         loads = held_rotor(rotor).load.reshape(-1, 2) / rotor.multiplicity[:, None]
     except NotConverged:
         return ()
-    found = np.hypot(*loads.T)
-    return tuple(found.tolist()) if np.isfinite(found).all() else ()
+    loads_N = np.hypot(*loads.T)
+    return tuple(loads_N.tolist()) if np.isfinite(loads_N).all() else ()
 
 
 def _film(case: Case, name: str, film: FilmGeometry, load: float, omega: float) -> FilmLoad:
@@ -94,15 +94,15 @@ def remarks(case: Case) -> tuple[str, ...]:
     """What a case has that contradicts itself or is probably not meant, a sentence each."""
     if case.given_rotor is None:
         return ()
-    found: list[str] = []
+    sentences: list[str] = []
     shaft = shaft_of(case)
     if not (shaft.eccentricity or shaft.bow) and not case.forces and not case.bases:
-        found.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
-    return (*found, *_journals_off_the_shaft(case), *_names_off_their_place(case))
+        sentences.append("The rotor has no unbalance: it moves by itself only where it is unstable.")
+    return (*sentences, *_journals_off_the_shaft(case), *_names_off_their_place(case))
 
 
 def _journals_off_the_shaft(case: Case) -> Iterator[str]:
-    """Journals whose diameter is not that of the shaft there."""
+    """Journals whose diameter differs from the shaft's there."""
     ends = np.cumsum([section.length for section in case.shaft])
     for bearing in case.bearings:
         film, position = bearing.films[0], bearing.position

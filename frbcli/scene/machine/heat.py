@@ -2,11 +2,11 @@
 
 The heat of a machine: its nodes, conductances and clearances as arrays, made of a case (docs/heat.md).
 
-The machine at other viscosities and clearances than those of its case, without new tables.
+The machine at viscosities and clearances that differ from its case, without new tables.
 
-The pressure of a film is homogeneous in the velocity w and in the pressures that are given: with s times the scale
-12 eta / psi^2 it is that of the velocity s w. So a table serves for every uniform viscosity and every clearance.
-"""
+The pressure of a film is homogeneous in the velocity w and in the pressures that are given: with s times the scale 12
+eta / psi^2 it equals the pressure of the velocity s w. So a table serves for every uniform viscosity and every
+clearance. """
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Heat:
 
 
 def heat_of(case: Case, value: Callable[[float | OverTime], float] = largest) -> Heat:
-    """The heat of a case that has it. value: of temperatures that change over time, the largest or the first one."""
+    """The heat of a case with [thermal]. value: of temperatures that change over time, the largest or the first one."""
     assert case.heat is not None
     return _Builder(case, case.heat, value).heat()
 
@@ -139,15 +139,15 @@ class _Builder:
 
     def _inlets(self) -> list[int]:
         """The film that feeds each film: an outer film that coupled channels join to the inner one, unless they open to
-        its groove, whose oil is that of the supply."""
-        found: list[int] = []
+        its groove, whose oil comes from the supply."""
+        inlets: list[int] = []
         for bearing in self._case.bearings:
             if isinstance(bearing, FloatingRingBearing):
                 through = coupled(bearing) and not opens_to_groove(bearing)
-                found += [len(found) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
+                inlets += [len(inlets) + 1 if through else FROM_SUPPLY, FROM_SUPPLY]
             else:
-                found.append(FROM_SUPPLY)
-        return found + [FROM_SUPPLY] * len(self._dampers)
+                inlets.append(FROM_SUPPLY)
+        return inlets + [FROM_SUPPLY] * len(self._dampers)
 
     def _single(self, bearing: SingleFilmBearing, film: int) -> None:
         shaft = self._wall(film, bearing.shaft or self._thermal.shaft, f"{bearing.name} shaft".lstrip())

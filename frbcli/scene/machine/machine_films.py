@@ -1,14 +1,7 @@
-"""Films of the machine, also of bearing models.
-
-The films of a planned case: here, and nowhere else, the form that a plan has chosen becomes a kind of films.
-
-The films of a case with a bearing model: compiled, tried, and recorded in a run.
-"""
+"""The films of a planned case: here, and nowhere else, the form that a plan has chosen becomes a kind of films."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -16,10 +9,6 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.film_geometry import FilmGeometry
 from frbcli.case.schema import Case
-from frbcli.case.theories import values_of
-from frbcli.film.bearing_model.checks import fingerprint, model_film, problem_of
-from frbcli.film.bearing_model.film import BearingModelFilm
-from frbcli.film.bearing_model.model import BearingDimensions, BearingModel
 from frbcli.film.cavitation.compiled import given_parameters
 from frbcli.film.cavitation.penalty import Penalty
 from frbcli.film.cells.channels.data import with_channels
@@ -31,7 +20,6 @@ from frbcli.film.grid import Mesh
 from frbcli.film.kinds.cells import CellFilms
 from frbcli.film.kinds.contract import Films
 from frbcli.film.kinds.inclined import InclinedFilms
-from frbcli.film.kinds.models import ModelFilms
 from frbcli.film.kinds.none import NoFilms
 from frbcli.film.kinds.tables import RectangleFilms, SolutionFilms
 from frbcli.film.kinds.tilted import TiltedFilms
@@ -41,13 +29,12 @@ from frbcli.scene.channels import coupled_channels
 from frbcli.scene.films import FilmPlace, centrifugal_pressures, film_places, make_law, volume_film
 from frbcli.scene.forms.cells import CELLS, cells_of
 from frbcli.scene.forms.inclined import INCLINED
-from frbcli.scene.forms.models import GIVEN, chosen_model
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTIONS
 from frbcli.scene.forms.tilted import TILTED
 from frbcli.scene.planning.cell_choice import compared_states
 from frbcli.scene.planning.planned import Plan
-from frbcli.scene.section import film_rectangle, film_section
+from frbcli.scene.section import film_section
 
 # What the balances of a film may be off by over its pace: over the tolerance of a step, and its limits. A film that is
 # off by 1e-4 of its pace in each stage leaves 1e-6 of the clearance in a run.
@@ -58,7 +45,7 @@ SETTLED_OVER_TOLERANCE, SETTLED_RANGE = 4.0, (2e-5, 1e-3)
 def make_films(case: Case, plan: Plan, top_Hz: float | None = None) -> Films:
     """The films of a case as its plan has them, tabulated where they have tables. top_Hz: largest speed of the rotor,
     default that of the run."""
-    makers = {NO_FILM: lambda *_: NoFilms(), CELLS: _cells, SOLUTIONS: _solutions, GIVEN: _models}
+    makers = {NO_FILM: lambda *_: NoFilms(), CELLS: _cells, SOLUTIONS: _solutions}
     makers |= {TILTED: _tilted, INCLINED: _inclined}
     return makers.get(plan.form, _rectangles)(case, plan, top_Hz)
 
@@ -138,11 +125,6 @@ def _inclined(case: Case, plan: Plan, top_Hz: float | None) -> Films:
     return InclinedFilms(_clearances(case), _tilted(case, plan, top_Hz))
 
 
-def _models(case: Case, _: Plan, __: float | None) -> Films:
-    sections = tuple(whole_section(case, place.geometry) for place in film_places(case))
-    return ModelFilms(_clearances(case), tuple(bearing_film(case, section) for section in sections))
-
-
 def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:
     sections = tuple(whole_section(case, place.geometry) for place in film_places(case))
     laws, meshes = case.cavitations, tuple(mesh for _, mesh in plan.films)
@@ -154,44 +136,3 @@ def _rectangles(case: Case, plan: Plan, _: float | None) -> Films:
 def whole_section(case: Case, film: FilmGeometry) -> Section:
     """The section of a film over the whole width, see whole_width of film/gap.py."""
     return whole_width(film_section(case, film))
-
-
-RECORD = "bearing_model"  # among the versions of a run
-
-
-def bearing_film(case: Case, section: Section) -> BearingModelFilm:
-    """The film of a section over the whole width, by the chosen model."""
-    model = chosen_model(case)
-    assert model is not None
-    dimensions = BearingDimensions(
-        width=section.bearing_width,
-        diameter=2.0 * section.radius,
-        clearance=section.clearance,
-        viscosity=section.viscosity,
-        sections=section.copies,
-        section_width=section.width,
-        ambient_pressure=section.ambient_pressure,
-        cavitation_pressure=section.cavitation_pressure,
-        supply_pressure=section.ambient_pressure + section.far_pressure,
-    )
-    return model_film(model, dimensions, values_of(model, case.film))
-
-
-def force_problems(case: Case, model: BearingModel, omega: float) -> Iterator[str]:
-    """What is wrong with the forces that a model gives for each film; omega: highest speed of the rotor, rad/s."""
-    for place in film_places(case):
-        rectangle = film_rectangle(film_section(case, place.geometry))
-        assert rectangle is not None
-        if problem := problem_of(model, bearing_film(case, rectangle), omega):
-            yield problem
-
-
-def model_record(case: Case) -> dict[str, str]:
-    """The record of the bearing model of a run, empty for films of the program."""
-    model = chosen_model(case)
-    if model is None:
-        return {}
-    rectangles = (film_rectangle(film_section(case, place.geometry)) for place in film_places(case))
-    omega = 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
-    forces = ", ".join(fingerprint(bearing_film(case, found), omega) for found in rectangles if found is not None)
-    return {RECORD: f"{model.name}, added from Python; forces {forces}"[:200]}

@@ -58,17 +58,17 @@ FILM_OPERATION = (
 
 
 def operating_points(case: Case) -> tuple[FilmOperation, ...]:
-    """Every film of a case at its top speed: that of [speed], or that of a kinematic test."""
+    """Every film of a case at its top speed: of [speed], or of a kinematic test."""
     omega = 2.0 * math.pi * _top_speed(case)
-    found: list[FilmOperation] = []
+    operations: list[FilmOperation] = []
     for bearing in case.bearings:
         if isinstance(bearing, SingleFilmBearing):
             strain = shaft_rotation_strain(_shaft(case), omega, 0.5 * bearing.diameter)
-            found.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
+            operations.append(_operation(case, bearing, bearing.name or "film", omega, -strain))
         else:
-            found.extend(_floating(case, bearing, omega))
-    found += [_operation(case, each.given, each.film, 0.0, 0.0) for each in DamperElement.of(case)]
-    return tuple(found)
+            operations.extend(_floating(case, bearing, omega))
+    operations += [_operation(case, each.given, each.film, 0.0, 0.0) for each in DamperElement.of(case)]
+    return tuple(operations)
 
 
 def _floating(case: Case, bearing: FloatingRingBearing, omega: float) -> tuple[FilmOperation, FilmOperation]:

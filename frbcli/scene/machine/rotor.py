@@ -67,7 +67,7 @@ def _bodies_and_links(
 
 
 def _ring_node(bearing: FloatingRingBearing) -> str:
-    """The node of a ring: of a cartridge, that of one end."""
+    """The node of a ring: of a cartridge, the node of one end."""
     return f"ring_{bearing.name}".rstrip("_")
 
 

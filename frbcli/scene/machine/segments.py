@@ -25,15 +25,15 @@ class Segment:
 
 def make_segments(case: Case, plan: Plan) -> tuple[Segment, ...]:
     """The machine of a case in all segments of a run, the first from its beginning; films are tabulated here."""
-    found, steps = list[Segment](), step_times(case)
+    segments, steps = list[Segment](), step_times(case)
     for start in (0.0, *change_times(case)):
         then = case_at(case, start)
         free = case.drive is not None
-        if found and start not in steps:
-            before = found[-1].system
+        if segments and start not in steps:
+            before = segments[-1].system
             rotor = make_rotor(then, COORDINATES[: before.films.coordinates], free_speed=free)
             system = replace(before, rotor=rotor)
         else:
             system = make_system(then, plan, free_speed=free)
-        found.append(Segment(start, then, system))
-    return tuple(found)
+        segments.append(Segment(start, then, system))
+    return tuple(segments)

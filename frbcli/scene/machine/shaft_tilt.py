@@ -1,9 +1,8 @@
 """By how much a shaft tilts in its bearings, and what that would change in gaps that are taken as even along the axis.
 
-The journals stand in the middle of their shells: they are held there, so that no film has to be solved. At rest the
+The journals are in the middle of their shells: they are held there, so that no film has to be solved. At rest the
 weight bends the shaft, at the top speed the unbalance does; in a conical whirl both ends of the shaft pass through
-their gaps against each other, which tilts it the most.
-"""
+their gaps against each other, which tilts it the most. """
 
 from __future__ import annotations
 
@@ -22,8 +21,8 @@ from frbcli.scene.films import ROTOR, film_places
 from frbcli.scene.gate.rule import run_omega
 from frbcli.scene.machine.rotor import make_rotor
 
-# Shares of the clearance from which a change of the gap at the ends is told, of bent shafts and of conical whirls.
-BENT_TOLD, CONE_TOLD = 0.1, 0.25
+# Shares of the clearance from which a change of the gap at the ends is shown, of bent shafts and of conical whirls.
+BENT_LIMIT, CONE_LIMIT = 0.1, 0.25
 FLAT = 1e-12  # rad: a journal that tilts less is held by a body that does not tilt
 
 
@@ -58,7 +57,7 @@ class FilmTilt:
     @property
     def matters(self) -> bool:
         """Whether the tilt is worth a look."""
-        return self.bent > BENT_TOLD or self.whirling > CONE_TOLD
+        return self.bent > BENT_LIMIT or self.whirling > CONE_LIMIT
 
 
 def _in_mrad(tilt: float) -> str:

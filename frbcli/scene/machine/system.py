@@ -20,7 +20,6 @@ from frbcli.film.roughness.rubbing import Rubbing
 from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.linear import LinearRotor
 from frbcli.scene.films import film_places, turning, turning_rings, turns_with_oil
-from frbcli.scene.forms.models import chosen_model
 from frbcli.scene.machine.machine_films import make_films
 from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.planned import Plan
@@ -33,11 +32,10 @@ class System:
     rotor: the linear system; films: see Films; names: of the films. bodies: (films, 2) what lies inside and outside of
     each film, see FilmPlace; turning: see RotorData; drags: eta R^3 B / C of each whole bearing in N m s, the Couette
     torque per slip and drag_integral; ring_count: of rings that turn; laws: names of the films' cavitation models;
-    torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces;
-    pins: (rings or 0, PIN) of the rings, see solve/pin.py; shell: in which smooth surfaces rest where nothing else
-    carries them, None where contact ends a run; free_speed: whether the rotor has it, whose angle then comes before
-    those of the rings.
-    """
+    torque: see FilmModel; own_length: see length, 0 of a machine with films; asperities: of rough surfaces; pins:
+    (rings or 0, PIN) of the rings, see solve/pin.py; shell: in which smooth surfaces rest where nothing else carries
+    them, None where contact ends a run; free_speed: whether the rotor's speed is free; its angle then comes before the
+    angles of the rings. """
 
     rotor: LinearRotor
     films: Films
@@ -57,8 +55,8 @@ class System:
     def force(
         self, i: int, place: Array, rate: Array, total: float, near: FilmForce | None = None, slip: float | None = None
     ) -> FilmForce:
-        """Force and derivatives of film i, see Films, and of rough surfaces beside it. slip: omega_J - omega_S; without
-        it their friction has the sense of the total, omega_J + omega_S: a ring turns more slowly than its rotor."""
+        """Force and derivatives of film i, see Films, and of its rough surfaces. slip: omega_J - omega_S; without it
+        their friction has the sense of the total, omega_J + omega_S: a ring turns more slowly than its rotor."""
         if self.shell is not None:
             return self.shell.force(
                 lambda felt, felt_rate: self.films.force(i, felt, felt_rate, total, near), place, rate,
@@ -66,7 +64,7 @@ class System:
             )  # fmt: skip
         slip = total if slip is None else slip
         film = self.films.force(i, place, rate, total, near)
-        return self.rubbing(i).beside(film, place, rate, slip, 0.5 * (total - slip))
+        return self.rubbing(i).with_summits(film, place, rate, slip, 0.5 * (total - slip))
 
     def felt(self, i: int, place: Array) -> Array:
         """(coordinates,) what film i feels of a journal at a place: an elastic shell keeps a gap."""
@@ -96,8 +94,8 @@ class System:
     def eccentricities(self, q: Array) -> Array:
         """(films, ...) largest eccentricity along each film, of displacements q (n, ...)."""
         ends = self.films.seen(self.journals_of(q))
-        found = np.hypot(ends[:, 0], ends[:, 1]).reshape(len(self.names), self.films.stations, *q.shape[1:])
-        return np.asarray(found.max(axis=1) / np.reshape(self.clearances, (-1, *(1,) * (q.ndim - 1))))
+        ratios = np.hypot(ends[:, 0], ends[:, 1]).reshape(len(self.names), self.films.stations, *q.shape[1:])
+        return np.asarray(ratios.max(axis=1) / np.reshape(self.clearances, (-1, *(1,) * (q.ndim - 1))))
 
     @property
     def remembering(self) -> tuple[bool, ...]:
@@ -150,8 +148,8 @@ class System:
 def make_system(
     case: Case, plan: Plan, rotor: LinearRotor | None = None, top_Hz: float | None = None, free_speed: bool = False
 ) -> System:
-    """The system of a case; its films are tabulated here. rotor: default that of the case; top_Hz: largest speed of the
-    rotor, default that of the run; free_speed: whether its speed is."""
+    """The system of a case; its films are tabulated here. rotor: default: of the case; top_Hz: largest speed of the
+    rotor, default: of the run; free_speed: whether its speed is free."""
     places, ringed = film_places(case), turning_rings(case)
     films = make_films(case, plan, top_Hz)
     with_oil = [plan.form.turns_cells and turns_with_oil(case, place) for place in places]
@@ -200,7 +198,5 @@ def rubbing_of(case: Case) -> Rubbing:
 
 
 def film_drag(case: Case, film: FilmGeometry) -> float:
-    """eta R^3 B / C of a whole bearing in N m s, see System; of a bearing model the share of it that it is sheared."""
-    model = chosen_model(case)
-    sheared = 1.0 if model is None else model.sheared
-    return sheared * case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance
+    """eta R^3 B / C of a whole bearing in N m s, see System."""
+    return case.viscosity(film) * (0.5 * film.diameter) ** 3 * film.width / film.clearance

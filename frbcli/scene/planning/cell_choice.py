@@ -1,8 +1,7 @@
 """Cells of finite-volume films: what their number makes of the error of a run, and the fewest that hold a target.
 
-The error of the eccentricities before a whirl grows is that of the cells around plus that of the cells along, measured
-on the shipped cases and some changes of them against 144 x 10 or 192 x 6 cells (docs/accuracy.md).
-"""
+The error of the eccentricities before a whirl grows is the sum of the errors of the cells around and along, measured on
+the shipped cases and some changes of them against 144 x 10 or 192 x 6 cells (docs/accuracy.md). """
 
 from __future__ import annotations
 
@@ -21,13 +20,13 @@ from frbcli.scene.section import film_section
 USUAL = (48, 6)  # cells around and along for which the errors are tabulated
 FEWEST = (12, 3)
 AROUND = (32, 40, 48, 56, 64, 72, 80, 96, 112, 128, 144, 160, 192)
-# Lengths of columns that have a fast elimination (film/cells/elimination/ring_solver.py), but that of too few cells.
+# Lengths of columns that have a fast elimination (film/cells/elimination/ring_solver.py), except too few cells.
 ALONG = (4, 5, 6, 8, 10)
 FEWER_AROUND = (12, 16, 20, 24, 28)  # to compare with
 COARSER, FEWER = 1.5, (0.5, 0.85)  # by how much at least; share of the cells in each direction
-# The same with feed holes, if there are such cells: of cells that differ less, holes that stand badly between the
-# coarser ones tell most. floating-ring-table-7-1 on 80 x 10 cells states 7.6 times its error beside 64 x 8, 5.4 times
-# beside 56 x 8.
+# The same with feed holes, if there are such cells: of cells that differ less, holes that lie badly between the coarser
+# ones dominate. floating-ring-table-7-1 on 80 x 10 cells states 7.6 times its error compared with 64 x 8, 5.4 times
+# compared with 56 x 8.
 OF_HOLES = 2.2
 FAST, SLOW = (3, *ALONG), 3.0  # what others cost more
 FAST_TILTED = (*ALONG, 12, 14, 16)  # of films that follow a tilt
@@ -36,14 +35,14 @@ CELLS_DOUBLE = 16.0  # cells along that double the time of a cell
 MOST_STATES, FEWEST_STATES = 8, 2
 KNEE = 1.5  # error over the least one that can be had, where the target is out of reach: less costs twice as much
 BEYOND = 2.0  # order of the cells along outside of what was measured
-MEASURED_AT = 0.85  # largest eccentricity of the films whose errors stand here; growth is told from there on
+MEASURED_AT = 0.85  # largest eccentricity of the films with these errors; growth counts from there on
 
 
 @dataclass(frozen=True)
 class CellError:
     """The error of films of one kind by their cells. around: of USUAL cells around, of an order; along: by the cells
     along; least: cells around, below which the error is a matter of chance; growth: power of the smallest gap with
-    which the error of the cells around grows; coarser: error of cells to compare with over that of the cells."""
+    which the error of the cells around grows; coarser: error of cells to compare with over the error of the cells."""
 
     around: float
     order: float
@@ -70,9 +69,9 @@ class CellError:
         return float(self.along[below] ** (1.0 - share) * self.along[above] ** share)
 
 
-# Without openings, with lobes, with grooves across, with bores or pockets; films that keep their oil are carried on by
-# cells that turn with it where there are no openings, by cells at rest else.
-# Plain films of laws that keep no oil, eccentricities of 0.92 to 0.98: 1.2e-3 to 3e-3, of others up to 0.8e-3.
+# Without openings, with lobes, with grooves across, with bores or pockets; mass-conserving films are carried on by
+# cells that turn with it where there are no openings, by cells at rest else. Plain films of laws that keep no oil,
+# eccentricities of 0.92 to 0.98: 1.2e-3 to 3e-3, of others up to 0.8e-3.
 PLAIN = CellError(3.5e-4, 2.0, {4: 4.8e-3, 5: 2.2e-3, 6: 1.1e-3, 8: 5e-4, 10: 3e-4}, growth=1.0)
 PLAIN_OIL = replace(PLAIN, growth=0.5)
 LOBES = CellError(4e-4, 2.0, {4: 3e-4, 6: 1e-4, 8: 5e-5})
@@ -107,7 +106,7 @@ class WorstFilm:
     fewest: int = FEWEST[0]
 
     def of(self, cells: tuple[int, float]) -> float:
-        """Expected error of the eccentricities with cells (around, along): that of the worst film."""
+        """Expected error of the eccentricities with cells (around, along), of the worst film."""
         return max(film.of(cells) for film in self.films)
 
     @property
@@ -117,7 +116,7 @@ class WorstFilm:
 
     @property
     def coarser(self) -> float:
-        """Error of cells to compare with over that of the cells."""
+        """Error of cells to compare with over the error of the cells."""
         return max(film.coarser for film in self.films)
 
 
@@ -126,8 +125,8 @@ def worst_film(case: Case, eccentricity: float | None) -> WorstFilm:
     places = film_places(case)
     kinds = (_kind(case, place) for place in places)
     around = (least_around(film_section(case, place.geometry, place.feed_holes)) for place in places)
-    found = tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds)
-    return WorstFilm(found, max(FEWEST[0], *around))
+    limited = tuple(kind if eccentricity is None else kind.at(eccentricity) for kind in kinds)
+    return WorstFilm(limited, max(FEWEST[0], *around))
 
 
 def gap_ratio(expected: float, reached: float) -> float:
@@ -156,10 +155,10 @@ def fewest_cells(
 def given_cells(mesh: tuple[int, int], fewest: int = FEWEST[0]) -> tuple[tuple[int, int], str]:
     """Cells (around, along) for a mesh (along, around) that a case sets, and why. fewest: around."""
     along, around = mesh
-    found = max(around, fewest), max(along, FEWEST[1])
-    if found == (around, along):
-        return found, "set in the case"
-    return found, f"[{along}, {around}] is set in the case, fewer than a film needs"
+    cells = max(around, fewest), max(along, FEWEST[1])
+    if cells == (around, along):
+        return cells, "set in the case"
+    return cells, f"[{along}, {around}] is set in the case, fewer than a film needs"
 
 
 def cells_time(around: int, along: int, fast: tuple[int, ...] = FAST) -> float:

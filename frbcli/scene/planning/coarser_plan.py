@@ -1,4 +1,4 @@
-"""The plan of a second, coarser run, whose difference to the run tells how uncertain is what is read off it."""
+"""The plan of a second, coarser run, whose difference to the run shows how uncertain its results are."""
 
 from __future__ import annotations
 
@@ -12,16 +12,16 @@ from frbcli.scene.costs.course import ERROR_ORDERS
 from frbcli.scene.costs.preparation import memory_B
 from frbcli.scene.planning.planned import Plan
 
-LOOSER = 3.0  # tolerance of a step over that of the run
-COARSER = 0.75  # elements in each direction over those of the run
+LOOSER = 3.0  # tolerance of a step over the run's
+COARSER = 0.75  # elements in each direction over the run's
 FEWEST_ELEMENTS = 2, 24  # axial, around
 SHARE = 1.0 / 3.0  # of the CPU time of a run that a second one may take unasked
 
 
 def coarser_plan(case: Case, plan: Plan) -> Plan:
-    """The plan with fewer cells or elements, a larger tolerance and longer steps; cells: those of the stated error of a
-    run. Where the steps of a revolution are as few as a run may take, the tolerance decides nothing: they are as many
-    fewer as make the error of a step of the method as much larger as the tolerance."""
+    """The plan with fewer cells or elements, a larger tolerance and longer steps; cells: the cells of the stated error
+    of a run. Where the steps of a revolution are as few as a run may take, the tolerance decides nothing; their number
+    is then reduced so that the error of a step grows by the same factor as the tolerance."""
     films = tuple((form, _coarser(mesh)) for form, mesh in plan.films)
     cells = plan.form.fewer_cells(case, plan) or plan.cells
     steps = plan.steps_per_revolution / LOOSER ** (1.0 / ERROR_ORDERS[plan.method])
@@ -45,7 +45,7 @@ def second_run_s(case: Case, plan: Plan, profile: SpeedProfile) -> float:
 
 
 def is_cheap(second_s: float, cost: ExpectedCost) -> bool:
-    """Whether a second run of so many s of CPU time is made unasked, beside a run of that cost."""
+    """Whether a second run of so many s of CPU time is made unasked, after a run of that cost."""
     return second_s <= SHARE * cost.run_s
 
 

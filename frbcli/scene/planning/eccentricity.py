@@ -31,7 +31,7 @@ from frbcli.scene.shafts.table import shaft_of
 
 # The mean error of a short section is SHORT (b/D)^2 (1 - eps)^-SHORT_POWER, to 20 % for b/D <= 0.4.
 SHORT, SHORT_POWER = 0.45, 1.3
-CLOSEST = 0.02  # smallest gap over the clearance that is told
+CLOSEST = 0.02  # smallest gap over the clearance that is distinguished
 
 
 def slenderness_of(film: FilmGeometry) -> float:
@@ -46,7 +46,7 @@ def short_error(slender: float, eccentricity: float) -> float:
 
 def mobility(e: Array, slender: float) -> Array:
     """(2,) velocity over the clearance of a journal at e (2,) in a film that cavitates, under a load W along -y, over
-    psi^2 W / (b D eta), beside that with which the oil turns.
+    psi^2 W / (b D eta), in addition to the mean velocity of the oil.
 
     The mobility of the short bearing (Booker, "Dynamically loaded journal bearings: mobility method of solution",
     J. Basic Eng. 87, 1965), and more by the force that a longer bearing lacks.
@@ -157,7 +157,7 @@ def run_up_profile(case: Case) -> SpeedProfile:
 
 
 def run_down_profile(case: Case) -> SpeedProfile:
-    """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which tell the way down
+    """Up, hold, and back down (section 7.2.2). Raises InputError for a speed through points, which define the way down
     themselves, for an axial load over time, and for a table over time that ends before."""
     speed = case.speed
     if case.drive is not None:

@@ -16,7 +16,6 @@ from frbcli.scene.films import film_places, turning_rings
 from frbcli.scene.forms.cells import CELLS, CellForm
 from frbcli.scene.forms.form import FilmForm
 from frbcli.scene.forms.inclined import INCLINED
-from frbcli.scene.forms.models import GIVEN, WHY
 from frbcli.scene.forms.none import NO_FILM
 from frbcli.scene.forms.solutions import SOLUTION_ERROR, SOLUTION_MESH, SOLUTIONS, table_obstacle
 from frbcli.scene.forms.tables import CHAINS, CLIPPED, CLOSED_FORM, FIELDS, MOST_EXPENSIVE_FIRST, TABLE
@@ -36,7 +35,7 @@ TABLE_FLOOR, FIELDS_FLOOR = 1e-4, 6e-4
 # Errors at SOLVED_HOLDS_TO between axial grooves, for widths up to the diameter; larger for wider bearings.
 CHAIN_ERROR = {Mesh(3, 48): 8.5e-4, Mesh(6, 48): 5e-4, Mesh(9, 72): 4e-4, Mesh(10, 192): 2e-4}
 CHAIN_FLOOR = 8.5e-4
-CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells: beside rings their largest error is known
+CELL_SHARE, RING_SHARE = 0.8, 0.85  # of the target, by cells: with rings their largest error is known
 REACHED = 0.95  # error of the cells over the target up to which it counts as met: with the steps that is 1.2 of it
 LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth order
 
@@ -66,8 +65,6 @@ def form_of(case: Case) -> FilmForm:
         return NO_FILM
     if case.film.tilt == "follows":
         return TILTED
-    if case.film.bearing_model:
-        return GIVEN
     if any(misaligned(case)):
         return INCLINED
     if _on_volumes(case):
@@ -77,18 +74,13 @@ def form_of(case: Case) -> FilmForm:
 
 def choose_films(case: Case, target: float) -> FilmChoice:
     """The cheapest film that holds a target, or what the case sets."""
-    choices = {NO_FILM: _no_film, GIVEN: _given, SOLUTIONS: _solutions}
+    choices = {NO_FILM: _no_film, SOLUTIONS: _solutions}
     choices |= {CELLS: _volumes, TILTED: _volumes, INCLINED: _volumes}
     return choices.get(form_of(case), _rectangles)(case, target)
 
 
 def _no_film(_: Case, __: float) -> FilmChoice:
     return FilmChoice(str(NO_FILM), NO_FILM, DEFAULT_MESH, None, 0.0, "", "")
-
-
-def _given(case: Case, _: float) -> FilmChoice:
-    each = ((GIVEN, DEFAULT_MESH),) * len(film_places(case))
-    return FilmChoice(case.film.theory, GIVEN, DEFAULT_MESH, None, 0.0, WHY, "", each)
 
 
 def _volumes(case: Case, target: float) -> FilmChoice:
@@ -145,8 +137,6 @@ def _rectangles(case: Case, target: float) -> FilmChoice:
 
 def all_clipped(case: Case) -> bool:
     """Whether every film is the clipped solution of a linear equation."""
-    if case.film.bearing_model:
-        return False
     return all(law_named(model).closed for model in case.cavitations)
 
 
@@ -187,7 +177,7 @@ def _size(mesh: Mesh) -> int:
 
 
 def _mesh_error(form: FilmForm, mesh: Mesh, slenderness: float) -> float:
-    """Error of any mesh: that of the next coarser one in the tables."""
+    """Error of any mesh, taken from the next coarser one in the tables."""
     table = CHAIN_ERROR if form == CHAINS else MESH_ERROR
     coarser = [known for known in table if known.axial <= mesh.axial and known.circumferential <= mesh.circumferential]
     coarsest = next(iter(table))

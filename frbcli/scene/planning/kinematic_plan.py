@@ -10,7 +10,6 @@ from frbcli.case.film_geometry import FilmGeometry, RingFilm
 from frbcli.case.model import altered
 from frbcli.case.schema import Case
 from frbcli.errors import Fault
-from frbcli.film.bearing_model.model import BearingModel
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.table import label_of, law_named, names
 from frbcli.film.gap import Section, ends_at_ambient, whole_width
@@ -18,13 +17,11 @@ from frbcli.nearest import did_you_mean
 from frbcli.scene.films import make_law
 from frbcli.scene.forms.cells import CELLS
 from frbcli.scene.forms.form import FilmForm
-from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.forms.tables import MODAL, SHORT
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import KINEMATIC, ROTATION, motion_omega
 from frbcli.scene.gate.tested import tested_case
 from frbcli.scene.planning.cell_choice import given_cells
-from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.planning.planned import Decision
 from frbcli.scene.section import film_rectangle, film_section
 from frbcli.scene.supply import unfed_films
@@ -44,10 +41,10 @@ TWO_PI = 2.0 * math.pi
 @dataclass(frozen=True)
 class KinematicPlan:
     """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
-    rectangle: that of the accurate modal film, None where grooves or bores are cut out; cells: (around, along);
-    steps: per period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure;
-    turning: rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11);
-    model: the bearing model that gives the forces, cavitation is empty then."""
+    rectangle: of the accurate modal film, None where grooves or bores are cut out; cells: (around, along); steps: per
+    period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning:
+    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11); model: the
+    bearing model that gives the forces, cavitation is empty then."""
 
     test: str
     cavitation: str
@@ -60,7 +57,6 @@ class KinematicPlan:
     steps: int = STEPS_PER_PERIOD
     turning: float = 0.0
     ramp: float = 0.0
-    model: BearingModel | None = None
 
     @property
     def law(self) -> type[Law]:
@@ -74,34 +70,33 @@ class KinematicPlan:
 
     @property
     def theory(self) -> str:
-        """The theory of the film, or the name of its bearing model."""
-        return self.form.theory_in_tests if self.model is None else self.model.name
+        """The theory of the film."""
+        return self.form.theory_in_tests
 
     @property
     def label(self) -> str:
-        """The label of the cavitation law, or of the bearing model."""
-        return label_of(self.cavitation) if self.model is None else self.model.label
+        """The label of the cavitation law."""
+        return label_of(self.cavitation)
 
     @property
     def modal(self) -> bool:
-        """Whether the pressure is that of the modal film."""
+        """Whether the pressure is from the modal film."""
         return self.form.modal
 
     @property
     def on_cells(self) -> bool:
-        """Whether the force is that of a film on cells."""
+        """Whether the force is from a finite-volume film."""
         return self.form.by_cells
 
 
 def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATION) -> KinematicPlan:
-    """Plan a kinematic test of a case for one cavitation model (None: that of the case).
+    """Plan a kinematic test of a case for one cavitation model (None: the one of the case).
 
     Raises InputError naming everything that the case lacks for it or that this version does not model.
     """
-    model = case.film.bearing_model
-    asked = cavitation or ("" if model else tested_case(case).film.cavitation)
-    case = with_model(case, asked) if asked in names() and not model else case
-    require(case, test, _name_faults(case, asked))
+    asked = cavitation or tested_case(case).film.cavitation
+    case = with_model(case, asked) if asked in names() else case
+    require(case, test, _name_faults(asked))
     case = tested_case(case)
     bearing, motion = case.bearings[0], case.motion
     assert motion is not None
@@ -117,16 +112,12 @@ def kinematic_plan(case: Case, cavitation: str | None = None, test: str = ROTATI
     if own is None:
         section = ends_at_ambient(section) if law.closed and film.ends == "free-to-air" else section
     steps = () if test == ROTATION else (Decision("steps", f"{STEPS_PER_PERIOD} per period", "of equal length"),)
-    chosen = chosen_model(case)
-    if chosen is not None:
-        decisions = (*(Decision(*decided) for decided in model_decisions(chosen)), *steps)
-    else:
-        decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
+    decisions = (*_decisions(case, test, section, form, cells, why), *steps, *_transport(case, film, form))
     if (summits := case.contact.about_summits) is not None:
         decisions += (Decision("contact", *summits),)
     return KinematicPlan(
         test, asked, form, section, rectangle, cells, motion_omega(case), decisions,
-        turning=turning, ramp=film.supply.rise_time, model=chosen,
+        turning=turning, ramp=film.supply.rise_time,
     )  # fmt: skip
 
 
@@ -141,18 +132,13 @@ def law_at(case: Case, plan: KinematicPlan, eccentricity: float) -> Law:
     return make_law(case, plan.cavitation, plan.section).followed(eccentricity, plan.rate)
 
 
-def _name_faults(case: Case, cavitation: str) -> Iterator[Fault]:
+def _name_faults(cavitation: str) -> Iterator[Fault]:
     """Faults of the cavitation model that is asked for."""
-    if case.film.bearing_model and cavitation:
-        problem = f"has no effect on film.theory = {case.film.theory}, a bearing model."
-        yield Fault("--cavitation", cavitation, None, problem, "Leave it out.")
-    elif not case.film.bearing_model and cavitation not in names():
+    if cavitation not in names():
         yield Fault("--cavitation", cavitation, None, "is no model.", did_you_mean(cavitation, names()))
 
 
 def _form(case: Case, rectangle: Section | None) -> FilmForm:
-    if (form := form_of(case)).same_in_tests:
-        return form
     if case.film.theory == "short":
         return SHORT
     on_cells = rectangle is None or tilts(case) or case.contact.flow_factors
@@ -178,7 +164,7 @@ def _decisions(
     yield _gap_decision(section, bearing, tilts(case))
     yield from _tilt_decision(case, test, section)
     yield from _profile_decision(section)
-    yield Decision("film", *form.told_in_tests(case, law))
+    yield Decision("film", *form.decision_in_tests(case, law))
     if bearing.sealing:
         yield Decision("ends", *bearing.sealing)
     elif law.closed and bearing.ends == "free-to-air":
@@ -222,4 +208,4 @@ def _tilt_decision(case: Case, test: str, section: Section) -> list[Decision]:
 
 def _profile_decision(section: Section) -> list[Decision]:
     shell = section.profile
-    return [] if shell is None else [Decision(shell.key, *shell.told(section.clearance))]
+    return [] if shell is None else [Decision(shell.key, *shell.plan_entry(section.clearance))]

@@ -20,7 +20,6 @@ from frbcli.scene.costs.cost import clock
 from frbcli.scene.costs.resolution import reference_length, resolution_decisions
 from frbcli.scene.coupling import FULL, coupling_named, plan_coupling
 from frbcli.scene.films import film_places, rings, turning_rings, turns_with_oil
-from frbcli.scene.forms.models import chosen_model, model_decisions
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import RUN
 from frbcli.scene.inputs import drive_decisions, input_decisions
@@ -103,22 +102,22 @@ def _about_target(case: Case, plan: Plan) -> Decision:
     which = "error of such cells" if plan.form.chosen_by_target else "expected error"
     own = f"{which} {error:.1g}, {clock(_total_s(case, plan))}"
     by_hand = accuracy.mesh is not None or accuracy.tolerance is not None
-    told, needs, knee = f"{accuracy.target:g}", "needs", ""
+    value, needs, knee = f"{accuracy.target:g}", "needs", ""
     if needed > REACHED * accuracy.target:
-        told, needs = f"{told} is out of reach", "nearest to it"
+        value, needs = f"{value} is out of reach", "nearest to it"
         if asked.form.chosen_by_target:
             knee = f"; the cheapest cells within {KNEE:g} times the least error that can be had"
     elif heavily_loaded(case) and asked.form.chosen_by_target:
-        told, knee = f"{told} is not certain", "; errors of steps grow in such a film under such a load"
+        value, knee = f"{value} is not certain", "; errors of steps grow in such a film under such a load"
     if (plan.cells, plan.mesh, plan.tolerance) == (asked.cells, asked.mesh, asked.tolerance):
-        return Decision("target", told, own + knee)
+        return Decision("target", value, own + knee)
     reasons = ["set in the case"] if by_hand else []
     if accuracy.budget is not None and _total_s(case, asked) > accuracy.budget:
         reasons.append(f"budget of {accuracy.budget:g} s")
     why = ", ".join(reasons)
     cost = f"{needed:.1g}, {clock(_total_s(case, asked))}{knee}"
-    needs += f" {asked.form.mesh_told(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
-    return Decision("target", told, f"{needs}; chosen: {own}; {why}")
+    needs += f" {asked.form.mesh_text(asked)} and tolerance {asked.tolerance:.2g}: {cost}"
+    return Decision("target", value, f"{needs}; chosen: {own}; {why}")
 
 
 def _total_s(case: Case, plan: Plan) -> float:
@@ -172,27 +171,21 @@ def _plan(case: Case, target: float) -> Plan:
 
 def _decide_films(case: Case, films: FilmChoice, decide: Decide) -> str:
     """The films: their models, supply and form, and the coupling of rotor and films, which is returned."""
-    model = chosen_model(case)
-    if model is None:
-        _decide_models(case, films, decide)
-    else:
-        for decided in model_decisions(model):
-            decide(*decided)
+    _decide_models(case, films, decide)
     for film in unfed_films(case):
         decide("supply", f"{film.name} {'starves' if film.keeps else 'missing'}".strip(), film.reason)
     coupling, reason = plan_coupling(case)
     decide("coupling", coupling, reason)
-    if model is None:
-        _decide_form(case, films, decide)
+    _decide_form(case, films, decide)
     return coupling
 
 
 def _decide_models(case: Case, films: FilmChoice, decide: Decide) -> None:
     """Theory and cavitation."""
     decide("theory", films.theory, films.theory_why)
-    for told, cavitation, is_set in _cavitations(case):
+    for name, cavitation, is_set in _cavitations(case):
         reason = films.form.about_oil(case, law_named(cavitation))
-        decide("cavitation", told, f"{'set in the case' if is_set else 'the default'}; {reason}")
+        decide("cavitation", name, f"{'set in the case' if is_set else 'the default'}; {reason}")
 
 
 def _decide_scene(case: Case, decide: Decide) -> None:
@@ -245,19 +238,19 @@ def _body(bearing: CartridgeBearing, follows: bool) -> tuple[str, str]:
 
 def _computed(bearing: FloatingRingBearing, tilts: bool) -> tuple[str, str] | None:
     """Mass and inertias of a ring that the case does not give, with what they follow from; None where it gives all."""
-    ring, found, reasons = bearing.ring, [], []
+    ring, numbers, reasons = bearing.ring, [], []
     if ring.given_mass is None:
-        found.append(f"mass {1e3 * bearing.ring_mass:.4g} g")
+        numbers.append(f"mass {1e3 * bearing.ring_mass:.4g} g")
         width = display(bearing.ring_width, "m")
         reasons.append(f"a cylinder of {ring.material}, {width} wide, between both diameters; feed holes are left in")
     if ring.given_inertia is None:
-        found.append(f"inertia {1e6 * bearing.ring_inertia:.4g} kg*mm^2")
+        numbers.append(f"inertia {1e6 * bearing.ring_inertia:.4g} kg*mm^2")
         reasons.append("of a hollow cylinder of its mass, m (D_i^2 + D_o^2) / 8")
     if tilts and ring.tilt_inertia is None:
-        found.append(f"tilt {1e6 * bearing.ring_tilt_inertia:.4g} kg*mm^2")
+        numbers.append(f"tilt {1e6 * bearing.ring_tilt_inertia:.4g} kg*mm^2")
         width = display(bearing.ring_width, "m")
         reasons.append(f"about a diameter, of a hollow cylinder {width} wide: I / 2 + m B^2 / 12")
-    return (", ".join(found), "; ".join(reasons)) if found else None
+    return (", ".join(numbers), "; ".join(reasons)) if numbers else None
 
 
 def _cavitations(case: Case) -> tuple[tuple[str, str, bool], ...]:
@@ -286,10 +279,10 @@ def _decide_form(case: Case, films: FilmChoice, decide: Decide) -> None:
         decide(*decided)
     with_oil = [place.name for place in film_places(case) if turns_with_oil(case, place)]
     if with_oil and films.form.turns_cells:
-        told = "set in the case" if case.film.grid != "auto" else "no openings, and the film keeps its oil"
+        reason = "set in the case" if case.film.grid != "auto" else "no openings, and the film is mass-conserving"
         several = len(with_oil) < len(film_places(case))
         which = f"{', '.join(with_oil)}: half-speed" if several else "half-speed"
-        decide("grid", which, f"{told}; the cells turn as the oil does, so that it does not diffuse")
+        decide("grid", which, f"{reason}; the cells turn as the oil does, so that it does not diffuse")
 
 
 def _time_integration(case: Case, films: FilmChoice, target: float, decide: Decide) -> tuple[str, float, float]:

@@ -24,13 +24,13 @@ class Decision:
 @dataclass(frozen=True, repr=False)
 class Plan:
     """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
-    none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements;
-    films: form and mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for
-    other films; film_error: expected relative error of the forces; method: name of a time integration method;
-    tolerance: local error of a displacement over the clearance; steps_per_revolution: at least; coupling: one of
-    COUPLINGS; macro_step: longest one in s of a co-simulation, else None; length: m, in place of the clearance for
-    machines without films, see reference_length.py; eccentricity: that the cells are chosen for, see FilmChoice; edged:
-    whether films on cells have the edge of their cavity within cells, see VolumeFilm: at rest alone."""
+    none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements; films: form and
+    mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for other films;
+    film_error: expected relative error of the forces; method: name of a time integration method; tolerance: local error
+    of a displacement over the clearance; steps_per_revolution: at least; coupling: one of COUPLINGS; macro_step:
+    longest one in s of a co-simulation, else None; length: m, instead of the clearance for machines without films, see
+    reference_length.py; eccentricity: that the cells are chosen for, see FilmChoice; edged: whether finite-volume films
+    have the edge of their cavity within cells, see VolumeFilm: at rest alone."""
 
     theory: str
     cavitation: str

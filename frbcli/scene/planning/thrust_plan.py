@@ -11,14 +11,14 @@ from frbcli.units import display
 def thrust_plan(case: Case) -> tuple[Decision, ...]:
     """What `frb thrust` models of a case, and why."""
     radial, angular = MESH
-    found = []
+    choices = []
     for bearing in case.thrust_bearings:
         land = "no land" if bearing.taper_angle >= bearing.pad_angle else "a land behind it"
         depth = f"{bearing.profile} of {display(bearing.taper, 'm')}, {land}; grooves at ambient pressure"
-        found.append(Decision("thrust bearing", f"{bearing.name} {bearing.pads} pads, {bearing.side}".strip(), depth))
+        choices.append(Decision("thrust bearing", f"{bearing.name} {bearing.pads} pads, {bearing.side}".strip(), depth))
     return (
-        *found,
-        Decision("cavitation", case.film.cavitation, "only where the pressure falls below that of cavitation"),
+        *choices,
+        Decision("cavitation", case.film.cavitation, "only where the pressure falls below the cavitation pressure"),
         _viscosity(case),
         Decision("mesh", f"{radial} x {angular}", "quadratic elements of a pad, radius by angle"),
         Decision("error", f"from {COARSE[0]} x {COARSE[1]}", "stated with each state by `frb thrust`"),

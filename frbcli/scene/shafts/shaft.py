@@ -48,7 +48,7 @@ class Shaft(ABC):
 
     case: Case
 
-    equal_bearings: ClassVar[int] = 2  # that a bearing of the case stands for
+    equal_bearings: ClassVar[int] = 2  # represented by one bearing of the case
     gyroscopic: ClassVar[bool] = False  # whether its matrices depend on the speed
     tilts: ClassVar[bool] = False  # whether its journals do
     elastic: ClassVar[bool] = False  # whether its disk moves against its journals
@@ -97,7 +97,7 @@ class Shaft(ABC):
     @property
     @abstractmethod
     def eccentricity(self) -> float:
-        """Distance of the centre of mass from the axis by the unbalance, that of all disks and losses in phase, m."""
+        """Distance of the centre of mass from the axis by the unbalance, all disks and losses in phase, m."""
 
     @property
     def bow(self) -> float:

@@ -44,9 +44,9 @@ FREQUENCIES = 3  # bending modes that are shown
 
 @dataclass(frozen=True)
 class FreeShaft:
-    """A shaft in its free modes. modes: all of each plane; reduced: those of its body; journals: places of all
-    bearings, those with a film first; wheels: its disks; collars: places that are held in tilt; bow: what bends it
-    without load, None of a straight one."""
+    """A shaft in its free modes. modes: all of each plane; reduced: the modes of its body; journals: places of all
+    bearings, films first; wheels: its disks; collars: places that are held in tilt; bow: what bends it without load,
+    None of a straight one."""
 
     modes: FreeModes
     reduced: Reduction
@@ -250,8 +250,8 @@ class TurbochargerShaft(Shaft):
 
     @property
     def bow_words(self) -> tuple[str, str]:
-        told = (f"{display(bow.offset, 'm')} at {display(bow.position, 'm')}" for bow in self.case.bows)
-        return ", ".join(told), "off the line through the outermost bearings; between, as a shaft loaded there bends"
+        bends = (f"{display(bow.offset, 'm')} at {display(bow.position, 'm')}" for bow in self.case.bows)
+        return ", ".join(bends), "off the line through the outermost bearings; between, as a shaft loaded there bends"
 
     @property
     def disk_count(self) -> int:

@@ -15,9 +15,9 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.compiled import Indices, compiled
-from frbcli.solve.cosimulation.micro_step import Told, films_follow, parabola
+from frbcli.solve.cosimulation.micro_step import RotorMotion, films_follow, parabola
 from frbcli.solve.films.steps import write_oil
-from frbcli.solve.heat import NO_HEAT, Taken, begin_heat, carry_heat, write_heat
+from frbcli.solve.heat import NO_HEAT, AcceptedStep, begin_heat, carry_heat, write_heat
 from frbcli.solve.inputs import set_inputs
 from frbcli.solve.ring_spin import Rings, make_rings, pinned, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch, rotation
@@ -74,14 +74,14 @@ SLOWEST = 100.0  # rad/s: errors of the journals' velocities count against what 
 class Exchange(NamedTuple):
     """The quantities that rotor and films exchange: columns (m + rings, n) of the films' forces and the torques on the
     rings, responses, as they: what each does to the accelerations, elimination (2, n, 2 n + m + rings) to work in;
-    given (m + rings,) forces and torques; what the films are told; the rings; the scratch of the stages, and another
+    given (m + rings,) forces and torques; recent motion of the rotor; the rings; the scratch of the stages, and another
     one to ask the films for torques alone."""
 
     columns: Array
     responses: Array
     elimination: Array
     given: Array
-    told: Told
+    recent: RotorMotion
     rings: Rings
     scratch: Scratch
     aside: Scratch
@@ -98,7 +98,7 @@ def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
         np.zeros((m + rings, n)),
         np.zeros((2, n, 2 * n + m + rings)),
         np.zeros(m + rings),
-        Told(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
+        RotorMotion(np.zeros(3), np.zeros((3, 2 * m + 2 * rings))),
         make_rings(rings),
         scratch,
         scratch._replace(at=np.zeros((STAGE_ROWS, n)), stage_v=unused, stage_a=unused),
@@ -106,9 +106,10 @@ def make_exchange(rotor: RotorData, scratch: Scratch) -> Exchange:
 
 
 @compiled()
-def _tell(selection: Array, spins: Indices, clearances: Array, q: Array, v: Array, motion: Array) -> float:
-    """motion <- what the films are told of the rotor: journals' displacements and velocities, then angles and speeds of
-    the rings. Returns the largest eccentricity."""
+def _set_motion(selection: Array, spins: Indices, clearances: Array, q: Array, v: Array, motion: Array) -> float:
+    """motion <- displacements and velocities of the journals, then angles and speeds of the rings, at this moment.
+
+    Returns the largest eccentricity."""
     m, rings, largest = selection.shape[0], spins.shape[0], 0.0
     for k in range(m):
         place, rate = 0.0, 0.0
@@ -137,26 +138,26 @@ def _extrapolate(past: Array, t: float, lagrange: Array, given: Array, journal: 
 
 
 @compiled()
-def _recall(past: Array, told: Told) -> None:
-    """told <- the last two macro times."""
+def _recall(past: Array, recent: RotorMotion) -> None:
+    """recent <- the last two macro times."""
     for p in range(2):
-        told.times[p] = past[1 + p, 0]
-        for k in range(told.motions.shape[1]):
-            told.motions[p, k] = past[1 + p, 1 + k]
+        recent.times[p] = past[1 + p, 0]
+        for k in range(recent.motions.shape[1]):
+            recent.motions[p, k] = past[1 + p, 1 + k]
 
 
 @compiled()
 def _remember(past: Array, t_new: float, motion: Array, journal: Array, torque: Array, given: Array) -> None:
     """past moves on to t_new; given <- what the extrapolated forces and torques were off by."""
-    told, m = motion.shape[0], journal.shape[1]
+    motions, m = motion.shape[0], journal.shape[1]
     for k in range(past.shape[1]):
         past[0, k], past[1, k] = past[1, k], past[2, k]
     past[2, 0] = t_new
-    for k in range(told):
+    for k in range(motions):
         past[2, 1 + k] = motion[k]
     for k in range(given.shape[0]):
-        past[2, 1 + told + k] = journal[FORCE, k] if k < m else torque[k - m]
-        given[k] = past[2, 1 + told + k] - given[k]
+        past[2, 1 + motions + k] = journal[FORCE, k] if k < m else torque[k - m]
+        given[k] = past[2, 1 + motions + k] - given[k]
 
 
 @compiled()
@@ -214,7 +215,7 @@ def _move_rotor(
 
 @compiled()
 def _stand(motion: Array, journal: Array) -> None:
-    """X_0 and U of the journals where they are now and how they move, see _tell; with g = 0."""
+    """X_0 and U of the journals where they are now and how they move, see _set_motion; with g = 0."""
     m = journal.shape[1]
     for k in range(m):
         journal[X_0, k], journal[U, k] = motion[k], motion[m + k]
@@ -226,10 +227,12 @@ def _warm_up(
 ) -> int:
     """carry_heat over a macro step, with the journals where they are now, which rows of equations.py then say."""
     journal, bodies, wet = exchange.scratch.journal, exchange.rings.bodies, state.wet
-    _stand(exchange.told.motions[2], journal)
-    taken = Taken(step, 0.0, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness, ())
+    _stand(exchange.recent.motions[2], journal)
+    accepted = AcceptedStep(
+        step, 0.0, rotor.torque_terms[1], control.contact_eccentricity, control.contact_stiffness, ()
+    )
     turning, clearances, drag = rotor.turning, rotor.clearances, rotor.drag
-    return carry_heat(heat, films, work, turning, journal, bodies, wet, taken, clearances, drag)
+    return carry_heat(heat, films, work, turning, journal, bodies, wet, accepted, clearances, drag)
 
 
 @compiled()
@@ -272,7 +275,7 @@ def _advance(
     weights, moments, defect, stages = tableau.stage, tableau.times, tableau.defect, tableau.times.shape[0]
     tolerance, stiffness = control.tolerance, control.contact_stiffness
     gamma, order, limit = weights[1, 1], float(tableau.error_order), limit_of(stiffness)
-    _, _, _, given, told, turning, scratch, aside = exchange
+    _, _, _, given, recent, turning, scratch, aside = exchange
     selection, products, loads, spread, compliance, elimination, at, journal, stage_v, stage_a = scratch
     lagrange, q_new, out_q, out_v, out_oil = np.zeros(3), np.zeros(q.shape[0]), output.q, output.v, output.oil
     written, done = 0, 0
@@ -305,12 +308,12 @@ def _advance(
 
         t_new = end_of_step(t, step, times[piece + 1])
         displace(weights[stages - 1], stage_v, step, q, q_new)
-        _recall(past, told)
-        told.times[2] = t_new
-        largest = _tell(selection, spins, clearances, q_new, stage_v[:, stages - 1], told.motions[2])
+        _recall(past, recent)
+        recent.times[2] = t_new
+        largest = _set_motion(selection, spins, clearances, q_new, stage_v[:, stages - 1], recent.motions[2])
         if not largest < limit:  # the films cannot be asked there any more
             return CONTACT if stiffness == 0.0 and math.isfinite(largest) else STUCK, written
-        if not films_follow(films, work, rotor, tableau, control, state, heat, piece, told, exchange):
+        if not films_follow(films, work, rotor, tableau, control, state, heat, piece, recent, exchange):
             return STUCK, written
         before = written
         written = write_outputs(numbers, stage_v, control.output_step, step, t_new, q, q_new, out_q, out_v, written)
@@ -320,7 +323,7 @@ def _advance(
         write_heat(heat, output.heat, before, written, until_end, control.output_step, step)
         _ask_for_torques(films, work, rotor, control, aside, turning)
         move_on(q, v, a, q_new, stage_v, stage_a)
-        _remember(past, t_new, told.motions[2], journal, turning.torque, given)
+        _remember(past, t_new, recent.motions[2], journal, turning.torque, given)
         off = _amend(rotor, speed, exchange, compliance, a)
         done += 1
         status = count_step(numbers, state.errors, control, t_new, step, speed, error * tolerance + off * step, largest)

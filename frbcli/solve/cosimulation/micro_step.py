@@ -23,7 +23,7 @@ from frbcli.solve.step import SMALLEST_STEP, shorter, step_after
 from frbcli.solve.tableau import Tableau
 
 # Behind the numbers of a state: steps of the films, how many of them were repeated, the next one in s, and whether the
-# films keep their oil: those that do not are solved once per macro step.
+# films are mass-conserving: those that do not are solved once per macro step.
 MICRO_STEPS, MICRO_REJECTED, MICRO_STEP, FILMS_REMEMBER, CO_NUMBERS = range(NUMBERS, NUMBERS + 5)
 UNSOLVED_SHARE = 0.25  # of a step whose films were not solved, to be tried instead
 
@@ -34,7 +34,7 @@ def parabola(times: Array, t: float, weights: Array) -> None:
     weights[0], weights[1], weights[2] = lagrange(times[0], times[1], times[2], t)
 
 
-class Told(NamedTuple):
+class RotorMotion(NamedTuple):
     """The motion of the rotor as the films know it: motions (3, 4 films + 2 rings) of journals and rings at the macro
     times (3,), the films being at the second one: see macro_step.py."""
 
@@ -44,11 +44,11 @@ class Told(NamedTuple):
 
 @compiled()
 def _move_journals(
-    told: Told, t: float, g: float, journal: Array, bodies: Array, angles: Array, lagrange: Array
+    recent: RotorMotion, t: float, g: float, journal: Array, bodies: Array, angles: Array, lagrange: Array
 ) -> None:
     """U of the journals at the time t and X_0, g U short of where they are; speeds and angles of the rings."""
-    motions, m, rings = told.motions, journal.shape[1], bodies.shape[0] - 1
-    parabola(told.times, t, lagrange)
+    motions, m, rings = recent.motions, journal.shape[1], bodies.shape[0] - 1
+    parabola(recent.times, t, lagrange)
     for k in range(m):
         place, rate = 0.0, 0.0
         for p in range(3):
@@ -95,7 +95,7 @@ def _oil_error(defect: Array, stage_oil: Array, step: float) -> float:
 @compiled(makes_arrays=True)
 def films_follow(
     films: Any, work: Any, rotor: RotorData, tableau: Tableau, control: Control, state: State, heat: Any, piece: int,
-    told: Told, exchange: Any,
+    recent: RotorMotion, exchange: Any,
 ) -> bool:  # fmt: skip
     """Take the films through a macro step; FORCE is then theirs. exchange: see macro_step.py. Returns whether that
     succeeded."""
@@ -104,8 +104,8 @@ def films_follow(
     weights, moments, order, tolerance = tableau.stage, tableau.times, float(tableau.error_order), control.tolerance
     journal, bodies, angles = exchange.scratch.journal, exchange.rings.bodies, exchange.rings.angles
     remembers = numbers[FILMS_REMEMBER] != 0.0
-    lagrange = told.times.copy()
-    stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], told.times[1], told.times[2]
+    lagrange = recent.times.copy()
+    stages, gamma, t, end = moments.shape[0] if remembers else 2, weights[1, 1], recent.times[1], recent.times[2]
     wanted = min(numbers[MICRO_STEP], end - t) if remembers else end - t
     while t < end:
         step = end - t
@@ -115,9 +115,9 @@ def films_follow(
         for s in range(1, stages):
             reach = moments[s] * step if remembers else step
             _, bodies[0], angles[0] = rotation(times, speeds, profile_angles, piece, t + reach)
-            _move_journals(told, t + reach, g, journal, bodies, angles, lagrange)
+            _move_journals(recent, t + reach, g, journal, bodies, angles, lagrange)
             set_speeds(turning, bodies, angles, journal, work.grids)
-            warm_stage(heat, films, rotor.drag, clearances, state.wet, bodies, t + reach - told.times[1])
+            warm_stage(heat, films, rotor.drag, clearances, state.wet, bodies, t + reach - recent.times[1])
             supply_warm(rotor.inputs, films, heat)
             lag = moments[s] / moments[s - 1] if moments[s - 1] > 0.0 else 1.0
             begin_stage(films, work, state.wet, state.flows, weights, s, step, g, reach / numbers[STEP_DONE], lag)

@@ -1,9 +1,8 @@
 """Films with cells at both ends of a stage and of a step of the time loop, compiled.
 
 Oil is the state of cells: a stage asks for rate H theta - past = -(net outflow), and the rates of all stages are added
-up as those of the velocities are. What a linearised step leaves of the balance stays in the oil that is carried on, so
-that none is lost.
-"""
+up as for the velocities. What a linearised step leaves of the balance stays in the oil that is carried on, so that none
+is lost. """
 
 from __future__ import annotations
 
@@ -75,7 +74,7 @@ def cell_arrays(wet: Array, sides: int, stages: int) -> CellArrays:
 
 
 def make_cell_work(films: VolumeFilms, wet: Array, stages: int) -> Work:
-    """Scratch for films on cells and their state wet (WET, F, m, k)."""
+    """Scratch for finite-volume films and their state wet (WET, F, m, k)."""
     _, count, m, k = wet.shape
     feed_holes = films.feed_holes.shape[0]
     slots = 1 + int(films.feed_holes["slot"].max()) if feed_holes else 0
@@ -94,7 +93,7 @@ def make_cell_work(films: VolumeFilms, wet: Array, stages: int) -> Work:
 @compiled()
 def guess_unknowns(w: Array, first: Array, start: Array, before: Array, weights: Array, s: int, ahead: float) -> None:
     """w of stage s: by the straight line through the step before, and once that serves as a third point by parabolas,
-    through both steps and the first stage, later through the last stage in place of the step before.
+    through both steps and the first stage, later through the last stage instead of the step before.
 
     w, first: of the last and of the first stage, the latter is kept here; weights: of the method; ahead: how far the
     stage lies from the start of the step, over the step before.

@@ -44,7 +44,7 @@ from frbcli.solve.stage.equations import FilmMotion
 # Layers of fields: the elimination takes the first ones; then two of them keep what the journal's velocities did to the
 # cells when the film was last linearised.
 KEPT_BY_X, KEPT_BY_Y = range(2)
-# The cells balance as they are, and follow the journal by older derivatives, or by those of now; or they will balance
+# The cells balance as they are, and follow the journal by older derivatives, or by current ones; or they will balance
 # after the correction that is under way; or they are to be asked again.
 HELD, SOLVED, AHEAD, OPEN = range(4)
 KEPT = 0.2  # of what a smooth force would leave of an error: a hundredth was seen, of films of all laws
@@ -187,7 +187,7 @@ def move_cells(
     ring: Array, cells: Array, w: Array, states: Array, fields: Array, grid: np.record, u_x: float, u_y: float,
     g: float, changes: Array,
 ) -> int:  # fmt: skip
-    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and those of its channels'
+    """The unknowns w (m, k) follow a correction u of the velocity that the film feels and corrections of its channels'
     pressures, changes (slots,); 1 if the film is to be asked again. Columns that rest follow the gap."""
     m, k = w.shape
     empty = grid.law[EMPTY]

@@ -1,6 +1,6 @@
 """Fillings of openings, and the grid of films in the loop.
 
-The filling of openings whose supply gives a flow at the most, see feed.py, in one stage of the time loop. Compiled.
+The filling of openings with a flow-limited supply, see feed.py, in one stage of the time loop. Compiled.
 
 It is a state as the oil of the cells is: filling' = (given - taken) / line, so that a stage asks for filling = past +
 g filling'. What a film takes is known once its cells balance. A step changes the filling far less than the line could
@@ -84,10 +84,10 @@ def follow_filling(film: np.record, grid: np.record, flows: Array, g: float, all
     return True
 
 
-# A film in the loop: the angle at which its grid stands, and its speed; where the journal is in it (x, y); whether its
-# cells balance (see OPEN); how far the journals were moved last, and that over the time before; the stage; of its
-# openings, see fillings.py: their filling, and what the stages before make of it; the one before, and what it was off
-# by; by how much less it is off per filling. Its law as follow_law has it.
+# A film in the loop: the angle of its grid, and its speed; where the journal is in it (x, y); whether its cells balance
+# (see OPEN); how far the journals were moved last, and its ratio to the time before; the stage; of its openings, see
+# fillings.py: their filling, and what the stages before make of it; the one before, and what it was off by; by how much
+# less it is off per filling. Its law by follow_law.
 GRID = record(
     ("turn", "f8"),
     ("speed", "f8"),

@@ -31,8 +31,8 @@ from frbcli.solve.stage.equations import FilmMotion
 
 
 def film_response(films: Any, work: Work, f: int, motion: FilmMotion, g: float, s: int, iteration: int) -> Any:
-    """The ten numbers of film_force for film f at what it feels of its journal; those of cells hold all in the
-    derivatives by the velocity.
+    """The ten numbers of film_force for film f at what it feels of its journal; for cells the derivatives by the
+    velocity contain all.
 
     A film whose balances hold already, but not in the first iteration of stage s, is settled: its rates are kept, and
     it only follows the journal. One that does not settle goes on with shorter steps.
@@ -110,7 +110,8 @@ def _first_or_later(films, f, d_x, d_y, v_x, v_y, omega):  # type: ignore[no-unt
 def _scaled(
     films: Any, f: int, scale: float, d_x: float, d_y: float, v_x: float, v_y: float, omega: float
 ) -> tuple[float, float, float, float, float, float, float, float, float, float]:
-    """film_force of film f with `scale` times the scale of its pressures: that of as many times the velocities."""
+    """film_force of film f with `scale` times the scale of its pressures: equals the force at `scale` times the
+    velocities."""
     f_x, f_y, k_xx, k_xy, k_yx, k_yy, d_xx, d_xy, d_yx, d_yy = _one_of(
         films, f, d_x, d_y, scale * v_x, scale * v_y, scale * omega
     )

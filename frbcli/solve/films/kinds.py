@@ -2,7 +2,6 @@
 
 - none at all, an empty tuple;
 - a tuple of FilmData, one per film: force and derivatives follow from where the journal is and how it moves;
-- a tuple of BearingModelFilm, a tuple of FilmData that follow viscosity and clearance by functions of their own;
 - VolumeFilms, all films together: cells with unknowns of their own, see cells.py;
 - TiltedVolumes, all films together, each of which the loop sees at both ends of its bearing, see tilted.py.
 """
@@ -17,23 +16,17 @@ from numba import types
 from numba.extending import overload
 
 from frbcli.compiled import AS_KERNELS
-from frbcli.film.bearing_model.film import BearingModelFilm
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.film.cells.tilted.data import TiltedVolumes
 
-NONE, TABLES, MODELS, CELLS, TILTED = "none", "tables", "models", "cells", "tilted"
+NONE, TABLES, CELLS, TILTED = "none", "tables", "cells", "tilted"
 _KINDS = {VolumeFilms: CELLS, TiltedVolumes: TILTED}
-_KINDS_IN_TUPLES: dict[Any, str] = {BearingModelFilm: MODELS}
 
 
 def kind_of(films: Any) -> str:
     """The kind of films, or of a type of films that the compiler knows."""
     if isinstance(films, types.BaseTuple) and not isinstance(films, types.BaseNamedTuple) and len(films) == 0:
         return NONE
-    if isinstance(films, types.UniTuple):
-        return _KINDS_IN_TUPLES.get(getattr(films.dtype, "instance_class", type(films)), TABLES)
-    if type(films) is tuple and films:
-        return _KINDS_IN_TUPLES.get(type(films[0]), TABLES)
     return _KINDS.get(getattr(films, "instance_class", type(films)), TABLES)
 
 

@@ -13,7 +13,7 @@ from frbcli.arrays import Array
 from frbcli.film.cells.data import Records
 from frbcli.solve.films.cell_steps import Work, accept_cells, begin_cells, make_cell_work, write_cell_oil
 from frbcli.solve.films.fillings import GRID, filling_error
-from frbcli.solve.films.kinds import CELLS, MODELS, TILTED, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, TILTED, by_kind, kind_of
 from frbcli.solve.films.tilted import TiltedWork, make_tilted_work, write_land_oil
 
 NEWTON_LIMIT = 12  # iterations before a step is tried again with a smaller one
@@ -58,7 +58,7 @@ def make_work(
     if kind == TILTED:
         return make_tilted_work(films, wet, stages)
     none = NoCells(np.zeros((stages, 0, 0, 0)), np.zeros(0, GRID), np.zeros((0, 0)))
-    if scales is None or kind == MODELS:
+    if scales is None:
         return none
     return Scaled(*none, scales) if shares is None else Supplied(*none, scales, shares)
 
@@ -86,8 +86,8 @@ def begin_stage(
 
 
 def film_error(films: Any, work: Work, flows: Array, weights: Array, defect: Array, step: float) -> float:
-    """Embedded error of what the films have of their own: the filling of openings whose supply gives a flow at the
-    most, over that of a full line. weights, defect: of the method."""
+    """Embedded error of what the films have of their own: the filling of openings with a flow-limited supply, over a
+    full line. weights, defect: of the method."""
     raise NotImplementedError
 
 

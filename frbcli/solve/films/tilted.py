@@ -1,9 +1,8 @@
 """Films whose journals tilt in one stage of the time loop, compiled.
 
-The loop has the displacements of a journal at both ends of its bearing, as it would have those of two journals; both
-belong to one film, which is solved when the first of them asks for its force. What the forces at one end change with
-the motion of the other is left to work.cross. All else is as for other films with cells, see cells.py.
-"""
+The loop has the displacements of a journal at both ends of its bearing, as of two journals; both belong to one film,
+which is solved when the first of them asks for its force. What the forces at one end change with the motion of the
+other is left to work.cross. All else is as for other films with cells, see cells.py. """
 
 from __future__ import annotations
 
@@ -55,8 +54,8 @@ ENDS = 2  # of a bearing, each of which the loop takes for a journal
 
 
 class TiltedWork(NamedTuple):
-    """Scratch of the time loop for F films of L lands: that of Work in cell_steps.py, of lands, but grids (2 F,), of a
-    film behind each other. places, rates, moves: (F, 4) coordinates of the journals in the directions of the grids, see
+    """Scratch of the time loop for F films of L lands: as Work in cell_steps.py, but of lands; grids (2 F,), of a film
+    one after the other. places, rates, moves: (F, 4) coordinates of the journals in the directions of the grids, see
     tilted/data.py, their rates, and their last corrections; omega (F,); push (4, m, k), loads (L, 4), slopes (L, 4, 4),
     unused (4, 4), see land_loads; force (F, 4), by_rate (F, 4, 4) of films; cross (4 F, 4 F)."""
 
@@ -320,7 +319,7 @@ def move_end(films: TiltedVolumes, work: Any, end: int, u_x: float, u_y: float, 
 
 @compiled()
 def tilted_sheared(films: TiltedVolumes, work: Any, end: int, factor: int) -> float:
-    """drag_integral of forces.py, half of that of a bearing for each end."""
+    """drag_integral of forces.py, half of the bearing's for each end."""
     f, mean = end // ENDS, 0.0
     lands, d = films.first[f + 1] - films.first[f], work.places[f]
     for land in range(films.first[f], films.first[f + 1]):

@@ -11,16 +11,13 @@ from numba.extending import overload
 
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled
-from frbcli.film.bearing_model.film import CLEARANCE as MODEL_CLEARANCE
-from frbcli.film.bearing_model.film import VISCOSITY as MODEL_VISCOSITY
-from frbcli.film.bearing_model.film import model_flow
 from frbcli.film.cells.balance.side_flow import side_flow
 from frbcli.film.cells.cavity_edge import CellEnds
 from frbcli.film.cells.data import GIVEN_PRESSURE, VolumeFilms
 from frbcli.film.rectangles.end_flow import end_flow
 from frbcli.film.state import OIL
 from frbcli.solve.films.cell_steps import oil_fraction
-from frbcli.solve.films.kinds import CELLS, MODELS, by_kind, kind_of
+from frbcli.solve.films.kinds import CELLS, by_kind, kind_of
 from frbcli.thermal.exchange import CLEARANCE, ETA, SCALE
 
 
@@ -44,7 +41,7 @@ def keep_oil(films: Any, wet: Any, f: int, narrower: float) -> None:
 
 @compiled()
 def _scale_oil(wet: Array, f: int, factor: float) -> None:
-    """keep_oil of films on cells."""
+    """keep_oil of finite-volume films."""
     if factor != 1.0:
         for layer in range(OIL, wet.shape[0]):  # oil and gas with their rates
             for i in range(wet.shape[2]):
@@ -53,8 +50,8 @@ def _scale_oil(wet: Array, f: int, factor: float) -> None:
 
 
 def set_scale(ends: Any, films: Any, f: int, now: Array, reference: float) -> None:
-    """Films on cells <- pressures and law of film f at its scale, bearing models <- viscosity and clearance; tabulated
-    films are asked for scaled velocities."""
+    """Finite-volume films <- pressures and law of film f at its scale; tabulated ones are asked for scaled
+    velocities."""
     raise NotImplementedError
 
 
@@ -68,10 +65,6 @@ def _leaving(ends, films, work, f, d_x, d_y, v_x, v_y, total, scale):  # type: i
                 work.grids[f].x, work.grids[f].y, ends.far_open[f] != 0,
             )
         )  # fmt: skip
-    if kind_of(films) == MODELS:
-        return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: (
-            model_flow(films[f], d_x, d_y, v_x, v_y, total) / films[f].parameters[MODEL_CLEARANCE]
-        )
     return lambda ends, films, work, f, d_x, d_y, v_x, v_y, total, scale: _flow_of(
         ends, f, d_x, d_y, v_x + 0.5 * total * d_y, v_y - 0.5 * total * d_x, scale
     )
@@ -95,12 +88,6 @@ def _flow_of_one(ends, f, d_x, d_y, w_x, w_y, scale):  # type: ignore[no-untyped
         return _flow_of(ends[1:], f - 1, d_x, d_y, w_x, w_y, scale)
 
     return several
-
-
-@compiled()
-def _set_model(parameters: Array, now: Array, f: int) -> None:
-    """set_scale of bearing models."""
-    parameters[MODEL_VISCOSITY], parameters[MODEL_CLEARANCE] = now[ETA, f], now[CLEARANCE, f]
 
 
 @compiled()
@@ -148,6 +135,5 @@ by_kind(
     set_scale,
     inline=True,
     others=lambda ends, films, f, now, reference: None,
-    models=lambda ends, films, f, now, reference: _set_model(films[f].parameters, now, f),
     cells=lambda ends, films, f, now, reference: _scale_cells(ends, films, f, now, reference),
 )

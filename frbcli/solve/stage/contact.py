@@ -2,7 +2,7 @@
 
 Elastic contact of journals and shells in the time loop, compiled: what films feel of it, and what it pushes with.
 
-Rough surfaces in the time loop, compiled: the summits of journals and shells beside their films.
+Rough surfaces in the time loop, compiled: the summits of journals and shells, in parallel to their films.
 
 Whether a machine has any is decided by the type of `Control.rough` when the loop is compiled: between smooth surfaces
 it is empty, and nothing is computed.
@@ -80,7 +80,7 @@ def push_back(
 
 
 def felt_motion(control: Control, d: Array, v: Array) -> Array:
-    """(2, 2) displacement and velocity that a film feels of those of its journal, d and v (2,), over the clearance."""
+    """(2, 2) displacement and velocity felt by a film, from its journal's d and v (2,), over the clearance."""
     felt = feel(d[0], d[1], v[0], v[1], control.contact_eccentricity, control.contact_stiffness)
     return np.array(felt[:4]).reshape(2, 2)
 
@@ -97,7 +97,7 @@ class RoughContact(NamedTuple):
 
 @compiled_for(RoughContact)
 def set_sliding(rough: RoughContact, turning: Array, bodies: Array) -> None:
-    """Speeds of the surfaces of all films by those of the rotor and the rings (1 + rings,)."""
+    """Speeds of the surfaces of all films from the speeds of rotor and rings (1 + rings,)."""
     for f in range(turning.shape[0]):
         total, slip = 0.0, 0.0
         for b in range(bodies.shape[0]):
@@ -119,13 +119,13 @@ def rubbing(rough: RoughContact, f: int, clearance: float, g: float, journal: Ar
 @compiled_for(RoughContact)
 def press(rough: RoughContact, f: int, clearance: float, g: float, journal: Array) -> None:
     """Add the summits of film f to FORCE, BY_X, BY_Y of its journal."""
-    x, y, found = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
-    journal[FORCE, x] += found.f_x
-    journal[FORCE, y] += found.f_y
-    journal[BY_X, x] += found.d_xx + g * found.k_xx
-    journal[BY_Y, x] += found.d_xy + g * found.k_xy
-    journal[BY_X, y] += found.d_yx + g * found.k_yx
-    journal[BY_Y, y] += found.d_yy + g * found.k_yy
+    x, y, rubbed = 2 * f, 2 * f + 1, rubbing(rough, f, clearance, g, journal)
+    journal[FORCE, x] += rubbed.f_x
+    journal[FORCE, y] += rubbed.f_y
+    journal[BY_X, x] += rubbed.d_xx + g * rubbed.k_xx
+    journal[BY_Y, x] += rubbed.d_xy + g * rubbed.k_xy
+    journal[BY_X, y] += rubbed.d_yx + g * rubbed.k_yx
+    journal[BY_Y, y] += rubbed.d_yy + g * rubbed.k_yy
 
 
 @compiled_for(RoughContact, 0.0)

@@ -23,9 +23,9 @@ from frbcli.solve.state import INVERSE_SPEED
 # Rows of the scratch arrays: of a stage at the rotor's n degrees of freedom, and at the journals' m = 2 films.
 # FREE is the acceleration without the films' forces; LATE the same with the gyroscopic term at the stage's own speed.
 V, Q, FREE, LATE, STAGE_ROWS = range(5)
-# u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y.
-# OMEGA is omega_J + omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film
-# feels by that of the journal, see contact.py. STANDING: see RotorData.
+# u, u_0, x_0, forces, Newton's correction, and dF/du of each journal's own film by its x and y. OMEGA is omega_J +
+# omega_S of the journal's own film. FOLLOWS_X, FOLLOWS_Y: the change of the velocity that the film feels by the
+# journal's, see contact.py. STANDING: see RotorData.
 U, U_0, X_0, FORCE, CORRECTION, BY_X, BY_Y, OMEGA, FOLLOWS_X, FOLLOWS_Y, STANDING, JOURNAL_ROWS = range(12)
 
 
@@ -141,8 +141,7 @@ def accelerate(
     """Velocity and acceleration of stage s from the films' forces; with a lag also LATE and U_0 for the next iteration.
     Returns the largest change of U_0 in m/s.
 
-    lag: g times the difference between the stage's speed and that of the inverse, for the rest of the gyroscopic term.
-    """
+    lag: g times the difference between the stage's speed and the inverse's, for the rest of the gyroscopic term. """
     n, m, change = at.shape[1], selection.shape[0], 0.0
     row = FREE if lag == 0.0 else LATE
     for i in range(n):

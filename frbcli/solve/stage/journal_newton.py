@@ -1,7 +1,6 @@
 """Newton's method for the velocities of the journals in a stage, with the films' analytic derivatives. Compiled.
 
-The equations are those of equations.py. Films with cells are corrected along with the journals.
-"""
+The equations are in equations.py. Films with cells are corrected along with the journals. """
 
 from __future__ import annotations
 
@@ -137,7 +136,7 @@ def correct(
         end = shell_ahead(here, control.contact_eccentricity, control.contact_stiffness)
         share = min(share, reach(at_x, at_y, c_x, c_y, end))
         # Newton's method squares its error. A film's force bends over the size of the gap and, being proportional to
-        # |w|, over the size of w; that of summits over their height.
+        # |w|, over the size of w; the force of summits over their height.
         half = 0.5 * journal[OMEGA, x]
         film_speed = norm(journal[U, x] / c + half * at_y, journal[U, y] / c - half * at_x)
         bend = 1.0 / (end - here) + 1.0 / (g * film_speed + 1e-30) + sharpness(control.rough, c)

@@ -1,7 +1,7 @@
 """Forces at ports, see rotor/port.py, in a stage of the time loop. Compiled. Two kinds:
 
 - an empty tuple: a machine without them, for which nothing is computed;
-- Ports: the displacements and velocities that they see are unknowns of Newton's method beside those of the journals,
+- Ports: the displacements and velocities that they see are unknowns of Newton's method in addition to the journals',
   which they follow in all arrays of a stage.
 
 Which of them a function means is decided by the type of the ports when the loop is compiled, as in loads.py.
@@ -62,14 +62,14 @@ def make_ports(ports: Sequence[Port]) -> Ports | tuple[()]:
     if not ports:
         return ()
     laws = [port.law for port in ports]
-    sizes = [(len(law.numbers), len(law.memory)) for law in laws]
+    sizes = [(len(law.parameters), len(law.memory)) for law in laws]
     return Ports(
         np.array([address_of(compiled_force(type(law))) for law in laws], dtype=np.int64),
         np.array([port.place for port in ports]),
         np.array([port.count for port in ports]),
         np.array([law.length for law in laws]),
         np.concatenate([np.zeros((1, 2), dtype=np.int64), np.cumsum(sizes, axis=0)]),
-        np.concatenate([law.numbers for law in laws]),
+        np.concatenate([law.parameters for law in laws]),
         np.concatenate([law.memory for law in laws]),
         np.zeros(MOTION),
         np.zeros(ANSWER),

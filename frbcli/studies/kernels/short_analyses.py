@@ -50,8 +50,8 @@ def short_analyses(case: Case) -> Iterator[ShortAnalysis]:
         return  # thrust and ball bearings alone need no kernels
     if case.motion is None or (case.given_rotor is not None and case.given_speed is not None):
         make_plan(case)  # raises the faults of a machine
-    found = [analysis for analysis in ANALYSES if _applies(case, analysis)]
-    for analysis in found:
+    applicable = [analysis for analysis in ANALYSES if _applies(case, analysis)]
+    for analysis in applicable:
         machine = analysis not in KINEMATIC
         plan = make_plan(case) if machine else kinematic_plan(case, test=analysis)
         kind = analysis, *(machine_kernels(case, plan.decisions) if machine else _film_kernels(case, plan.decisions))
@@ -78,7 +78,7 @@ def _film_kernels(case: Case, decisions: Sequence[Decision]) -> tuple[object, ..
     """What determines the kernels of the films of a machine and of their heat."""
     chosen = tuple(made.value for made in decisions if made.choice in COMPILED_FOR)
     heat = None if case.heat is None else case.heat.side_flow
-    return *chosen, form_of(case), heat, case.output.signals, case.film.bearing_model
+    return *chosen, form_of(case), heat, case.output.signals
 
 
 def moment_of_run(case: Case) -> Case:

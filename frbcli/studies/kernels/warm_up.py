@@ -101,20 +101,20 @@ def warm_up(cases: Iterable[Case] = (), jobs: int = -1, observe: Observer | None
     different = {short.kind: short for case in reversed(wanted) for short in short_analyses(case)}
     work = sorted(different.values(), key=attrgetter("family"))
     families = [list(members) for _, members in groupby(work, attrgetter("family"))]
-    found: list[Compiled] = []
+    kernels: list[Compiled] = []
     with closing(_compiled(families, jobs)) as done:
         for compiled in done:
-            found += compiled
+            kernels += compiled
             if observe is not None:
-                observe(", ".join(f"{each.case}: {each.analysis}" for each in compiled[-1:]), len(found), len(work))
-    return WarmUp(tuple(case.name for case in wanted), tuple(found), time.monotonic() - began)
+                observe(", ".join(f"{each.case}: {each.analysis}" for each in compiled[-1:]), len(kernels), len(work))
+    return WarmUp(tuple(case.name for case in wanted), tuple(kernels), time.monotonic() - began)
 
 
 def _compiled(families: Sequence[Sequence[ShortAnalysis]], jobs: int) -> Generator[list[Compiled], None, None]:
-    """What each analysis compiled, as it is known: family by family from processes, whose kernels are apart, so that no
-    two of them compile the same; one by one in this process, which alone has the bearing models that were added."""
-    models = any(short.case.film.bearing_model for members in families for short in members)
-    if jobs == 1 or len(families) == 1 or models:
+    """What each analysis compiled, as soon as it is known: by processes, one family each, since processes do not share
+    kernels; or one by one in this process, which alone has the force laws that were added."""
+    laws = any(spring.law for members in families for short in members for spring in short.case.springs)
+    if jobs == 1 or len(families) == 1 or laws:
         for members in families:
             for short in members:
                 yield [_compile(short)]

@@ -1,6 +1,6 @@
 """Keys of a case that scatter: their distributions, and samples of them.
 
-The samples are those of a scrambled Sobol sequence (Owen 1998, as in scipy.stats.qmc), which fill the space of the keys
+The samples are a scrambled Sobol sequence (Owen 1998, as in scipy.stats.qmc), which fills the space of the keys
 more evenly than random ones. Correlated keys are joined by a Gaussian copula: normal variables with the correlations
 given are turned into shares, and these into values of each distribution.
 """
@@ -46,8 +46,8 @@ class Distribution:
         if self.form == "uniform":
             return np.asarray(self.low + shares * (self.high - self.low))
         below, upto = (ndtr((limit - self.mean) / self.deviation) for limit in (self.low, self.high))
-        found = self.mean + self.deviation * ndtri(below + shares * (upto - below))
-        return np.asarray(np.clip(found, self.low, self.high))
+        values = self.mean + self.deviation * ndtri(below + shares * (upto - below))
+        return np.asarray(np.clip(values, self.low, self.high))
 
 
 def read_distribution(key: str, text: str) -> Distribution | None:
@@ -70,12 +70,12 @@ def read_distribution(key: str, text: str) -> Distribution | None:
     units = {unit for _, unit in given.values()}
     if len(units) > 1:
         raise refused(key, text, "has several units.", "Write all of its numbers in one unit; a deviation may be in %.")
-    found = Distribution(key, form, units.pop(), **{name: number for name, (number, _) in given.items()})
-    if not found.low < found.high:
+    distribution = Distribution(key, form, units.pop(), **{name: number for name, (number, _) in given.items()})
+    if not distribution.low < distribution.high:
         raise refused(key, text, "has a lower limit that is not below the upper one.", "Exchange or correct them.")
-    if form != "uniform" and not found.deviation > 0.0:
+    if form != "uniform" and not distribution.deviation > 0.0:
         raise refused(key, text, "has a deviation that is not above 0.", f"Write e.g. {EXAMPLE}.")
-    return found
+    return distribution
 
 
 def samples(
@@ -129,11 +129,11 @@ def _factor(keys: Sequence[str], correlations: Correlations) -> Array:
         if strange or one == other:
             named = strange[0] if strange else one
             remedy = f"Name two of: {', '.join(keys)}."
-            problem = f"names {named}, which does not scatter beside it."
+            problem = f"names {named}, which does not scatter too."
             raise refused("--correlation", f"{one},{other}", problem, remedy)
         matrix[keys.index(one), keys.index(other)] = matrix[keys.index(other), keys.index(one)] = value
     try:
         return np.asarray(np.linalg.cholesky(matrix))
     except np.linalg.LinAlgError:
-        remedy = "Make them smaller, or give those of the other pairs too."
+        remedy = "Make them smaller, or give all other pairs too."
         raise refused("--correlation", "", "contradict each other: no variables have all of them.", remedy) from None

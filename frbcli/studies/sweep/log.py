@@ -38,8 +38,8 @@ def open_log(path: Path, header: Header, case: Case) -> tuple[SweepPoint, ...]:
             raise refused("--output", str(path), "belongs to another sweep, case or version.", remedy)
         done = {point.number: point for point in map(_point, known[1:]) if point and point.status not in UNDECIDED}
     except (OSError, Unreadable) as error:
-        told = str(error) if isinstance(error, Unreadable) else f"cannot be used: {error.strerror}."
-        raise refused("--output", str(path), told, "Choose another directory with -o.") from error
+        problem = str(error) if isinstance(error, Unreadable) else f"cannot be used: {error.strerror}."
+        raise refused("--output", str(path), problem, "Choose another directory with -o.") from error
     lines = [json.dumps(header), *map(_line, done.values())]
     write(path, SWEEP_LOG, "".join(f"{line}\n" for line in lines))
     return tuple(done.values())
@@ -68,12 +68,12 @@ def _line(point: SweepPoint) -> str:
 
 def _point(line: str) -> SweepPoint | None:
     """The point of a line, None for an incomplete one."""
-    found = _parsed(line)
-    if not isinstance(found, dict):
+    parsed = _parsed(line)
+    if not isinstance(parsed, dict):
         return None
     try:
-        run = None if found["run"] is None else Path(found["run"])
-        return SweepPoint(**(found | {"events": tuple(found["events"]), "run": run}))
+        run = None if parsed["run"] is None else Path(parsed["run"])
+        return SweepPoint(**(parsed | {"events": tuple(parsed["events"]), "run": run}))
     except (KeyError, TypeError):
         return None
 

@@ -33,10 +33,10 @@ def read_values(text: str) -> tuple[str, ...]:
 
 
 def _written_out(value: str) -> tuple[str, ...]:
-    found = _RANGE.fullmatch(value)
-    if found is None:
+    match = _RANGE.fullmatch(value)
+    if match is None:
         return (value,)
-    low, low_unit, high, high_unit, count = found.groups()
+    low, low_unit, high, high_unit, count = match.groups()
     if low_unit and low_unit != high_unit:
         raise refused("--set", "", f"{value}: has two units.", f"Write {low}..{high} {low_unit} / 6.")
     if not 2 <= int(count) <= MOST_IN_RANGE or math.isinf(float(low)) or math.isinf(float(high)):
@@ -50,8 +50,8 @@ def linked(axes: Mapping[str, Sequence[str]]) -> tuple[Settings, ...]:
     if they have different numbers of values."""
     counts = {key: len(values) for key, values in axes.items()}
     if len(set(counts.values())) > 1:
-        told = ", ".join(f"{key} has {count}" for key, count in counts.items())
-        problem = f"are linked, and have different numbers of values: {told}."
+        counted = ", ".join(f"{key} has {count}" for key, count in counts.items())
+        problem = f"are linked, and have different numbers of values: {counted}."
         raise refused(", ".join(axes), "", problem, "Give each as many values.")
     return tuple(dict(zip(axes, values, strict=True)) for values in zip(*axes.values(), strict=True))
 
@@ -95,14 +95,14 @@ def product(points: Iterable[Mapping[str, str]], others: Iterable[Mapping[str, s
 
 def checked(points: Iterable[Mapping[str, object]]) -> tuple[Settings, ...]:
     """`points` with values as text. Raises InputError if there are none, or too many."""
-    taken = tuple(
+    settings = tuple(
         dict(zip(point, _texts(point.values()), strict=True)) for point in itertools.islice(points, MOST_POINTS + 1)
     )
-    if not taken or not any(taken):
+    if not settings or not any(settings):
         raise refused("--set", "", "leaves nothing to change.", "Write e.g. --set key=v1,v2.")
-    if len(taken) > MOST_POINTS:
+    if len(settings) > MOST_POINTS:
         raise refused("--set", "", f"makes more than {MOST_POINTS} points.", "Take fewer values.")
-    return taken
+    return settings
 
 
 def read_list(path: str | Path) -> tuple[Settings, ...]:

@@ -56,20 +56,20 @@ class Scatter:
     interval: tuple[float, float]
 
 
-def scatter(found: Sweep, below_Hz: float | None = None) -> Scatter:
+def scatter(swept: Sweep, below_Hz: float | None = None) -> Scatter:
     """The scatter of the speeds at which the points of a sweep begin to whirl; below_Hz: default the case's highest
     speed. Raises InputError if no point has a known result."""
-    speeds = np.array([whirl_speed(point) for point in found.points])
+    speeds = np.array([whirl_speed(point) for point in swept.points])
     known = ~np.isnan(speeds)
     if not known.any():
         remedy = "The table gives the reason for each machine."
         raise input_error("sweep", "--set", "", "no machine has a result.", remedy)
     ordered = np.sort(speeds[known])
-    limit = max(abs(found.case.speed.start), abs(found.case.speed.end)) if below_Hz is None else below_Hz
+    limit = max(abs(swept.case.speed.start), abs(swept.case.speed.end)) if below_Hz is None else below_Hz
     share = float(np.mean(ordered < limit))
     places = np.minimum(np.ceil(0.01 * np.array(PERCENTS) * len(ordered)).astype(int), len(ordered)) - 1
     percentiles = tuple(zip(PERCENTS, ordered[places].tolist(), strict=True))
-    sensitivities, explained = _sensitivities(found, speeds)
+    sensitivities, explained = _sensitivities(swept, speeds)
     return Scatter(
         count=len(ordered),
         left_out=int(np.count_nonzero(~known)),
@@ -96,11 +96,11 @@ def whirl_speed(point: SweepPoint) -> float:
     return 0.0 if point.message.startswith(UNSTABLE) else math.nan
 
 
-def _sensitivities(found: Sweep, speeds: Array) -> tuple[tuple[Sensitivity, ...], float]:
+def _sensitivities(swept: Sweep, speeds: Array) -> tuple[tuple[Sensitivity, ...], float]:
     from scipy.stats import spearmanr
 
     whirls = np.isfinite(speeds) & (speeds > 0.0)
-    columns = {key: _numbers(found.points, key)[whirls] for key in found.keys}
+    columns = {key: _numbers(swept.points, key)[whirls] for key in swept.keys}
     varied = {key: column for key, column in columns.items() if len(column) and np.std(column) > 0.0}
     speed = speeds[whirls]
     if len(speed) < max(FEWEST, len(varied) + 2) or not varied or not np.std(speed) > 0.0:

@@ -46,7 +46,7 @@ EVENTS = {
     "runup": ("critical-speed", "self-excited", "onset", "offset", "lock-in", "contact"),
     "stability": ("threshold",),
 }
-TOLD = ("onset", "threshold")  # events in the table of the terminal
+LISTED = ("onset", "threshold")  # events in the table of the terminal
 LONGEST_REASON = 100  # characters in the table of the terminal
 
 
@@ -120,24 +120,24 @@ def sweep(
     _check_method(method)
     check_workers(workers)
     cases = _cases(case, settings)
-    _check_models(cases, workers)
+    _check_laws(cases, workers)
     folder = Path(directory).absolute()
     runs = folder / RUNS if keep_runs and method == "runup" else None
     _make(runs or folder)
     log = folder / LOG
     with locked(log):
-        found = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
+        done = {point.number: point for point in open_log(log, _header(case, settings, method), case)}
 
         def take(point: SweepPoint) -> None:
-            found[point.number] = point
+            done[point.number] = point
             append(log, [point])
             if observe is not None:
-                observe(point, len(found), len(settings))
+                observe(point, len(done), len(settings))
 
-        missing = [number for number in range(1, len(settings) + 1) if number not in found]
+        missing = [number for number in range(1, len(settings) + 1) if number not in done]
         _compute(_tasks(missing, settings, cases, method, runs, take), workers, take)
     numbered = enumerate(settings, 1)
-    return Sweep(case, method, tuple(found.get(n, SweepPoint(n, chosen, INTERRUPTED)) for n, chosen in numbered))
+    return Sweep(case, method, tuple(done.get(n, SweepPoint(n, chosen, INTERRUPTED)) for n, chosen in numbered))
 
 
 def _cases(case: Case, settings: Sequence[Settings]) -> list[Case | InputError]:
@@ -201,18 +201,18 @@ def _first_here(
     return others, replace(workers, jobs=1) if len(others) * spent < START_s else workers
 
 
-def write_table(found: Sweep, path: str | Path, table_format: str = "csv", force: bool = False) -> Path:
-    """Write the table of a sweep as "csv" or "parquet"; force: also in place of a file that frb did not write. Raises
+def write_table(swept: Sweep, path: str | Path, table_format: str = "csv", force: bool = False) -> Path:
+    """Write the table of a sweep as "csv" or "parquet"; force: also replace a file that frb did not write. Raises
     InputError if that does not work."""
     path = Path(path)
     check_table_format(table_format)
     if table_format == "csv":
-        write_csv(found.to_pandas(), path, force)
+        write_csv(swept.to_pandas(), path, force)
     else:
         import pyarrow as pa
         from pyarrow import parquet
 
-        rows = pa.Table.from_pandas(found.to_pandas(), preserve_index=False)
+        rows = pa.Table.from_pandas(swept.to_pandas(), preserve_index=False)
         rows = rows.replace_schema_metadata({**(rows.schema.metadata or {}), "writer": MARK})
         with written(path, TABLES[table_format], force=force) as part:
             parquet.write_table(rows, part)
@@ -237,11 +237,11 @@ def _case(case: Case, chosen: Settings) -> Case | InputError:
     return its_case
 
 
-def _check_models(cases: Sequence[Case | InputError], workers: Workers) -> None:
-    """Raises InputError for bearing models that the processes of a sweep do not have."""
-    models = {each.film.bearing_model for each in cases if isinstance(each, Case)} - {""}
-    if models and (workers.jobs != 1 or workers.backend != "loky"):
-        problem = f"start processes that do not have the bearing model {min(models)} of this process."
+def _check_laws(cases: Sequence[Case | InputError], workers: Workers) -> None:
+    """Raises InputError for force laws that the processes of a sweep do not have."""
+    laws = {spring.law for each in cases if isinstance(each, Case) for spring in each.springs} - {""}
+    if laws and (workers.jobs != 1 or workers.backend != "loky"):
+        problem = f"start processes that do not have the force law {min(laws)} of this process."
         raise refused("--jobs", str(workers.jobs), problem, "Take one: Workers(jobs=1).")
 
 
@@ -319,21 +319,21 @@ def point_columns(keys: Sequence[str], method: str, reasons: bool = False) -> tu
 
 def event_columns(kind: str) -> tuple[Column, ...]:
     """Rotor speed and frequency at the first event of a kind, with their uncertainties where the point has them."""
-    name, found = kind.replace("-", "_").removesuffix("_speed"), []
+    name, columns = kind.replace("-", "_").removesuffix("_speed"), []
     wanted = (("speed", kind, "rotor speed"), ("frequency", "frequency", "frequency of the motion"))
     for quantity, head, words in wanted:
         value, uncertainty = _first(kind, f"{quantity}_Hz"), _first(kind, f"{quantity}_uncertainty_Hz")
         at = f"at the first event `{kind}`"
-        found.append(Column(f"{name}_{quantity}", "Hz", f"{words} {at}", value, key=""))
-        found.append(
+        columns.append(Column(f"{name}_{quantity}", "Hz", f"{words} {at}", value, key=""))
+        columns.append(
             Column(f"{name}_{quantity}_uncertainty", "Hz", f"uncertainty of the {words} {at}", uncertainty, key="")
         )
-        if kind in TOLD:
+        if kind in LISTED:
             shown = _with_unit(head, HERTZ)
             if quantity == "speed":
                 shown = replace(shown, per_minute=_with_unit(head, SpeedUnit(rpm=True)))
-            found.append(Column(head, "", "", _pair(value, uncertainty), shown=(shown,), key="", flat=False))
-    return tuple(found)
+            columns.append(Column(head, "", "", _pair(value, uncertainty), shown=(shown,), key="", flat=False))
+    return tuple(columns)
 
 
 def _with_unit(head: str, unit: SpeedUnit) -> Shown:

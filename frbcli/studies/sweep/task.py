@@ -30,7 +30,7 @@ NO_WHIRL = "No whirl up to"  # begins a message
 class SweepPoint:
     """One point of a sweep and its result.
 
-    number: from 1; settings: key -> value as text; status: that of its run, or "input-error" (no case, or a file that
+    number: from 1; settings: key -> value as text; status: as of its run, or "input-error" (no case, or a file that
     cannot be written), "error" (a bug, or its process died), "interrupted" (not computed yet); message: why, where the
     status is not one of WHOLE, or on which side of the speeds a missing onset or threshold lies; events: as in a run,
     or the one of kind "threshold" of the linear stability; cost: as in a run; run: its file, None if not kept.
@@ -104,12 +104,12 @@ def _run_file(kept: Path | None) -> Iterator[Path]:
 
 def _threshold(task: Task) -> SweepPoint:
     begun = working_time()
-    found = threshold_alone(task.case)
+    stability = threshold_alone(task.case)
     ended = working_time()
     cost = {"cpu_s": ended.cpu_s - begun.cpu_s, "wall_s": ended.wall_s - begun.wall_s}
-    at = found.threshold
+    at = stability.threshold
     if at is None:
-        status = FINISHED if any(point.rests for point in found.sweep) else NOT_CONVERGED
-        return SweepPoint(task.number, task.settings, status, found.note, (), cost)
+        status = FINISHED if any(point.rests for point in stability.sweep) else NOT_CONVERGED
+        return SweepPoint(task.number, task.settings, status, stability.note, (), cost)
     event = {"kind": THRESHOLD, "film": None, "t_s": None, **asdict(at), "frequency_ratio": at.whirl_ratio}
     return SweepPoint(task.number, task.settings, FINISHED, "", (event,), cost)

@@ -98,8 +98,8 @@ def _together(tasks: Iterable[Task], jobs: int) -> Generator[SweepPoint, None, N
         n_jobs=jobs, batch_size=1, pre_dispatch=f"{QUEUE} * n_jobs", return_as="generator_unordered"
     )
     with deaf():  # the processes start in it, and ignore what a terminal sends to all
-        found: Generator[SweepPoint, None, None] = parallel(joblib.delayed(solve)(task) for task in list(tasks))
-    return found
+        finished: Generator[SweepPoint, None, None] = parallel(joblib.delayed(solve)(task) for task in list(tasks))
+    return finished
 
 
 @contextmanager
@@ -162,7 +162,7 @@ def _local_client(jobs: int, cluster: ExitStack) -> Any:
 
 
 def _say_nothing() -> None:
-    """In a process of dask, which tells tracebacks of tasks that an interruption cuts short."""
+    """In a process of dask, suppress the tracebacks of tasks that an interruption cuts short."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
 
 
@@ -175,9 +175,9 @@ def _client(workers: Workers) -> Any:
     try:
         client = connect(workers.scheduler, timeout=CONNECT_WITHIN_s, set_as_default=False)
     except Exception as error:  # of dask, of the name of the machine, of certificates, of the library of a protocol
-        told = " ".join(str(error).split()).removesuffix(".") or type(error).__name__
+        cause = " ".join(str(error).split()).removesuffix(".") or type(error).__name__
         remedy = CERTIFICATES if encrypted else START
-        raise refused("--scheduler", workers.scheduler, f"cannot be reached: {told}.", remedy) from error
+        raise refused("--scheduler", workers.scheduler, f"cannot be reached: {cause}.", remedy) from error
     if not encrypted:
         logging.getLogger("frbcli").warning(UNENCRYPTED, workers.scheduler)
     return client

@@ -229,7 +229,7 @@ def test_a_table_that_cannot_be_used_is_one_fault(text: str, words: str, tmp_pat
     ("element", "key", "words"),
     [
         ({"file": "seal.csv"}, "bearing.file", "names no file"),
-        ({"file": "seal.csv", "stiffness": "1e6 N/m"}, "bearing.file", "beside stiffness"),
+        ({"file": "seal.csv", "stiffness": "1e6 N/m"}, "bearing.file", "with stiffness"),
         ({}, "bearing.stiffness", "is missing"),
         ({"stiffness": [["1e6 N/m", "0 N/m"]]}, "bearing.stiffness.1", "is missing"),
         ({"stiffness": [["1e6 N/m", "0 N/m"], ["0 N/m"]]}, "bearing.stiffness.1.1", "is missing"),

@@ -86,7 +86,7 @@ def test_cells_of_a_plain_gap_stay_where_the_bath_is() -> None:
 @pytest.mark.parametrize(
     ("law", "settings", "told"),
     [
-        ("reynolds", (), "films on cells that keep their oil"),
+        ("reynolds", (), "mass-conserving finite volumes"),
         ("bubbly", (), "not modelled with oil that carries free gas"),
         ("elrod", (), "has no effect"),
         ("peeken", ("motion.tilt=['0.1 mrad', '0 mrad']",), "with a tilt"),

@@ -72,7 +72,7 @@ def test_at_rest_it_is_the_derivative_of_the_force_of_films_that_have_settled(
 
 @pytest.mark.parametrize("rate_times_tau", [0.0, 0.1, 1.0, 10.0])
 def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_tau: float) -> None:
-    """Of the mode cos(phi) on equal cells: s (theta_0 H + K p / p_s) + P lambda p / p_s = 0, see docs/theory.md."""
+    """Of the mode cos(phi) on equal cells: s (theta_0 H + K p / p_s) + P lambda p / p_s = 0."""
     bunsen, free, cells, rate = 0.1, 0.05, 24, 500.0
     section = Section(0.0125, 0.01, 0.02, 40e-6, 0.01, 1e5, 1e5, 1, "symmetry", "symmetry")
     grid, angle = fitted_grid(section, (0.0, 0.0), cells, 1), 2.0 * math.pi / cells

@@ -1,8 +1,7 @@
 """The oil balances (3.9), (4.31) of the cells of a film with all derivatives, compiled: Balance.residual in one sweep.
 
-Beside the derivatives by w of the cells stand those by the displacement of the journal, so that rotor and film can be
-solved together.
-"""
+Besides derivatives by w of the cells there are derivatives by the displacement of the journal, so that rotor and film
+can be solved together. """
 
 from __future__ import annotations
 
@@ -60,7 +59,7 @@ from frbcli.film.roughness.rough_gap import flowing_cube, rough_flow, sheared_ga
 # Sums over the ends and the given cells: what flows in and out there, the net outflow through the ends and the net
 # supply by given cells and grooves; what channels of a ring bring net; free gas that comes in and leaves with the oil,
 # and what leaves the solution net, see gas/carry.py; oil that artificial diffusion creates, see spread.py; and the rate
-# of the filling of openings whose supply gives a flow at the most, see feed.py.
+# of the filling of openings with a flow-limited supply, see feed.py.
 INFLOW, OUTFLOW, ENDS_NET, SUPPLY_NET, CHANNELS_NET, GAS_IN, GAS_OUT, GAS_RELEASED, CREATED, FILLING, FLOWS = range(11)
 
 
@@ -84,8 +83,8 @@ class GridMotion(NamedTuple):
 
 @compiled(inline=True)
 def section_end(film: np.record, k: int, far: bool) -> tuple[int, int, int, float, float]:
-    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and
-    how the pressure falls there by those of the two, see EndSlope."""
+    """The end z = 0 of a section with k cells along, or z = 1: its kind, the last cell and the one beyond it, and how
+    the pressure slope there follows from the two, see EndSlope."""
     if far:
         return film.far.kind, k - 1, max(k - 2, 0), film.far.rise, film.far.bend
     return film.near.kind, 0, min(1, k - 1), film.near.rise, film.near.bend
@@ -102,8 +101,8 @@ def without_ends(film: np.record) -> np.record:
 
 @compiled(inline=True)
 def felt_at_end(last: float, beyond: float, bend: float, groove: float) -> tuple[float, float, float]:
-    """Pressure towards an end over that of the groove there, or of the air, by a parabola through
-    the last cell and the one beyond it; and its derivatives by the pressures of the two."""
+    """Pressure towards an end above the pressure of the groove there, or of the air, by a parabola through the last
+    cell and the one beyond it; and its derivatives by the pressures of the two."""
     rise, change = last - groove, bend * (last - beyond)
     by_last, by_beyond = 1.0 + bend, -bend
     if abs(change) > BEND * abs(rise):
@@ -163,7 +162,7 @@ def _between_rough(
 
 @compiled(inline=True)
 def _carried(states: Array, i: int, n: int, j: int, forward: bool, diffuses: bool) -> tuple[float, float, float]:
-    """carried_at through the face after a cell; beside artificial diffusion the mean of both cells."""
+    """carried_at through the face after a cell; with artificial diffusion the mean of both cells."""
     t, t_n = states[FRACTION, i, j], states[FRACTION, n, j]
     if diffuses:
         return 0.5 * (t + t_n), 0.5, 0.5
@@ -178,9 +177,9 @@ def _flow_around(
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
     bored, half, roughness = film.bored, 0.5 * omega, film.roughness
-    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # beside a shell at rest
+    sliding = 0.5 * film.shear * (omega + 2.0 * motion.spin)  # with a shell at rest
     forward, still = omega >= 0.0, omega == 0.0 and roughness == 0.0  # still: the cells turn with the oil
-    taken = 0.0  # by the openings in cells that are film in part
+    outflow = 0.0  # by the openings in cells that are film in part
     diffuses = film.diffuses
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -225,7 +224,7 @@ def _flow_around(
                 other = swept * next_ * states[FRACTION_SLOPE, n, j]
             pressed, drawn = through * fall, swept * theta
             by_own, by_next = through * slope, through * slope_n
-            taken += (share - share_n) * drawn
+            outflow += (share - share_n) * drawn
             right[i, j, k + BY_ITSELF] -= pressed + share * drawn
             right[n, j, k + BY_ITSELF] += pressed + share_n * drawn
             by_x, by_y = g * by_x * fall, g * by_y * fall
@@ -238,27 +237,27 @@ def _flow_around(
             stencil[BEHIND, i, j] += share * other - by_next
             stencil[CENTRE, n, j] += by_next - share_n * other
             stencil[BEFORE, n, j] -= by_own + share_n * own
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled()
-def take(taken: float, flows: Array) -> None:
+def take(outflow: float, flows: Array) -> None:
     """Openings take oil out of a film, or give it to it where it is less than 0."""
-    flows[SUPPLY_NET] -= taken
-    if taken > 0.0:
-        flows[OUTFLOW] += taken
+    flows[SUPPLY_NET] -= outflow
+    if outflow > 0.0:
+        flows[OUTFLOW] += outflow
     else:
-        flows[INFLOW] -= taken
+        flows[INFLOW] -= outflow
 
 
 @compiled()
 def _carry_out_of_excess(
     ring: Array, cells: Array, states: Array, motion: GridMotion, stencil: Array, right: Array, flows: Array,
 ) -> None:  # fmt: skip
-    """Oil that the surfaces carry out of the areas that cells around bores have beside their film, see bores.py."""
+    """Oil that the surfaces carry out of the areas that cells around bores have outside of the film, see bores.py."""
     m, k = states.shape[1], states.shape[2]
     d_x, d_y, omega, g = motion.d_x, motion.d_y, motion.omega, motion.g
-    half, taken = 0.5 * omega, 0.0
+    half, outflow = 0.5 * omega, 0.0
     for i in range(m):
         b = i - 1 if i > 0 else m - 1
         s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
@@ -267,12 +266,12 @@ def _carry_out_of_excess(
             excess = cells[EXCESS, i, j]
             if excess != 0.0:
                 oil = excess * states[FRACTION, i, j]
-                taken += oil * rise
+                outflow += oil * rise
                 right[i, j, k + BY_ITSELF] -= oil * rise
                 right[i, j, k + BY_X] -= g * oil * s
                 right[i, j, k + BY_Y] += g * oil * c
                 stencil[CENTRE, i, j] += excess * rise * states[FRACTION_SLOPE, i, j]
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled()

@@ -13,7 +13,7 @@ from frbcli.film.cells.data import LOAD, PUSH_X, PUSH_Y
 
 @compiled()
 def rise(p: float, n: float, s: float) -> tuple[float, float, float, float, float, float, float, float]:
-    """Shares that count in the cell of p and in that of n, p > 0 >= n, and their derivatives by p, n and S.
+    """Shares that count in the cells of p and of n, p > 0 >= n, and their derivatives by p, n and S.
 
     The derivatives of x are (1 - x) and x over p - n. They enter with p or S, which over p - n are of usual size even
     in a film that begins at 1e-314 Pa, the square of which is nothing.

@@ -1,10 +1,9 @@
-"""The openings of a film whose supply gives a flow at the most.
+"""The openings of a film with a flow-limited supply.
 
 All openings of a film are one vessel. While the film takes less than the flow, they are at the pressure of the supply.
-Else their pressure falls until the film takes the flow, down to that of the cavities; where the surfaces carry away
-more oil than comes even then, the openings are filled in part, as a cell of the film would be: pressure and oil
-fraction follow the law of the film. What the film takes grows with either, so that there is one filling for each flow.
-"""
+Else their pressure falls until the film takes the flow, down to the cavity pressure; where the surfaces carry away more
+oil than comes even then, the openings are filled in part, as a cell of the film would be: pressure and oil fraction
+follow the law of the film. What the film takes grows with either, so that there is one filling for each flow. """
 
 from __future__ import annotations
 
@@ -21,10 +20,10 @@ from frbcli.film.gap import Section
 if TYPE_CHECKING:
     from frbcli.film.cells.film import VolumeFilm, VolumeSolution
 
-RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at the most
+RESPONSE = 2e-3  # s in which a line of the supply is filled or emptied at most
 EAGER = 2.5  # what a film with an eccentric journal takes, over what a concentric one takes
 ALL = 1.0  # filling of openings at the pressure of the supply
-ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling cannot be told any closer
+ROUND_OFF, SETTLED = 1e-12, 1e-9  # of the flow that is given; the latter where the filling is not resolved closer
 MOST = 80  # fillings that are tried
 SAME = 1e-15  # fillings that differ by less
 Solve = Callable[[float, "VolumeSolution | None"], "VolumeSolution"]
@@ -70,10 +69,10 @@ def limited(film: VolumeFilm, solve: Solve) -> VolumeSolution:
 
     def tried(filling: float, near: VolumeSolution) -> tuple[VolumeSolution, float]:
         try:
-            found = solve(filling, near)
+            trial = solve(filling, near)
         except FilmUnsolved:  # it runs dry, and takes nothing
             return near, -1.0
-        return found, found.flows.supply / given - 1.0
+        return trial, trial.flows.supply / given - 1.0
 
     solution = solve(ALL, None)
     if (excess := solution.flows.supply / given - 1.0) <= 0.0:
@@ -120,7 +119,7 @@ def _lowest(film: VolumeFilm) -> float:
 
 
 def given_flow(section: Section) -> float:
-    """The flow that the supply of a section gives at the most, in the units of its film, 1/s."""
+    """The flow that the supply of a section gives at most, in the units of its film, 1/s."""
     return section.largest_flow / (section.radius * section.width * section.clearance)
 
 
@@ -132,24 +131,24 @@ class SupplyLine(NamedTuple):
     line: float
     lowest: float
 
-    def filled(self, filling: float, taken: float, dt: float) -> float:
+    def filled(self, filling: float, outflow: float, dt: float) -> float:
         """The filling after a step of dt in s in which the openings took a flow, 1/s."""
-        return min(max(filling + dt * (self.given - taken) / self.line, self.lowest), ALL)
+        return min(max(filling + dt * (self.given - outflow) / self.line, self.lowest), ALL)
 
 
 def supply_line(film: VolumeFilm, response: float = RESPONSE) -> SupplyLine:
-    """The line of the supply of a film, of which the oil is the state: filling' = (given - taken) / line.
+    """The line of the supply of a film, of which the oil is the state: filling' = (given - outflow) / line.
 
-    response: s; the line holds what the film may take in it at the most, so that steps as short as that are stable."""
+    response: s; the line holds what the film may take in it at most, so that steps as short as that are stable."""
     section, scales = film.section, film.scales
     if not is_limited(section):
         return SupplyLine(0.0, 0.0, 0.0)
     given, rise = given_flow(section), supply_pressure(section) / section.pressure_scale - scales.cavitation
     openings = len(section.grooves) + len(section.holes)
-    taken = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
-    return SupplyLine(given, response * max(given, EAGER * taken), _lowest(film))
+    demand = section.aspect * (2.0 * math.pi * rise + openings * scales.reference)
+    return SupplyLine(given, response * max(given, EAGER * demand), _lowest(film))
 
 
 def is_limited(section: Section) -> bool:
-    """Whether the supply of a section gives a flow at the most."""
+    """Whether the supply of a section is flow-limited."""
     return math.isfinite(section.largest_flow)

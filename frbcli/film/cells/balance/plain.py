@@ -31,9 +31,9 @@ class EndFlow(NamedTuple):
 
 
 class Conductances(NamedTuple):
-    """Conductances of the gap: around (m, k) through the face after each cell, along (m, k - 1),
-    near and far (m,) at the ends; by the surfaces carried (m, k) through the face after each cell and rise (m, k) out
-    of the areas beside the film."""
+    """Conductances of the gap: around (m, k) through the face after each cell, along (m, k - 1), near and far (m,) at
+    the ends; by the surfaces carried (m, k) through the face after each cell and rise (m, k) out of the areas outside
+    of the film."""
 
     around: Array
     along: Array
@@ -55,7 +55,7 @@ class Stencil(NamedTuple):
 
 class Fluxes(NamedTuple):
     """Oil flows: around (m, k) by pressure and carried (m, k) by the surfaces through the face after each cell, excess
-    (m, k) carried by these out of the areas beside the film, along (m, k - 1), near and far (m,) at the ends."""
+    (m, k) carried by these out of the areas outside of the film, along (m, k - 1), near and far (m,) at the ends."""
 
     around: Array
     carried: Array
@@ -66,7 +66,7 @@ class Fluxes(NamedTuple):
 
     def net_outflow(self, share: Array) -> Array:
         """(m, k) outflow of each cell. share: (m, k) of a cell that is film, out of which the surfaces carry oil; what
-        they carry over the rest of it is that of a groove or hole."""
+        they carry over the rest belongs to a groove or hole."""
         net = self.around - np.roll(self.around, 1, axis=0) + self.excess
         net += share * (self.carried - np.roll(self.carried, 1, axis=0))
         net[:, :-1] += self.along
@@ -92,7 +92,7 @@ def conductances(section: Section, grid: VolumeGrid, motion: Motion) -> Conducta
     near, far = cube[:, 0] * first.rise, cube[:, -1] * last.rise
     carried = 0.5 * motion.omega * face
     rise = grid.excess * (carried - np.roll(carried, 1, axis=0))
-    if section.flow_roughness > 0.0:  # beside a shell at rest
+    if section.flow_roughness > 0.0:  # with a shell at rest
         rough = section.flow_roughness / section.clearance
         carried = carried + 0.5 * motion.omega * section.shear * rough * shear_flow(face / rough)
     return Conductances(around, along, near, far, carried * dz[None, :], rise)
@@ -134,9 +134,10 @@ class CellBalances:
         return Fluxes(around, carried, c.rise * theta, along, near.out, far.out), near, far
 
     def _at_faces(self, loose: Array) -> tuple[Array, Array, Array]:
-        """(m, k) oil fraction at the face after each cell and its derivatives by those of this cell and the next.
+        """(m, k) oil fraction at the face after each cell and its derivatives by the fractions of this cell and the
+        next.
 
-        loose: (m, k) oil fractions, full at the most. Beside artificial diffusion it is the mean of both."""
+        loose: (m, k) oil fractions, full at most. With artificial diffusion it is the mean of both."""
         if self.section.diffusion is not None:
             half = np.full_like(loose, 0.5)
             return half * (loose + np.roll(loose, -1, axis=0)), half, half

@@ -5,13 +5,12 @@ straight line from a cell p to the next one n, so that a share x of the way betw
 
     x = 1 where both are,   p / (p - n) where p > 0 > n,   n / (n - p) where n > 0 > p,   0 where none is,
 
-and half of x p and of x n, of what is above p_cav, counts as mean pressure of the two cells. Beside the straight line
-counts -y S / 32 with y = x^2 (3 - 2 x), S = p_before - p - n + p_beyond being twice the curvature over the way: the sum
-of what the pressure is above its chord, -S / 24, and of what the cells' own pressures are off by. Where oil flows
-around, this is +S / 48, for the balances take the flow through a face by the fall of pressure over it; where it flows
-along the width, it is nothing. Half of it is taken. Without it a force would be wrong by the slopes at both edges of a
-cavity, in second order.
-"""
+and half of x p and of x n, of what is above p_cav, counts as mean pressure of the two cells. In addition to the
+straight line counts -y S / 32 with y = x^2 (3 - 2 x), S = p_before - p - n + p_beyond being twice the curvature over
+the way: the sum of what the pressure is above its chord, -S / 24, and of what the cells' own pressures are off by.
+Where oil flows around, this is +S / 48, for the balances take the flow through a face by the fall of pressure over it;
+where it flows along the width, it is nothing. Half of it is taken. Without it a force would be wrong by the slopes at
+both edges of a cavity, in second order. """
 
 from __future__ import annotations
 

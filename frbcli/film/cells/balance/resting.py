@@ -1,4 +1,4 @@
-"""Columns of cells that keep their oil: cavities at p_cav that turn with the oil, between others like them. Compiled.
+"""Columns of cells with constant oil: cavities at p_cav that turn with the oil, between others like them. Compiled.
 
 Nothing flows through the faces of such a column, whatever its cells hold, so that H theta stays what it was. Its cells
 feel no others, and Newton's step of each is a division. A film that empties consists mostly of them.
@@ -23,7 +23,7 @@ from frbcli.film.cells.data import CLOSED, GIVEN, NO_CLIP, UNKNOWN
 
 @compiled(inline=True)
 def rests(states: Array, i: int) -> bool:
-    """Whether column i keeps its oil."""
+    """Whether the oil of column i stays constant."""
     return bool(states[RESTS, i, 0] != 0.0)
 
 
@@ -40,14 +40,14 @@ def _is_cavity(cells: Array, states: Array, p_cav: float, i: int) -> bool:
 
 @compiled(inline=True)
 def _passes_nothing(end: np.record, pressure: float) -> bool:
-    """Whether nothing flows through an end of a section beside cells of this pressure."""
+    """Whether nothing flows through an end of a section next to cells of this pressure."""
     return bool(end.kind == CLOSED or (end.kind == GIVEN and pressure == 0.0))
 
 
 @compiled()
 def find_resting(film: np.record, cells: Array, states: Array, still: bool, fields: Array) -> None:
-    """The layer RESTS of states (STATES, m, k) <- which columns of a film keep their oil. still: whether its cells turn
-    with the oil. fields (m, k, n) <- 0 of columns that no longer do: nobody has solved for them."""
+    """The layer RESTS of states (STATES, m, k) <- in which columns of a film the oil stays constant. still: whether its
+    cells turn with the oil. fields (m, k, n) <- 0 of columns that no longer do: nobody has solved for them."""
     m, p_cav = states.shape[1], film.scales.cavitation
     still = still and film.remembers and not film.carries_gas and film.roughness == 0.0 and film.clips == NO_CLIP
     still = still and _passes_nothing(film.near, p_cav) and _passes_nothing(film.far, p_cav)

@@ -1,4 +1,4 @@
-"""Outflow of a film on cells at its open ends, for the balance of its heat; a groove is no open end. Compiled."""
+"""Outflow of a finite-volume film at its open ends, for the balance of its heat; a groove is no open end. Compiled."""
 
 from __future__ import annotations
 

@@ -26,9 +26,9 @@ from frbcli.film.cavitation.compiled import ECCENTRICITY, LAW_NUMBERS, MOTION, S
 from frbcli.film.cells.data import GIVEN_PRESSURE, UNKNOWN
 
 # Layers of the states of the cells: of the law, the slopes by w last; the free gas that comes into the cell, and the
-# rate of its oil, as the law takes them, see balance.py in gas/, the free gas of the cell and how much of that which
-# comes in it has at the same pressure; the oil fraction before the cell upstream of the face after each cell, as it is
-# held, see carried.py; and, in the first cell of a column, whether the column keeps its oil, see resting.py.
+# rate of its oil, as the law takes them, see balance.py in gas/, the free gas of the cell and how much of the incoming
+# gas it has at the same pressure; the oil fraction before the cell upstream of the face after each cell, as it is held,
+# see carried.py; and, in the first cell of a column, whether the oil of the column stays constant, see resting.py.
 (
     PRESSURE,
     FRACTION,
@@ -72,8 +72,8 @@ def follow_law(film: np.record, d_x: float, d_y: float, v_x: float, v_y: float, 
 
 @compiled()
 def cell_states(film: np.record, cells: Array, law: Array, drop: float, w: Array, states: Array) -> None:
-    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law as follow_law has it; all arrays in
-    one piece. drop: by which the given pressures are lower than they were made."""
+    """states (STATES, m, k) <- of the cells with the unknowns w (m, k) by the law of follow_law; all arrays in
+    one piece. drop: reduction of the given pressures."""
     m, k = w.shape
     call_cells(film.cells_at, m * k, law, film.scales, w, states)
     for i in range(m):
@@ -129,11 +129,11 @@ def pressure_of(film: np.record, law: Array, w: float) -> float:
     return float(state[PRESSURE])
 
 
-UPWIND = np.nan  # held in place of an oil fraction: L is 0 at that face
+UPWIND = np.nan  # held instead of an oil fraction: L is 0 at that face
 
 
 def before_upstream(theta: Array, omega: float) -> Array:
-    """(m, k) oil fraction of the cell before the upstream one of the face after each cell, full at the most.
+    """(m, k) oil fraction of the cell before the upstream one of the face after each cell, full at most.
 
     theta: (m, k); omega: of what carries the oil, its sign counts."""
     loose = np.minimum(theta, 1.0)
@@ -145,8 +145,8 @@ def limited(a: Array, b: Array) -> tuple[Array, Array, Array]:
     smooth = a * b > 0.0
     size = np.where(smooth, a * a + b * b, 1.0)
     rise = a * b * (a + b)
-    found = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
-    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in found)
+    terms = rise, b * (2.0 * a + b) - 2.0 * a * rise / size, a * (a + 2.0 * b) - 2.0 * b * rise / size
+    value, by_a, by_b = (np.where(smooth, 0.5 * one / size, 0.0) for one in terms)
     return value, by_a, by_b
 
 

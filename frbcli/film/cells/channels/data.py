@@ -1,9 +1,8 @@
 """Channels that couple two films hydraulically, as arrays for the kernels.
 
-A feed hole lies over some cells of a film, whose oil and pressure follow the law of that film like those of all others.
-Each cell of a feed hole exchanges oil with the channel over a conductance that is large against that of the gap, so
-that they have one pressure as long as they are full; a feed hole in a cavity takes what comes at the cavity's pressure.
-"""
+A feed hole lies over some cells of a film, whose oil and pressure follow the law of that film as in all others. Each
+cell of a feed hole exchanges oil with the channel over a conductance that is large against the gap's, so that they have
+one pressure as long as they are full; a feed hole in a cavity takes what comes at the cavity's pressure. """
 
 from __future__ import annotations
 
@@ -19,7 +18,7 @@ from frbcli.film.cells.elimination.block_cyclic import UNKNOWN_SIDES, ring_solve
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.mesh.openings import hole_opening
 
-IN_GROOVE = -1  # in place of a feed hole
+IN_GROOVE = -1  # instead of a feed hole
 OPENNESS = 1e5  # of a feed hole over its gap, centred: the conductances between channel and film, and along the film
 
 

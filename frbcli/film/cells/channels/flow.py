@@ -119,7 +119,7 @@ def follow_means(channels: Records, feed_holes: Records, matrix: Array) -> None:
 def mean_changes(
     cells: Array, states: Array, fields: Array, feed_hole: np.record, places: Indices, changes: Array
 ) -> None:
-    """changes (SIDES + slots,) <- those of the mean pressure of a feed hole with the layers of fields, see
+    """changes (SIDES + slots,) <- changes of the mean pressure of a feed hole with the layers of fields, see
     film_newton."""
     k = fields.shape[1]
     for layer in range(changes.shape[0]):

@@ -66,7 +66,7 @@ def end_reaches(height: Array, seals: tuple[float, float]) -> tuple[float, float
 
 
 def spreads(section: Section, grid: VolumeGrid, motion: Motion, state: CellState) -> Spreads:
-    """The diffusion of a film that has it."""
+    """The diffusion of a film with such a term."""
     length, along = diffusing(section, grid)
     reach = 0.5 * GAMMA * length * abs(motion.omega)
     face, centre = (gap_on(section, motion, phi, grid.height) for phi in (grid.phi[1:], grid.centre))

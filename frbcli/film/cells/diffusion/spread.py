@@ -1,5 +1,5 @@
-"""The artificial diffusion (4.42), (4.43) of the published two-phase form on finite volumes, compiled; plain.py has it
-in array notation.
+"""The artificial diffusion (4.42), (4.43) of the published two-phase form on finite volumes, compiled; in array
+notation: plain.py.
 
 Equation (4.31) lets the pressure drive the flow (H^3 + c) grad p with c = gamma L beta f, beta = omega/2 H dtheta/dp,
 
@@ -87,8 +87,8 @@ def spread_oil(
     film: np.record, ring: Array, cells: Array, states: Array, d_x: float, d_y: float, omega: float, g: float,
     stencil: Array, right: Array,
 ) -> float:  # fmt: skip
-    """Add the diffusion to the balances of a film that has it and to their derivatives, see balances. Returns what it
-    brings into the film from where the oil fraction is given."""
+    """Add the diffusion to the balances of a film with such a term and to their derivatives, see balances. Returns what
+    it brings into the film from where the oil fraction is given."""
     (_, m, k), created = states.shape, 0.0
     reach = 0.5 * GAMMA * film.length * abs(omega)
     for i in range(m):

@@ -2,8 +2,8 @@
 
 Equations of a ring of columns of cells, solved by blocks: one dense block per column, compiled.
 
-A column is coupled to the two beside it cell by cell, so that the blocks beside the diagonal are diagonal themselves.
-The first columns are eliminated one after the other, with the last one as a border, which closes the ring. Without
+A column is coupled to its two neighbours cell by cell, so that the off-diagonal blocks are diagonal themselves. The
+first columns are eliminated one after the other, with the last one as a border, which closes the ring. Without
 pivoting: oil that leaves one cell enters others, so that no diagonal entry is smaller than the others of its column
 together, but for what a closing gap takes away and what a law makes. Cheaper than a sparse elimination up to some 40
 cells along.
@@ -122,7 +122,7 @@ def solve_blocks(stencil: Array, blocks: Array, fields: Array, column: Any, row:
     """
     m, k, n = len(blocks), len(column), len(row)
     last, held = m - 1, np.empty((k, n))
-    # x_i = right_i - blocks_i behind_i x_i+1 - border_i x_last, border and right beside each other
+    # x_i = right_i - blocks_i behind_i x_i+1 - border_i x_last, border and right side by side
     for i in range(last):
         block = blocks[i]
         _fill(stencil, i, block, column)
@@ -243,7 +243,7 @@ def _solve_parted(stencil: Array, fields: Array, cut: int, column: Any, sides: A
 
 @compiled(fastmath={"contract", "reassoc"})
 def _follow_neighbours(stencil: Array, fields: Array, i: int, rows: Array, column: Any, sides: Any) -> None:
-    """The solution in column i, which is unfelt, from those of the columns beside it: by Thomas' algorithm."""
+    """The solution in column i, which is unfelt, from its neighbour columns by Thomas' algorithm."""
     m, k, r = stencil.shape[1], len(column), len(sides)
     before, behind, above = i - 1 if i > 0 else m - 1, i + 1 if i + 1 < m else 0, rows[0]
     for a in range(k):
@@ -312,7 +312,7 @@ UNKNOWN_SIDES = 0
 TILTED = 5  # right-hand sides of a film whose journal tilts
 # Cells along that have code of their own, by the number of right-hand sides.
 WRITTEN_OUT = {len(USUAL): (3, 4, 5, 6, 8, 10), TILTED: (4, 5, 6, 8, 10, 12, 14, 16)}
-# Stand in `_known` for those of one size: cells along and right-hand sides, as tuples of as many, and their numbers.
+# Placeholders in `_known` for one size: cells along and right-hand sides, as tuples of that length, and their numbers.
 COLUMN: tuple[int, ...] = ()
 SIDES: tuple[int, ...] = ()
 CELLS, LAYERS = 0, 0
@@ -321,8 +321,8 @@ _SIGNATURE = types.void(*[types.intp] * 3, *[_POINTER] * 3)
 
 
 def ring_solver(k: int, sides: int = len(USUAL)) -> int:
-    """Address of an elimination for columns of k cells with a number of right-hand sides, by default those of a film
-    that shares no oil with others."""
+    """Address of an elimination for columns of k cells with a number of right-hand sides, by default as for a film that
+    shares no oil with others."""
     return _address(k, sides) if k in WRITTEN_OUT.get(sides, ()) else _address()
 
 

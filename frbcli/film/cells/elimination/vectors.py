@@ -3,8 +3,7 @@
 The compiler makes vectors of long loops by itself, but none of short ones. So what a column of a few cells needs is
 written out here, number by number and in registers. A column of k cells has k rows of its own equations, or what has
 become of them, followed by k + r more columns: what it takes from the border, and r right-hand sides. Rows are filled
-up with zeros to a multiple of four. k and r are told by tuples of that length.
-"""
+up with zeros to a multiple of four. k and r are passed as tuples of that length. """
 
 from __future__ import annotations
 
@@ -66,7 +65,7 @@ class _Code:
         return self.builder.shuffle_vector(self.with_lane(_ANY, 0, value), _ANY, first)
 
     def vectors(self, numbers: list[Any]) -> list[Any]:
-        """Vectors of numbers that stand beside each other; None: 0."""
+        """Vectors of consecutive numbers; None: 0."""
         made = [ir.Constant(_VECTOR, [_ZERO] * LANES)] * (len(numbers) // LANES)
         for place, value in enumerate(numbers):
             if value is not None:
@@ -78,8 +77,8 @@ class _Code:
 
     def less(self, x: list[Any], factor: Any, y: list[Any]) -> list[Any]:
         """x - factor y."""
-        taken = [self.builder.fmul(factor, b, flags=_FUSED) for b in y]
-        return [self.builder.fsub(a, b, flags=_FUSED) for a, b in zip(x, taken, strict=True)]
+        products = [self.builder.fmul(factor, b, flags=_FUSED) for b in y]
+        return [self.builder.fsub(a, b, flags=_FUSED) for a, b in zip(x, products, strict=True)]
 
     def eliminate(self, rows: Iterable[list[Any]]) -> Iterator[list[Any]]:
         """Rows that begin with a square matrix: its inverse, and the inverse times the rest (Gauss and Jordan).
@@ -182,7 +181,7 @@ def _take_in_next(typing, behind, following, rows, sizes):  # type: ignore[no-un
 
 def _take_in_border(typing, border, rows, right, sizes):  # type: ignore[no-untyped-def]
     """right (k, k + r), its last r layers <- the right-hand sides of rows (k, w) less what they take from the border,
-    whose solutions stand in place of its right-hand sides in border (k, w)."""
+    whose solutions replace its right-hand sides in border (k, w)."""
     k, r, w = len(sizes[0]), len(sizes[1]), row_length(len(sizes[0]), len(sizes[1]))
     first = min(2 * k, w - row_length(0, r))  # no vector reaches beyond its row
     places, shift = range(first, 2 * k + r, LANES), 2 * k - first

@@ -1,1 +1,2 @@
-"""Free gas that the oil of a film on cells carries: its balance, compiled and in array notation, and linearised."""
+"""Free gas that the oil of a finite-volume film carries: its balance, compiled and in array notation, and
+linearised."""

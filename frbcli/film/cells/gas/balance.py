@@ -7,7 +7,7 @@ leaves, the gas of a cell obeys
 
     A (rate H theta c - past) + sum_out q c - sum_in q c_up = A H theta (c_e - c) / tau,
 
-c_e and tau being those of the law, see bubbly.py. Openings and baths give oil with the free gas of the supplied oil.
+c_e and tau follow from the law, see bubbly.py. Openings and baths give oil with the free gas of the supplied oil.
 Divided by M = A rate H theta + sum_out q, what is known of the cell and its neighbours is c_in = (A past + sum_in q
 c_up) / M, and r = M / (A H theta).
 
@@ -62,7 +62,7 @@ def with_own_gas(free: Array) -> Carried:
 
 
 class KeptGas(NamedTuple):
-    """Gas of a step. past: (m, k) of H theta c, as that of the oil; guess: what is carried at its end, about."""
+    """Gas of a step. past: (m, k) of H theta c, as for the oil; guess: what is carried at its end, about."""
 
     past: Array
     guess: Carried
@@ -177,7 +177,7 @@ def oil_paths(balances: CellBalances, pressure: Array, fraction: Array) -> OilPa
 
 
 def free_gas(law: Law, scales: Scales, grid: VolumeGrid, states: Array, paths: Array, off: float) -> FreeGas:
-    """The gas of a solution with the states (STATES, m, k), whose `paths` (PATHS, m, k) are those of carry.py."""
+    """The gas of a solution with the states (STATES, m, k), with the `paths` (PATHS, m, k) of carry.py."""
     layers, states = paths.copy(), states.copy()
     area = np.where(grid.fixed, 0.0, grid.area)
     return FreeGas(
@@ -211,10 +211,10 @@ def path_layers(paths: OilPaths, layers: Array) -> None:
 
 def brought(paths: OilPaths, free: Array) -> Array:
     """(m, k) gas that other cells bring to each one, sum_in q c_up."""
-    found = np.roll(paths.onward * free, 1, axis=0) + paths.backward * np.roll(free, -1, axis=0)
-    found[:, 1:] += paths.upward * free[:, :-1]
-    found[:, :-1] += paths.downward * free[:, 1:]
-    return np.asarray(found)
+    arriving = np.roll(paths.onward * free, 1, axis=0) + paths.backward * np.roll(free, -1, axis=0)
+    arriving[:, 1:] += paths.upward * free[:, :-1]
+    arriving[:, :-1] += paths.downward * free[:, 1:]
+    return np.asarray(arriving)
 
 
 MEMORY = 5  # iterations

@@ -1,7 +1,7 @@
 """The free gas that comes into each cell of a film with its oil, compiled; see balance.py for the balance.
 
 Newton's method for the pressures asks for it in every iteration, so that film and gas are solved together. The flows
-are those of the pressures as they are; the gas goes with them from cell to cell, in the direction in which the surfaces
+follow from the current pressures; the gas goes with them from cell to cell, in the direction in which the surfaces
 carry the oil, until it changes no more. What a cell keeps of the gas that comes in follows from the law's derivative.
 """
 
@@ -254,8 +254,8 @@ def _renew_along(
             others += paths[DOWNWARD, i, j] * states[FREE_GAS, i, j + 1] if j + 1 < k else 0.0
         own, passed = paths[OWN, i, j], states[PASSED_ON, i, j]
         least, largest = max(own, 0.0), min(own + passed * most_gas, most_gas)
-        taken = passed * per_kept
-        free = (own + taken * others) + (taken * flow) * last
+        arriving = passed * per_kept
+        free = (own + arriving * others) + (arriving * flow) * last
         states[CARRIED_GAS, i, j] = min(max(per_kept * others + (per_kept * flow) * last, 0.0), most_gas)
         last = states[FREE_GAS, i, j] = min(max(free, least), largest)
         most = max(most, abs(last - before))
@@ -322,7 +322,7 @@ def take_gas_along(
     paths: Array,
 ) -> float:  # fmt: skip
     """All of the above for a film in a time step: paths (PATHS, m, k) and the gas of states follow the oil of states as
-    they are. past: (m, k) of the gas, as that of the oil. Returns the most that free gas has changed by."""
+    they are. past: (m, k) of the gas, as for the oil. Returns the largest change of free gas."""
     m, k = past.shape
     for i in range(m):
         h = ring[GAP, i] + motion.d_x * ring[SIN, i] - motion.d_y * ring[COS, i]

@@ -1,13 +1,12 @@
 """A film whose oil carries gas, linearised about its settled state, with oil and free gas of each cell as states.
 
-The unknowns are w and the free gas c of the cells. The balance of the gas less c times that of the oil is
+The unknowns are w and the free gas c of the cells. The balance of the gas less c times the balance of the oil is
 
     A H theta c' + sum_in q (c - c_up) = A H theta (c_e - c) / tau,
 
 which is multiplied by tau / (1 + tau r), so that no rate is too fast or too slow for it (r: see balance.py). Both
 balances are sums over next neighbours: cells that are not neighbours of one are moved at the same time for their
-derivatives. Both states of a cell stand beside each other, the cells in an order of which an elimination fills little.
-"""
+derivatives. Both states of a cell are adjacent; the cells are ordered so that an elimination fills little. """
 
 from __future__ import annotations
 
@@ -104,9 +103,9 @@ def linear_states(
 
     def matrix(parts: Sequence[Entries]) -> csc_matrix:
         values, rows, columns = (np.concatenate(each) for each in zip(*parts, strict=True))
-        found = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
-        found.eliminate_zeros()  # nothing comes back against the flow
-        return found
+        sparse = coo_matrix((values, (rows, columns)), shape=(size, size)).tocsc()
+        sparse.eliminate_zeros()  # nothing comes back against the flow
+        return sparse
 
     return LinearStates(matrix(flow), matrix(storage), by_place, by_rate, by_total, push, sheared)
 
@@ -159,11 +158,11 @@ class _Settled:
         cell_states(own, cells, self._law, 0.0, np.ascontiguousarray(w), states)
         paths = self._paths(states, motion)
         comes = brought(paths, np.ones_like(free)) + paths.given
-        taken = comes * free - brought(paths, free) - paths.given * law.supplied_gas
+        net = comes * free - brought(paths, free) - paths.given * law.supplied_gas
         target, _ = law.exchanged(states[PRESSURE], free, film.scales)
         held = film.grid.area * self.gap(motion) * states[FRACTION]
         open_ = np.where(film.grid.fixed, 0.0, 1.0)
-        gas = open_ * self.rated * (self.time * taken - held * (target - free))
+        gas = open_ * self.rated * (self.time * net - held * (target - free))
         return open_ * (paths.out - comes), gas
 
     def _paths(self, states: Array, motion: Motion) -> OilPaths:
@@ -190,10 +189,10 @@ def _nearest(cells: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.in
     """Which cells (m, k) are cells of a set of _apart or next to one, and the numbers of these."""
     numbers = np.where(cells, np.arange(cells.size).reshape(cells.shape), -1)
     numbers = np.maximum(numbers, np.maximum(np.roll(numbers, 1, axis=0), np.roll(numbers, -1, axis=0)))
-    found = numbers.copy()
-    found[:, 1:] = np.maximum(found[:, 1:], numbers[:, :-1])
-    found[:, :-1] = np.maximum(found[:, :-1], numbers[:, 1:])
-    return found >= 0, found[found >= 0]
+    marks = numbers.copy()
+    marks[:, 1:] = np.maximum(marks[:, 1:], numbers[:, :-1])
+    marks[:, :-1] = np.maximum(marks[:, :-1], numbers[:, 1:])
+    return marks >= 0, marks[marks >= 0]
 
 
 def _moved(motion: Motion, axis: int, step: float) -> Motion:

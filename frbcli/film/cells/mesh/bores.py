@@ -8,19 +8,19 @@ own is a sum of
 
     ln(r / a),   (r^n - a^2n / r^n) cos(n t) and sin(n t),  n = 1, 2,   (a^2 - r^2) / 4,
 
-the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have
-ln(r / a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and in place of cos(t) / r they have h^2 / 4 times
-cos(5 t) / r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells
-around the bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these
-solutions: of each two solutions P and Q,
+the last one with a source of 1. Cells of the size h around and along that pass on what they differ by do not have ln(r
+/ a) in a distance, but h^2 / 12 times cos(4 t) / r^2 less, and instead of cos(t) / r they have h^2 / 4 times cos(5 t) /
+r^3 more: with these the solutions balance there up to the fourth order. The conductances between the cells around the
+bore are changed as little as possible so that the flows which cells pass on dissipate what they do in these solutions:
+of each two solutions P and Q,
 
     sum over the cells of P_i (flow of Q out of cell i) = 0.
 
-The total flow for a given pressure in the distance is then that of the bore, wherever it lies among the cells, as with
-Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are those for
-which the solution with a source balances, and with the areas of the force the integrals of the solutions over the film
-are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there: it is right
-for oil that comes out of the whole width, but that of a bore comes out of the place where the solutions are exact.
+The total flow for a given pressure in the distance is then correct for the bore, wherever it lies among the cells, as
+with Peaceman's equivalent radius for wells in reservoirs. Likewise the areas by which cells count as a source are
+chosen so that the solution with a source balances. With the areas of the force the integrals of the solutions over the
+film are exact, less what parabolas over the width (ends.py) count at the ends for the oil that leaves there. That count
+is right for oil that comes out of the whole width; oil of a bore comes out where the solutions are exact.
 
 Which cells lie around the bores of a section, and what the local solutions (bores.py) make of them.
 """
@@ -41,18 +41,18 @@ from frbcli.film.gap import Hole, Section
 
 Mask = NDArray[np.bool_]
 
-# Weights of what the conductances should do: all flows of the solutions together, those of each cell, stay as they are.
+# Weights of the aims of the conductances: total flow of the solutions, flow of each cell, no change.
 TOGETHER, EACH, STAY = 100.0, 0.1, 0.01
 AREAS = 1e3  # the same of what the areas should do, against a change of a whole cell that touches the bore
 LEAST = 0.1  # of a conductance that remains: no cell is cut off
 NEAR = 0.5  # of the size of a cell squared: so near to the middle of a bore its solution in a distance is none
-LARGEST = 0.8  # change of an area over that of its cell, for bores that are small in cells of very unequal sides
+LARGEST = 0.8  # change of an area over the area of its cell, for bores that are small in cells of very unequal sides
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
 
 class Patch(NamedTuple):
-    """Cells around the middle of a bore of radius a, lengths over R. x (nx + 2,), y (ny + 2,): middles of the cells
-    and of those beyond them; dx (nx,), dy (ny,): sizes; held: (nx, ny) cells that stand for the bore; open_: (nx, ny)
+    """Cells around the middle of a bore of radius a, lengths over R. x (nx + 2,), y (ny + 2,): middles of the cells and
+    of the next ones beyond; dx (nx,), dy (ny,): sizes; held: (nx, ny) cells that represent the bore; open_: (nx, ny)
     area of the film in each cell; mirrored: whether the bore lies on a plane of symmetry at the end of y."""
 
     a: float
@@ -90,8 +90,8 @@ def fit(patch: Patch, around: Array, along: Array) -> BoreFit:
 
 
 def solutions(x: Array, y: Array, a: float, mirrored: bool) -> Array:
-    """(solutions, ...) of the pressure above that of the bore at x, y of any shape, the one with a source of 1 last;
-    those that are odd in y only without a plane of symmetry there."""
+    """(solutions, ...) of the pressure above the bore's at x, y of any shape, the one with a source of 1 last; odd
+    functions of y only without a plane of symmetry there."""
     square = np.maximum(x**2 + y**2, 1e-300)
     q = a**2 / square
     odd = [] if mirrored else [y * (1.0 - q), 2.0 * x * y * (1.0 - q**2) / a]
@@ -215,7 +215,7 @@ def _by_parabolas(patch: Patch) -> Array:
 
 
 def _areas(patch: Patch, fields: Array, lacking: Array) -> Array:
-    """(nx, ny) areas near to those of the film, changed close to the bore so that their sums with the fields (n, nx,
+    """(nx, ny) areas close to the areas of the film, changed near the bore so that their sums with the fields (n, nx,
     ny) grow by what is lacking (n,); 0 where held."""
     size = np.outer(patch.dx, patch.dy)
     distance = np.hypot(patch.x[1:-1, None], patch.y[1:-1]) - patch.a
@@ -246,8 +246,8 @@ def _cut_cell(patch: Patch, x: Array, y: Array) -> Array:
             (np.clip(np.where(chord > 0.0, chord, y[1]), *y), np.full_like(place, y[1])),
         ):
             line = 0.5 * ((start + end)[:, None] + (end - start)[:, None] * NODES)
-            found = solutions(place[:, None] + 0.0 * line, line, a, patch.mirrored)[_chosen(patch)]
-            part = np.asarray(found @ WEIGHTS) @ (0.5 * (end - start) * weight)
+            integrands = solutions(place[:, None] + 0.0 * line, line, a, patch.mirrored)[_chosen(patch)]
+            part = np.asarray(integrands @ WEIGHTS) @ (0.5 * (end - start) * weight)
             total = part if not total.size else total + part
     return total
 
@@ -280,11 +280,10 @@ def around_bores(
 ) -> Cells:
     """The cells with the flows and areas around the bores by the local solutions.
 
-    phi (m + 1,), z (k + 1,): boundaries; height: (k,) of the unknowns; inside: (m, k) the cells that stand for each
-    hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without.
-    """
+    phi (m + 1,), z (k + 1,): boundaries; height: (k,) of the unknowns; inside: (m, k) the cells that represent each
+    hole of the section; cover: (m, k) share of a cell that openings take; plain: the cells without. """
     around, along, at, area, load = (values.copy() for values in plain)
-    found: dict[bytes, BoreFit] = {}
+    fits: dict[bytes, BoreFit] = {}
     width = section.width / section.radius
     for number in range(len(section.holes)):
         place = _place(section, phi, z, height, number, inside[number], cover)
@@ -295,9 +294,9 @@ def around_bores(
         dx, dy = patch.dx[:, None], patch.dy[None, :]
         at[faces] = _gap_places(at[faces], 0.5 * patch.dx, around[faces], patch.held)
         key = np.round(np.concatenate([patch.x, patch.y, patch.open_.ravel(), patch.held.ravel()]), 9).tobytes()
-        if key not in found:  # the bores of a ring often lie alike
-            found[key] = fit(patch, _over(dy, around[faces]), _over(dx, width * along[between]))
-        near = found[key]
+        if key not in fits:  # the bores of a ring often lie alike
+            fits[key] = fit(patch, _over(dy, around[faces]), _over(dx, width * along[between]))
+        near = fits[key]
         around[faces], along[between] = _over(dy, near.around), _over(dx, width * near.along)
         area[cells] = np.where(patch.held, area[cells], near.source / width)
         load[cells] = near.load / (dx * dy)
@@ -356,16 +355,16 @@ def _is_bore(section: Section, hole: Hole) -> bool:
 
 
 def _distance_to_next(section: Section, number: int) -> float:
-    """Distance from the edge of a hole to that of the nearest other groove or hole, over R."""
+    """Distance from the edge of a hole to the edge of the nearest other groove or hole, over R."""
     hole = section.holes[number]
-    found = [math.pi - hole.half_angle]
+    distances = [math.pi - hole.half_angle]
     for groove in section.grooves:
-        found.append(_between(groove.position, hole.position) - 0.5 * groove.opening - hole.half_angle)
+        distances.append(_between(groove.position, hole.position) - 0.5 * groove.opening - hole.half_angle)
     for other in section.holes[:number] + section.holes[number + 1 :]:
         across = max(_between(other.position, hole.position) - other.half_angle, 0.0)
         above = max(abs(other.axial - hole.axial) - other.half_width, 0.0) / section.radius
-        found.append(math.hypot(across, above) - hole.half_angle)
-    return max(min(found), 0.0)
+        distances.append(math.hypot(across, above) - hole.half_angle)
+    return max(min(distances), 0.0)
 
 
 def _between(one: float, other: float) -> float:

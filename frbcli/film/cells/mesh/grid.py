@@ -27,13 +27,11 @@ class VolumeGrid:
 
     height: (k,) axial positions of the unknowns in [0, 1], the middles of the cells but in a run under a journal that
     tilts, see tilted_cells; fixed: (m, k) cells where the pressure is given; fixed_pressure: (m, k) scaled gauge
-    pressure there; around: (m, k) distance in rad over which oil flows through the face after each cell, along:
-    (m, k - 1) the same over the width,
-    from middle to middle or to the edge of a groove or hole, 0 within one; at: (m, k) angle at which the flow around
-    takes its gap, that of the face or of the middle of the way to the edge of a bore; area: (m, k) by which a cell
-    counts in the balance, over R b, that of a given one whole; load: (m, k) share of a cell's area by which its
-    pressure counts in the force; cover: (m, k) share of it that grooves and holes take.
-    """
+    pressure there; around: (m, k) distance in rad over which oil flows through the face after each cell, along: (m, k -
+    1) the same over the width, from middle to middle or to the edge of a groove or hole, 0 within one; at: (m, k) angle
+    at which the flow around takes its gap, of the face or of the middle of the way to the edge of a bore; area: (m, k)
+    by which a cell counts in the balance, over R b, for a given one its whole area; load: (m, k) share of a cell's area
+    by which its pressure counts in the force; cover: (m, k) share of it that grooves and holes take. """
 
     phi: Array
     z: Array
@@ -69,8 +67,8 @@ class VolumeGrid:
 
     @property
     def excess(self) -> Array:
-        """(m, k) of the area of a cell over that of its film, over its length: the surfaces carry the oil out of this,
-        too, as far as the gap changes."""
+        """(m, k) excess of the area of a cell over the area of its film, over its length: the surfaces carry the oil
+        out of this, too, as far as the gap changes."""
         return np.asarray((self.area - self.share * self.size) / np.diff(self.phi)[:, None])
 
     @property
@@ -103,9 +101,8 @@ def tilted_ends(along: int) -> Array:
     """(along + 1,) boundaries of cells over the width, finer at the ends, between equal ones and Chebyshev's.
 
     The error of forces and moments then falls with the square of the cells' size from the coarsest mesh on, so that it
-    can be told from half of the cells; on equal ones errors of different orders cancel each other there, and so they do
-    on the few cells of a run (tilted.py).
-    """
+    can be estimated from half of the cells; on equal ones errors of different orders cancel each other there, and so
+    they do on the few cells of a run (tilted.py). """
     equal = np.linspace(0.0, 1.0, along + 1)
     return np.asarray((1.0 - CHEBYSHEV) * equal + CHEBYSHEV * 0.5 * (1.0 - np.cos(np.pi * equal)))
 
@@ -113,11 +110,9 @@ def tilted_ends(along: int) -> Array:
 def volume_grid(section: Section, phi: Array, z: Array, height: Array | None = None) -> VolumeGrid:
     """Cells with the section's grooves and holes cut out of those whose middles they hold, their edges where they are.
 
-    height: (k,) see VolumeGrid, by default the middles of the cells.
-    The flow between the middle of a cell and a groove or hole runs over the distance to its edge, wherever that lies
-    between the faces: so it changes smoothly as the edge moves across the cells. Around a bore flows and areas are
-    those of the local solutions (bores.py).
-    """
+    height: (k,) see VolumeGrid, by default the middles of the cells. The flow between the middle of a cell and a groove
+    or hole runs over the distance to its edge, wherever that lies between the faces: so it changes smoothly as the edge
+    moves across the cells. Around a bore flows and areas follow from the local solutions (bores.py). """
     shape = len(phi) - 1, len(z) - 1
     fixed, fixed_pressure, cover = np.zeros(shape, dtype=bool), np.zeros(shape), np.zeros(shape)
     height = middles(z) if height is None else height

@@ -94,19 +94,19 @@ def _ellipse_cover(phi: Array, z: Array, hole: Hole, middle: float, half: float)
     """(m, k) share of each cell within an ellipse, exact."""
     first = phi[0] + math.fmod(hole.position - phi[0], 2.0 * math.pi)
     v = np.clip((z - middle) / half, -1.0, 1.0)
-    taken = np.zeros((len(phi) - 1, len(z) - 1))
+    area = np.zeros((len(phi) - 1, len(z) - 1))
     for turn in (-1, 0, 1):
         u = np.clip((phi - first - 2.0 * math.pi * turn) / hole.half_angle, -1.0, 1.0)
-        taken += np.diff(np.diff(_disk_corner(u[:, None], v[None, :]), axis=0), axis=1)
-    return taken * hole.half_angle * half / (np.diff(phi)[:, None] * np.diff(z))
+        area += np.diff(np.diff(_disk_corner(u[:, None], v[None, :]), axis=0), axis=1)
+    return area * hole.half_angle * half / (np.diff(phi)[:, None] * np.diff(z))
 
 
 def _disk_corner(u: Array, v: Array) -> Array:
     """Area of the unit disk left of the abscissa u and below the ordinate v, each in [-1, 1]; the shapes broadcast."""
     half_chord = np.sqrt(1.0 - v**2)
-    beside = _below_circle(np.minimum(u, -half_chord)) + np.abs(v) * (np.clip(u, -half_chord, half_chord) + half_chord)
-    beside = beside + _below_circle(np.maximum(u, half_chord)) - _below_circle(half_chord)
-    return np.asarray(_below_circle(u) + np.sign(v) * beside, dtype=np.float64)
+    sides = _below_circle(np.minimum(u, -half_chord)) + np.abs(v) * (np.clip(u, -half_chord, half_chord) + half_chord)
+    sides = sides + _below_circle(np.maximum(u, half_chord)) - _below_circle(half_chord)
+    return np.asarray(_below_circle(u) + np.sign(v) * sides, dtype=np.float64)
 
 
 def _below_circle(t: Array) -> Array:

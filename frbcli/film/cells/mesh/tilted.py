@@ -31,10 +31,9 @@ def tilted_cells(along: int) -> tuple[Array, Array]:
 def tilted_weights(z: Array, height: Array) -> Array:
     """(k,) weights of the integral over [0, 1] of values at the places `height` (k,) of cells with the boundaries z.
 
-    They begin as those of the parabolas through three places each, and are changed as little as it takes for the closed
-    forms of a short bearing to hold on these cells: its force in translation, its moment in tilt, which is L^2 / 60 of
-    it, and the integral of a constant. On the fewest cells the last ones of these are left out.
-    """
+    They start from parabolas through three places each, and are changed as little as it takes for the closed forms of a
+    short bearing to hold on these cells: its force in translation, its moment in tilt, which is L^2 / 60 of it, and the
+    integral of a constant. On the fewest cells the last ones of these are left out. """
     k, weights = len(height), _of_parabolas(z, height)
     if k < 3:
         return weights
@@ -48,7 +47,7 @@ def tilted_weights(z: Array, height: Array) -> Array:
 
 
 def _of_parabolas(z: Array, height: Array) -> Array:
-    """(k,) weights of the parabolas through the place of each cell and those beside it."""
+    """(k,) weights of the parabolas through the place of each cell and its neighbours."""
     k = len(height)
     if k < 3:
         return np.diff(z)

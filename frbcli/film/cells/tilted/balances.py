@@ -1,4 +1,5 @@
-"""The oil balances of a land whose gap changes along the axis, for the solver of one film: those of the time loop.
+"""The oil balances of a land whose gap changes along the axis, for the solver of one film: the same as in the time
+loop.
 
 A land is a bearing of its own here: its journal has displacements at both ends of its width.
 """

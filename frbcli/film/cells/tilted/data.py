@@ -1,4 +1,4 @@
-"""Films whose journals tilt as arrays for the compiled kernels: the lands of all films of a machine beside each other.
+"""Films whose journals tilt as arrays for the compiled kernels: the lands of all films of a machine side by side.
 
 The coordinates of a journal are its displacements at both ends of its bearing, over the clearance: (near x, near y,
 far x, far y), near at z = -B/2. In between its displacement is linear along the axis, and so is the gap.

@@ -96,7 +96,7 @@ def drawn(
 
     pulls: flow through a gap of 1 full of oil; oil, upstream, forward: see carried_at; slope: of the oil fractions.
     """
-    taken = 0.0
+    outflow = 0.0
     for e in range(to.flow.shape[0]):
         theta, own, other = carried_at(oil.own[e], oil.next[e], upstream[e], forward)
         swept = pulls[e] * gaps[e]
@@ -105,8 +105,8 @@ def drawn(
         to.by_own[e] = swept * own * slope.own[e]
         to.by_next[e] = swept * other * slope.next[e]
         to.by_gap[e] = growth * pulls[e] * theta
-        taken += (share.own[e] - share.next[e]) * through
-    return taken
+        outflow += (share.own[e] - share.next[e]) * through
+    return outflow
 
 
 @disjoint
@@ -155,7 +155,7 @@ def coupled(
 @disjoint
 def total(numbers: Array) -> float:
     """The sum of all numbers."""
-    found = 0.0
+    summed = 0.0
     for e in range(numbers.shape[0]):
-        found += numbers[e]
-    return found
+        summed += numbers[e]
+    return summed

@@ -42,7 +42,8 @@ class TiltedLand:
     map: Array
 
     def places(self, z: Array) -> Array:
-        """Where positions z over the width of the land lie over that of the bearing, 0 at its near end z = -B/2."""
+        """Positions over the width of the bearing, 0 at its near end z = -B/2, of positions z over the width of the
+        land."""
         centre, width = self.map[0, 3], self.map[2, 3]
         return np.asarray(0.5 + (centre + width * (z - 0.5)) / self.film.section.bearing_width)
 
@@ -60,7 +61,7 @@ class TiltedLand:
 
 @dataclass(frozen=True)
 class TiltedFilm:
-    """A whole bearing whose journal tilts. section: over the whole width, or one of the two beside a groove in the
+    """A whole bearing whose journal tilts. section: over the whole width, or one of the two next to a groove in the
     middle."""
 
     section: Section
@@ -91,7 +92,7 @@ class TiltedFilm:
 def tilted_film(
     section: Section, law: Law, cells: tuple[int, int], reference: float, mirrored: bool = False
 ) -> TiltedFilm:
-    """A bearing of a section over its whole width, see whole_width, or of two beside a groove.
+    """A bearing of a section over its whole width, see whole_width, or of two next to a groove.
 
     cells: around, equal ones, and along the whole width; reference: see VolumeFilm; mirrored: see lands.
     """

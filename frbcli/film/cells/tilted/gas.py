@@ -1,7 +1,6 @@
 """The free gas that comes into each cell of a land with its oil, compiled: gas/carry.py at a gap that is linear in z.
 
-The flows are those of kernel.py, one after the other, by where their oil begins.
-"""
+The flows are as in kernel.py, one after the other, by where their oil begins. """
 
 from __future__ import annotations
 

@@ -1,8 +1,7 @@
 """The oil balances of the cells of a land whose gap changes along the axis, with all derivatives, compiled.
 
-They are those of balance/balances.py at a gap that is linear in z: see there for the flows. The plain form is the same,
-balance/plain.py. Derivatives are by the velocities of the journal at both ends of its bearing.
-"""
+They equal the balances of balance/balances.py, which describes the flows, at a gap that is linear in z. The plain form
+is the same, balance/plain.py. Derivatives are by the velocities of the journal at both ends of its bearing. """
 
 from __future__ import annotations
 
@@ -76,7 +75,7 @@ COLUMNS = 8  # that are balanced at a time: what they pass to each other stays n
 # those along, which are 0 into a column.
 PRESSED, DRAWN, RAISED, FLOW_ROWS = range(0, 16, 4)
 RAISED_BY_GAP = RAISED + 3
-# Not behind: gaps at the faces after the cells, in their middles beside bores and at their edges above; what a cell
+# Not behind: gaps at the faces after the cells, in their middles next to bores and at their edges above; what a cell
 # stores per oil fraction; flow that is drawn through a gap of 1; the balance; and by the gaps what is stored, what
 # leaves a cell around, and what enters it.
 (
@@ -106,8 +105,8 @@ class EndsMotion(NamedTuple):
 
 @compiled(inline=True)
 def gap_at_ends(gap: float, s: float, c: float, d: Array) -> tuple[float, float]:
-    """H at the near end of the bearing, and by how much more it is at the far one, from that of a centred journal and
-    sine and cosine of the angle."""
+    """H at the near end of the bearing, and by how much more it is at the far one, from the gap of a centred journal
+    and sine and cosine of the angle."""
     near = gap + d[0] * s - d[1] * c
     return near, gap + d[2] * s - d[3] * c - near
 
@@ -154,7 +153,7 @@ def _meet_gaps(
 
 @compiled(inline=True, internal=True)
 def _flows_in(rows: Array, first: int, where: slice) -> FaceFlows:
-    """Flows that stand in rows from the row `first` on."""
+    """The flows in rows from the row `first` on."""
     return FaceFlows(rows[first, where], rows[first + 1, where], rows[first + 2, where], rows[first + 3, where])
 
 
@@ -162,8 +161,8 @@ def _flows_in(rows: Array, first: int, where: slice) -> FaceFlows:
 def _flow_around(
     bored: bool, cells: Array, states: Array, motion: EndsMotion, first: int, last: int, k: int, at: int, rows: Array
 ) -> float:
-    """Flows from the columns first to last to the next ones into rows, whose gaps stand there from `at` on and whose
-    flows a column behind; what openings take of them. The column before the first of all stands alone."""
+    """Flows from the columns first to last to the next ones into rows, which hold the gaps from `at` on and the flows
+    one column later; returns what openings take of them. The column before the very first is on its own."""
     behind = last % (cells.shape[1] // k) if last == first + 1 else first + 1
     own, next_ = slice(first * k, last * k), slice(behind * k, (behind + last - first) * k)
     by, to = slice(at, at + (last - first) * k), slice(at + k, at + (last - first + 1) * k)
@@ -174,12 +173,12 @@ def _flow_around(
         cells[AROUND, own], gaps, others, growth, OwnAndNext(states[PRESSURE, own], states[PRESSURE, next_]),
         OwnAndNext(states[PRESSURE_SLOPE, own], states[PRESSURE_SLOPE, next_]), _flows_in(rows, PRESSED, to),
     )  # fmt: skip
-    taken: float = drawn(
+    outflow: float = drawn(
         gaps, rows[PULL, by], motion.omega >= 0.0, g, OwnAndNext(states[FRACTION, own], states[FRACTION, next_]),
         states[BEFORE_UPSTREAM, own], OwnAndNext(states[FRACTION_SLOPE, own], states[FRACTION_SLOPE, next_]),
         OwnAndNext(cells[SHARE, own], cells[SHARE, next_]), _flows_in(rows, DRAWN, to),
     )  # fmt: skip
-    return taken
+    return outflow
 
 
 @compiled()
@@ -245,7 +244,7 @@ def _share_between_ends(ring: Array, places: Array, first: int, last: int, rows:
 def _flow_past_edges(
     cells: Array, places: Array, states: Array, motion: EndsMotion, stencil: Array, right: Array
 ) -> None:
-    """Add the flows around beside the edges of openings, which take their gap there."""
+    """Add the flows around next to the edges of openings, which take their gap there."""
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -270,7 +269,7 @@ def _flow_past_edges(
 
 @compiled()
 def _follow_middles(ring: Array, cells: Array, places: Array, states: Array, motion: EndsMotion, right: Array) -> None:
-    """Add what flows around change with by the gaps in the middles of both cells, which they take beside bores."""
+    """Add what flows around change with by the gaps in the middles of both cells, which apply next to bores."""
     m, k = states.shape[1], states.shape[2]
     for i in range(m):
         n = i + 1 if i + 1 < m else 0
@@ -292,7 +291,7 @@ def _carry_out_of_excess(
     flows: Array,
 ) -> None:  # fmt: skip
     m, k = states.shape[1], states.shape[2]
-    d, g, half, taken = motion.d, motion.g, 0.5 * motion.omega, 0.0
+    d, g, half, outflow = motion.d, motion.g, 0.5 * motion.omega, 0.0
     for i in range(m):
         b = i - 1 if i > 0 else m - 1
         s, c = half * (ring[FACE_SIN, i] - ring[FACE_SIN, b]), half * (ring[FACE_COS, i] - ring[FACE_COS, b])
@@ -301,11 +300,11 @@ def _carry_out_of_excess(
             excess, z = cells[EXCESS, i, j], places[MIDDLES, j]
             if excess != 0.0:
                 oil, grows = excess * states[FRACTION, i, j], near + z * rise
-                taken += oil * grows
+                outflow += oil * grows
                 right[i, j, k + BY_ITSELF] -= oil * grows
                 add_by_ends(right, i, j, z, -g * oil * s, g * oil * c)
                 stencil[CENTRE, i, j] += excess * grows * states[FRACTION_SLOPE, i, j]
-    take(taken, flows)
+    take(outflow, flows)
 
 
 @compiled(makes_arrays=True)
@@ -365,7 +364,7 @@ def land_balances(
         flows[flow] = 0.0
     _meet_gaps(ring, places, motion, bored, m - 1, m, k, rows)
     _flow_around(bored, of, at, motion, m - 1, m, k, 0, rows)
-    taken, first, n = 0.0, 0, k
+    outflow, first, n = 0.0, 0, k
     while first < m:
         for layer in range(RAISED):  # the flows into the first of these columns
             for j in range(k):
@@ -375,13 +374,13 @@ def land_balances(
         _meet_gaps(ring, places, motion, bored, first, last, k, rows)
         inner = min(last, m - 1)
         if inner > first:
-            taken += _flow_around(bored, of, at, motion, first, inner, k, 0, rows)
+            outflow += _flow_around(bored, of, at, motion, first, inner, k, 0, rows)
         if last == m:
-            taken += _flow_around(bored, of, at, motion, m - 1, m, k, n - k, rows)
+            outflow += _flow_around(bored, of, at, motion, m - 1, m, k, n - k, rows)
         _balance(of, at, motion, past.reshape(-1), first, last, k, rows, sums)
         _share_between_ends(ring, places, first, last, rows, right)
         first = last
-    take(taken, flows)
+    take(outflow, flows)
     if total(of[EDGE]) > 0.0:
         _flow_past_edges(cells, places, states, motion, stencil, right)
     if bored:

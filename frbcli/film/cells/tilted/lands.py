@@ -14,9 +14,8 @@ from frbcli.film.gap import Section
 class Land:
     """A section of a bearing with the motion that it sees.
 
-    side: 1, or -1 where z over the section runs against that of the bearing; centre: of the middle of the section, in m
-    from that of the bearing.
-    """
+    side: 1, or -1 where z of the section runs against z of the bearing; centre: of the middle of the section, in m from
+    the bearing's. """
 
     section: Section
     motion: Motion
@@ -30,11 +29,10 @@ class Land:
 
 
 def lands(section: Section, motion: Motion, mirrored: bool) -> tuple[Land, ...]:
-    """The lands of a bearing: its section, or the two beside a groove in the middle where they differ.
+    """The lands of a bearing: its section, or the two next to a groove in the middle where they differ.
 
-    motion: of the bearing, its slopes over the whole width; mirrored: whether z over a single section runs against that
-    of the bearing.
-    """
+    motion: of the bearing, its slopes over the whole width; mirrored: whether z of a single section runs against z of
+    the bearing. """
     if not motion.tilts:
         return (Land(section, motion, -1.0 if mirrored else 1.0, 0.0),)
     return tuple(_land(one, motion, side, centre) for one, side, centre in parts(section, mirrored))
@@ -68,7 +66,7 @@ def _land(section: Section, motion: Motion, side: float, centre: float) -> Land:
 
 
 def summed(films: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
-    """The loads of a bearing from those of its lands."""
+    """The loads of a bearing, summed over its lands."""
     loads = [each for _, each in films]
     moments = [land.moment(each) for land, each in films]
     if len(loads) == 1:
@@ -95,7 +93,7 @@ def summed(films: Sequence[tuple[Land, FilmLoads]]) -> FilmLoads:
 
 
 def _gas(parts: Sequence[GasBalance]) -> GasBalance | None:
-    """The gas of a bearing from that of its lands, which hold about as much oil."""
+    """The gas of a bearing, summed over its lands, which hold about as much oil."""
     if not parts:
         return None
     return GasBalance(

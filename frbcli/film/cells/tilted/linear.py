@@ -43,10 +43,10 @@ def _linear_land(land: TiltedLand, place: Array, total: float, start: Array | No
     solver, to_u = FilmSolver(film), land.map / film.section.clearance
     solution = solver.steady(motion, start, upwind=True)
     if film.law.carries_gas:
-        found = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
-        moved = found.by_place @ to_u, found.by_rate @ to_u, found.by_total
-        push = land.map.T @ found.push
-        return LinearFilm(found.flow, found.storage, *moved, push, found.sheared, solution.field, ordered=True)
+        slopes = linear_states(film, motion, solution, np.zeros(film.grid.shape), tilts=True)
+        moved = slopes.by_place @ to_u, slopes.by_rate @ to_u, slopes.by_total
+        push = land.map.T @ slopes.push
+        return LinearFilm(slopes.flow, slopes.storage, *moved, push, slopes.sheared, solution.field, ordered=True)
     stencil, by_u, by_v, by_total = land_slopes(solver, motion, solution)
     stored = np.where(film.grid.fixed, 0.0, film.grid.area * film.gaps(motion) * solution.state.fraction_slope)
     return LinearFilm(
