@@ -36,7 +36,7 @@ def test_the_page_has_25_machines_and_says_why_figures_differ() -> None:
     rows = written(text)
     assert len({row[0].partition(":")[0] for row in rows}) >= 25
     reasons = text.partition("## Why figures differ")[2].partition("\n## ")[0]
-    numbers = set(re.findall(r" \((\d+)\) \|$", text, re.MULTILINE))
+    numbers = set(re.findall(r" \((\d+)\)(?:;| \|$)", text, re.MULTILINE))
     assert numbers
     for number in numbers:
         assert f"\n{number}. " in reasons

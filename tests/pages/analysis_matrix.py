@@ -238,7 +238,7 @@ HEAD = """# What goes with what
 Every analysis against every film and feature, by the program's own checks: `cd tests && python -m
 pages.analysis_matrix` writes this page. "run" includes run-up, run-down, sweep, fit and compare; "linear" is stability
 and response, "cycles" limit cycles, "whirls" whirls with unbalance. Of several films, rotation, squeeze and whirl test
-`motion.film`. Numbers are [reasons](#reasons); the analyses name remedies.
+`motion.film`. Numbers are [reasons](#reasons); the messages of the program say more, with remedies.
 """
 
 
@@ -300,7 +300,9 @@ def _unsupported(numbers: Mapping[str, str]) -> str:
 
 
 def _reason(fault: Fault) -> Reason:
-    return re.sub(r"\.\d+", "", fault.key), fault.problem
+    """Key without the number of a bearing, and the first clause of the problem."""
+    clause = re.split(r": |; |, so that |, which (?=would|do not)", fault.problem)[0]
+    return re.sub(r"\.\d+", "", fault.key), f"{clause.rstrip('.')}."
 
 
 def _sentence(reason: Reason, values: Sequence[str]) -> str:
