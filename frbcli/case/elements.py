@@ -134,9 +134,9 @@ class CoefficientsBearing(BearingWithoutFilm):
 class RollingMaterial(Model):
     """A material of balls or rings."""
 
-    modulus: Modulus = Field(description="of elasticity")
-    poisson: PoissonRatio = Field(description="Poisson's ratio")
-    density: Density = Field(description="for the centrifugal force")
+    modulus: Modulus = Field(description="of the material")
+    poisson: PoissonRatio = Field(description="of the material")
+    density: Density = Field(description="of the material")
 
     @property
     def solid(self) -> Elastic:

@@ -118,10 +118,10 @@ class Oil(Model):
         description="default: of the grade at `temperature`, or at 80 degC",
     )
     heat_capacity: SpecificHeat | None = Field(
-        default=None, description="specific; default: of petroleum oil of this density"
+        default=None, description="default: of petroleum oil of this density"
     )
     conductivity: ThermalConductivity | None = Field(
-        default=None, description="thermal; default: of petroleum oil of this density"
+        default=None, description="default: of petroleum oil of this density"
     )
     ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
     cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="default: the ambient pressure")

@@ -135,12 +135,12 @@ SYMMETRIC, OF_SECTIONS = ("rigid", "jeffcott"), ("turbocharger",)  # kinds
 class ShaftSection(Model):
     """A cylindrical section; the sections follow each other along z."""
 
-    length: Length = Field(description="along the axis")
-    diameter: Length = Field(description="outer")
-    inner_diameter: InnerDiameter = Field(default=0.0, description="of a hollow shaft")
-    density: Density = Field(default=7850.0, description="of the material")
-    youngs_modulus: Modulus = Field(default=210e9, description="of the material")
-    poisson_ratio: Ratio = Field(default=0.3, description="for shear")
+    length: Length = Field(description="of the section")
+    diameter: Length = Field(description="of the section")
+    inner_diameter: InnerDiameter = Field(default=0.0, description="of the section")
+    density: Density = Field(default=7850.0, description="of the section")
+    youngs_modulus: Modulus = Field(default=210e9, description="of the section")
+    poisson_ratio: Ratio = Field(default=0.3, description="of the section")
     internal_damping: DampingTime | None = Field(
         default=None,
         description="damping over stiffness, turns; replaces the rotor's",
@@ -198,8 +198,8 @@ class Disk(Model):
     name: Identifier = Field(default="", description="in results; numbered by default")
     position: Position = Field(description="from the start of the shaft")
     mass: Mass = Field(description="of the disk")
-    polar_inertia: Inertia = Field(default=0.0, description="about the axis")
-    diametral_inertia: Inertia = Field(default=0.0, description="about a diameter")
+    polar_inertia: Inertia = Field(default=0.0, description="of the disk")
+    diametral_inertia: Inertia = Field(default=0.0, description="of the disk")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
     phase: Angle = Field(default=0.0, description="angle on the rotor")
     loss: Loss | None = Field(default=None, description="unbalance that joins later")

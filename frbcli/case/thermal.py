@@ -66,10 +66,10 @@ class Thermal(Model):
         default="fixed", description="clearances follow the growth of shafts and rings"
     )
     reference_temperature: Temperature = Field(
-        default=ROOM_TEMPERATURE, description="of given clearances that follow"
+        default=ROOM_TEMPERATURE, description="of given clearances"
     )
     shaft_material: Material = Field(default="steel", description="for expansion and growth")
-    housing_material: Material = Field(default="steel", description="for expansion")
+    housing_material: Material = Field(default="steel", description="for expansion and growth")
     mixing: Annotated[float, Quantity(NUMBER, "0.5", least=0.5, most=1)] = Field(
         default=0.5,
         description="m: film temperature: 0.5 mean of inlet and outlet, 1 outlet",

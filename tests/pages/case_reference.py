@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import groupby
 from typing import Any
 
 from paths import DOCS
@@ -137,14 +138,13 @@ def _section(title: str, model: dict[str, Any], shared: dict[str, Rows]) -> str:
 
 
 def _text(title: str, words: str, rows: Rows) -> str:
-    """A section; neighbours of one value and meaning share a line."""
-    lines: list[tuple[list[str], tuple[str, str]]] = []
-    for key, row in rows.items():
-        if lines and lines[-1][1] == row:
-            lines[-1][0].append(key)
-        else:
-            lines.append(([key], row))
-    items = "\n".join(f"- {', '.join(keys)}{value and f' ({value})'}: {meaning}" for keys, (value, meaning) in lines)
+    """A section; neighbours of one meaning share a line."""
+    lines = []
+    for meaning, of_meaning in groupby(rows.items(), lambda item: item[1][1]):
+        by_value = groupby(of_meaning, lambda item: item[1][0])
+        keys = [f"{', '.join(key for key, _ in some)}{value and f' ({value})'}" for value, some in by_value]
+        lines.append(f"- {', '.join(keys)}: {meaning}")
+    items = "\n".join(lines)
     return "\n\n".join(filter(None, (f"## {title}", words, items))) + "\n"
 
 

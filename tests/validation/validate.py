@@ -132,11 +132,10 @@ def independent() -> list[str]:
         off = f"{100 * (ratio / WHIRL_RATIO - 1):+.1f} %"
         lines.append(f"| whirl ratio there | finite | {WHIRL_RATIO:g} | {ratio:.3f} | {off} | two digits |")
     for clearance in ("40", "35"):
-        for theory in ("finite", "short"):
-            relative, degrees = measures.worst_resting_position(clearance, theory)
-            what = f"static equilibria, {clearance} um, 10 to 200 Hz: eccentricity, attitude"
-            off = f"{100 * relative:.3f} %, {degrees:.3f} deg"
-            lines.append(f"| {what} | {theory} | 5 positions | | {off} | 0.3 %, 0.3 deg |")
+        worst = [measures.worst_resting_position(clearance, theory) for theory in ("finite", "short")]
+        what = f"static equilibria, {clearance} um, 10 to 200 Hz: eccentricity, attitude"
+        off = "; ".join(f"{100 * relative:.3f} %, {degrees:.3f} deg" for relative, degrees in worst)
+        lines.append(f"| {what} | finite; short | 5 positions | | {off} | 0.3 %, 0.3 deg |")
     for supply in ("none", "circumferential-groove"):
         off = f"{100 * measures.worst_film_force(supply):.3f} %"
         lines.append(f"| film forces, `{supply}`, eccentricity 0.3 to 0.9 | finite | | | {off} | 0.3 % |")

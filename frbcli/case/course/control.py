@@ -53,8 +53,8 @@ class Accuracy(Model):
 class FilmFrames(Model):
     """Recorded oil fractions and free gas of all cells, for pictures."""
 
-    begin: Hold = Field(alias="from", description="first time")
-    end: Duration = Field(alias="to", description="last time")
+    begin: Hold = Field(alias="from", description="first and last time")
+    end: Duration = Field(alias="to", description="first and last time")
     frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="number, at even times")
 
 

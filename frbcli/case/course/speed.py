@@ -35,7 +35,7 @@ class SpeedRamp(Model):
     tacho: Label = Field(default="", description="column of `file` with pulses, for the speed")
     pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` per revolution")
     times: tuple[PointTime, ...] = Field(default=(), description="contents of points or `file`, written by runs")
-    speeds: tuple[Speed, ...] = Field(default=(), description="at these times")
+    speeds: tuple[Speed, ...] = Field(default=(), description="contents of points or `file`, written by runs")
 
     @property
     def course(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

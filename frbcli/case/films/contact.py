@@ -41,8 +41,8 @@ class Contact(Model):
     roughness: Roughness | None = Field(
         default=None, description="of asperities, root of the sum of squares of both surfaces"
     )
-    summit_radius: Length | None = Field(default=None, description="of asperities, mean curvature radius")
-    summit_density: SummitDensity | None = Field(default=None, description="of asperities, number per area")
+    summit_radius: Length | None = Field(default=None, description="of asperities")
+    summit_density: SummitDensity | None = Field(default=None, description="of asperities")
     mean_height: SummitHeight = Field(
         default=0.0, description="of asperities over the mean plane, sum of both surfaces"
     )

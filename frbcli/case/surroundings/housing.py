@@ -32,8 +32,8 @@ class Mount(Model):
     """Springs and dampers between housing and ground."""
 
     position: Position | None = Field(default=None, description="along the shaft; required for a turbocharger")
-    stiffness: Stiffnesses = Field(description="of the springs")
-    damping: Dampings = Field(default=(0.0, 0.0), description="of the dampers")
+    stiffness: Stiffnesses = Field(description="to ground")
+    damping: Dampings = Field(default=(0.0, 0.0), description="to ground")
 
 
 class ModeAt(Model):
@@ -75,12 +75,12 @@ class HousingMode(Model):
 class Housing(MachineTable):
     """The body that carries all bearings: rigid on mounts, or modes."""
 
-    mass: ShellMass | None = Field(default=None, description="of a rigid housing; above 0")
+    mass: ShellMass | None = Field(default=None, description="of a rigid housing")
     inertia: Inertias | None = Field(
         default=None,
         description="of a rigid housing about its centre of mass, or [x z, y z]; required for a turbocharger",
     )
-    position: Position | None = Field(default=None, description="of its centre of mass, as `inertia`")
+    position: Position | None = Field(default=None, description="of its centre of mass")
     mounts: tuple[Mount, ...] = Field(default=(), description="of a rigid housing")
     modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing; replaces the keys above")
     file: Label = Field(

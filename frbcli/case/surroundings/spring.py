@@ -34,7 +34,7 @@ class Spring(MachineTable):
     )
     stiffness: Stiffness | None = Field(default=None, description="in all directions; of a stop, beyond its gap")
     cubic: Cubic = Field(default=0.0, description="force over displacement cubed")
-    gap: Gap = Field(default=0.0, description="radial gap of a stop; its damping acts radially")
+    gap: Gap = Field(default=0.0, description="radial gap of a stop")
     damping: Damping = Field(default=0.0, description="of a stop, in contact only, without pull")
     friction: Friction = Field(default=0.0, description="of a stop, against sliding of the first place")
     radius: Length | None = Field(

@@ -31,7 +31,7 @@ Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 class Support(Model):
     """A shell on springs and dampers, which moves in x and y without turning."""
 
-    mass: ShellMass = Field(description="of the moving shell, per bearing; above 0")
+    mass: ShellMass = Field(description="of the moving shell, per bearing")
     stiffness: Stiffnesses = Field(description="to ground or housing")
     damping: Dampings = Field(
         default=(0.0, 0.0), description="to ground or housing"
@@ -44,7 +44,7 @@ NO_SPRING = (0.0, 0.0)
 class Damper(RingFilm):
     """A squeeze film around a shell or an outer ring, which moves without turning."""
 
-    mass: ShellMass = Field(description="of the moving shell, per bearing; above 0")
+    mass: ShellMass = Field(description="of the moving shell, per bearing")
     spring: Stiffnesses = Field(
         default=NO_SPRING,
         description="stiffness of the centring spring",

@@ -55,8 +55,8 @@ class Bubbly(Law):
         Key("entrained", 0.0, "free gas over volume of supplied oil, at saturation_pressure", "0.02", least=0.0),
         Key("saturation_pressure", None, "of the supplied oil, absolute; by default oil.cavitation_pressure",
             "1 bar", unit="Pa", above=0.0),
-        Key("release_time", 1e-3, "time constant of gas release", "1 ms", unit="s", least=0.0),
-        Key("absorption_time", 1.0, "time constant of gas absorption", "1 s", unit="s", least=0.0),
+        Key("release_time", 1e-3, "time constant of the gas", "1 ms", unit="s", least=0.0),
+        Key("absorption_time", 1.0, "time constant of the gas", "1 s", unit="s", least=0.0),
     )  # fmt: skip
     carries_gas = True
     cost = 1.7
