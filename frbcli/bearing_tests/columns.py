@@ -70,10 +70,10 @@ RESULT = (
     Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL),
                                        Shown("cavitation", table=GASES)), key="", flat=False),
     *HEAD,
-    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,)),
+    Column("displacement", "", "journal displacement over clearance", shape=(2,)),
     Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
            shown=(Shown("eps", ".3f", table=FORCES),), key=""),
-    Column("force", "N", "force of the whole bearing on the journal", _force, shape=(2,),
+    Column("force", "N", "force on the journal", _force, shape=(2,),
            shown=(Shown(("Fx", "Fy", "|F|"), partial(_fixed, digits=3), table=FORCES),)),
     Column("sommerfeld_number", "", "Sommerfeld number (3.14)", shown=(Shown("So", ".3g", table=FORCES),), key=""),
     Column("force_angle", "deg", "angle of the force from the x-axis", _angle,
@@ -85,11 +85,11 @@ RESULT = (
     Column("torque_shell", "N m", "torque on the shell", _loads("torque.shell")),
     Column("oil_fraction", "", "mean oil fraction (4.46)", _loads("oil_fraction"),
            shown=(Shown("oil", ".3f", table=OIL),)),
-    Column("oil_in", "m^3/s", "oil that comes in", _loads("oil.in_m3_s"), shown=(Shown("in", ".4g", "mm^3/s", OIL),),
+    Column("oil_in", "m^3/s", "incoming oil", _loads("oil.in_m3_s"), shown=(Shown("in", ".4g", "mm^3/s", OIL),),
            key="oil_balance.in_m3_s"),
-    Column("oil_out", "m^3/s", "oil that leaves", _loads("oil.out_m3_s"), shown=(Shown("out", ".4g", "mm^3/s", OIL),),
+    Column("oil_out", "m^3/s", "leaving oil", _loads("oil.out_m3_s"), shown=(Shown("out", ".4g", "mm^3/s", OIL),),
            key="oil_balance.out_m3_s"),
-    Column("oil_defect_relative", "", "oil that is lost, or created (negative), over the flow",
+    Column("oil_defect_relative", "", "lost oil (negative: created) over the flow",
            _loads("oil.defect_relative"), shown=(Shown("balance", ".0e", table=OIL),),
            key="oil_balance.defect_relative"),
     Column("force_error_relative", "", "relative error: from half the cells, or of a short bearing "
@@ -104,7 +104,7 @@ RESULT = (
 
 # Of a KinematicResult whose journal tilts, or of a rotation whose velocity is given
 MOMENT = (
-    Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
+    Column("moment", "N m", "moment about x, y through the middle", _moment,
            shape=(2,), shown=(Shown(("Mx", "My"), lambda moment: _fixed(moment, 4)[:2], table=FORCES),)),
     Column("moment_error_relative", "", "relative error, from half the cells",
            attrgetter("moment_error"), key="error.moment_relative"),
@@ -113,15 +113,15 @@ MOMENT = (
 
 # Of a KinematicResult of a test with a model whose oil carries gas
 GAS = (
-    Column("free_gas", "", "free gas at the saturation pressure over the oil, in the mean", _gas("share"),
+    Column("free_gas", "", "mean free gas over oil, at saturation pressure", _gas("share"),
            shown=(Shown("free gas", ".4f", table=GASES),), key="gas_balance.free"),
-    Column("gas_in", "m^3/s", "free gas that comes in, at the saturation pressure", _gas("in_m3_s"),
+    Column("gas_in", "m^3/s", "incoming free gas at saturation pressure", _gas("in_m3_s"),
            shown=(Shown("in", ".4g", "mm^3/s", GASES),), key="gas_balance.in_m3_s"),
-    Column("gas_out", "m^3/s", "free gas that leaves", _gas("out_m3_s"),
+    Column("gas_out", "m^3/s", "leaving free gas", _gas("out_m3_s"),
            shown=(Shown("out", ".4g", "mm^3/s", GASES),), key="gas_balance.out_m3_s"),
     Column("gas_released", "m^3/s", "gas that leaves the solution, net", _gas("released_m3_s"),
            shown=(Shown("released", ".4g", "mm^3/s", GASES),), key="gas_balance.released_m3_s"),
-    Column("gas_defect_relative", "", "what the balance of the gas is off by, over all gas that the oil carries",
+    Column("gas_defect_relative", "", "defect over all gas of the oil",
            _gas("defect_relative"), shown=(Shown("balance", ".0e", table=GASES),), key="gas_balance.defect_relative"),
 )  # fmt: skip
 
@@ -134,7 +134,7 @@ def result_columns(moment: bool, gas: bool) -> Columns:
 # Of a History: whole in JSON, moment by moment in pandas
 HISTORY = (
     Column("time", "s", "time", attrgetter("time_s"), key="t_s"),
-    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,), key=""),
+    Column("displacement", "", "journal displacement over clearance", shape=(2,), key=""),
     Column("force", "N", "force on the journal", shape=(2,), key="force_history_N"),
     Column("probe_pressure", "Pa", "absolute, at the bottom, a quarter of the width from the end"),
     Column("gap_ratio", "", "gap there over the clearance"),

@@ -19,8 +19,8 @@ WARM_FILMS = (
 # Of a RingTemperature
 WARM_RINGS = (
     Column("ring", "", "name of the ring", shown=(Shown("ring"),)),
-    Column("inner", "K", "temperature of its inner surface", shown=(Shown("inner, degC", ".1f", "degC"),)),
-    Column("outer", "K", "temperature of its outer surface", shown=(Shown("outer, degC", ".1f", "degC"),)),
+    Column("inner", "K", "of its inner surface", shown=(Shown("inner, degC", ".1f", "degC"),)),
+    Column("outer", "K", "of its outer surface", shown=(Shown("outer, degC", ".1f", "degC"),)),
     Column("speed_ratio", "", "speed of the ring over the rotor speed", shown=(Shown("speed over rotor's", ".4f"),)),
 )
 

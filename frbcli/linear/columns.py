@@ -23,7 +23,7 @@ SPEED = Column("speed", "Hz", "rotor speed", shown=(
 ))  # fmt: skip
 NAME = Column("film", "", "name of the film, empty of one alone")
 STATUS = Column("status", "", "`resting` or `not-converged`")
-DISPLACEMENT = Column("displacement", "", "displacement of the journal over the clearance", shape=(2,))
+DISPLACEMENT = Column("displacement", "", "journal displacement over clearance", shape=(2,))
 ECCENTRICITY = Column("eccentricity", "", "relative eccentricity of the journal", shown=(
     *(Shown("eps", ".3f", table=table) for table in (FILMS, WARM, MIXED, *MATRICES)),
     Shown("eps", ".4f", table=STABILITY),
@@ -154,7 +154,7 @@ POINT = (SPEED, STATUS, GROWTH,
 MODES = (
     Column("frequency", "Hz", "frequency of a mode", lambda mode: mode.value.imag / (2 * math.pi),
            shown=(Shown("mode Hz", ".1f", table=STABILITY),)),
-    Column("damping_ratio", "", "share of the critical damping, below 0 of a mode that grows",
+    Column("damping_ratio", "", "damping ratio, below 0 of a growing mode",
            lambda mode: 0.0 - mode.value.real / abs(mode.value), shown=(Shown("damping", ".4f", table=STABILITY),),
            key="damping"),
     Column("growth", "1/s", "real part of the eigenvalue", attrgetter("value.real"),
@@ -211,7 +211,7 @@ RESPONSE_POINTS = (
     Column("point", "", "point", attrgetter("points"), key="node"),
     Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
     Column("amplitude_error", "m", "expected error", lambda sweep: sweep.amplitude_error, key="error.amplitude_m"),
-    Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
+    Column("phase", "deg", "phase of the forward motion to the rotor",
            shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
     Column("x", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 0])),
     Column("y", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 1])),
@@ -230,7 +230,7 @@ PEAKS = (
            shown=(speed_shown(".6g", table=RESPONSE),)),
     Column("speed_uncertainty", "Hz", "expected error", attrgetter("speed_uncertainty_Hz"),
            more="by search and mesh"),
-    Column("mode", "", "number of the mode that resonates, by frequency", shown=(Shown("mode", table=RESPONSE),)),
+    Column("mode", "", "number of the resonant mode", shown=(Shown("mode", table=RESPONSE),)),
     Column("direction", "", "`forward`, `backward` or `mixed`", shown=(Shown("whirl", table=RESPONSE),)),
     Column("node", "", "point with the largest amplitude",
            shown=(Shown("point", lambda name: name.replace("_", " "), table=RESPONSE),)),

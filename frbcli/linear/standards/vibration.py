@@ -113,7 +113,7 @@ def _verdict(within: bool | None) -> str:
 
 _POINT = (
     Column("node", "", "point of the shaft", shown=(Shown("point", lambda name: name.replace("_", " ")),)),
-    Column("speed", "Hz", "speed of operation at which it is largest over its limit", attrgetter("speed_Hz"),
+    Column("speed", "Hz", "speed of the largest ratio to its limit", attrgetter("speed_Hz"),
            shown=(speed_shown(),)),
     Column("peak_to_peak", "m", "vibration, peak to peak",
            shown=(Shown("um p-p", ".3g", "um"),)),
