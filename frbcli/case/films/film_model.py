@@ -17,7 +17,7 @@ class FilmModel(Model):
     """How the films are computed."""
 
     theory: Theory = Field(
-        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+        default="auto", description="of the Reynolds equation"
     )
     cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
