@@ -60,15 +60,15 @@ def _angle(result: Any) -> float:
 
 
 HEAD = (
-    Column("cavitation", "", "cavitation model"),
+    Column("cavitation", "", "cavitation model", shown=(
+        Shown("cavitation", table=FORCES), Shown("cavitation", table=OIL), Shown("cavitation", table=GASES)
+    )),
     Column("theory", "", "of the film: `finite` or `short`"),
     Column("status", "", "`ok` or `not-converged`"),
 )
 
 # Of a KinematicResult; of a squeeze or a whirl at the moment of the largest force
 RESULT = (
-    Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL),
-                                       Shown("cavitation", table=GASES)), key="", flat=False),
     *HEAD,
     Column("displacement", "", "journal displacement over clearance", shape=(2,)),
     Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
