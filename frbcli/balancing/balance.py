@@ -205,7 +205,7 @@ def balance(
     --------
     >>> import frbcli
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
-    >>> frbcli.balance(run, ["compressor", "turbine"]).planes  # doctest: +SKIP
+    >>> frbcli.balance(run, ["disk"]).planes  # doctest: +SKIP
     """
     _check_angles([run, *(trial.run for trial in trials)], triggered)
     named = tuple(dict.fromkeys(planes or (trial.plane for trial in trials)))
