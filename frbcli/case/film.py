@@ -64,7 +64,7 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
         del fields[name]
     for of in _with_keys():
         alias = None if attribute(of) == of.name else of.name
-        made = Field(default=_table(of)(), alias=alias, description=f"keys of the model {of.label}")
+        made = Field(default=_table(of)(), alias=alias, description="keys of this model")
         fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
     for model in (film, *others):
         its = model.model_fields[CAVITATION]
@@ -103,14 +103,14 @@ def _entry(key: Key) -> Any:
 
 
 class ColdClearance(Model):
-    """A clearance at the reference temperature and its change by thermal expansion, equation (4.24)."""
+    """A clearance that changes by thermal expansion, (4.24)."""
 
-    cold: Clearance = Field(description="radial clearance at the reference temperature")
-    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
+    cold: Clearance = Field(description="radial, at the reference temperature")
+    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="of `cold`")
     shell_temperature: Temperature = Field(description="in operation")
     journal_temperature: Temperature = Field(description="in operation")
-    shell_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
-    journal_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
+    shell_expansion: Expansion = Field(description="linear thermal")
+    journal_expansion: Expansion = Field(description="linear thermal")
 
     def warm(self, diameter: float) -> float:
         """The warm radial clearance [m] of a bearing of `diameter` [m]."""
@@ -120,10 +120,10 @@ class ColdClearance(Model):
 
 
 class ClearanceStep(Model):
-    """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
+    """A sudden change of the gap in a run; its oil stays."""
 
     time: Duration = Field(description="from the start of the run")
-    clearance: Clearance = Field(description="radial, warm, from this time on")
+    clearance: Clearance = Field(description="radial, warm, from then on")
 
 
 AnyClearance = Annotated[
@@ -133,15 +133,15 @@ AnyClearance = Annotated[
 
 
 class Lobes(Model):
-    """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
+    """Equal lobes, machined with a larger radius than the assembled clearance."""
 
-    count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
+    count: Annotated[int, Count(2, 12, 3)] = Field(description="of lobes")
     preload: Preload = Field(
-        description="1 - c_b / c_p, with the assembled clearance c_b (`clearance`) and the machined clearance c_p"
+        description="1 - c_b / c_p: assembled clearance c_b (`clearance`), machined clearance c_p"
     )
     position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
     offset: Fraction = Field(
-        default=0.5, description="narrowest place of a lobe, as a share of its arc from its start, counter-clockwise"
+        default=0.5, description="narrowest place, as a share of the arc from its start, counter-clockwise"
     )
 
 
@@ -150,15 +150,15 @@ Profile = Annotated[tuple[tuple[Angle, Gap], ...], Field(min_length=2, max_lengt
 
 
 class SealedEnds(Model):
-    """Ends with a seal, such as a piston ring, beyond which lies the air."""
+    """Ends with a seal, such as a piston ring, to the air."""
 
     sealed: Fraction = Field(
-        description="share of the side flow of open ends that leaves the film: 1 is open, 0 is tight"
+        description="share of the open side flow that leaves: 1 open, 0 tight"
     )
 
 
 class PartBath(Model):
-    """Ends that lie in oil up to a level, and above it in the air."""
+    """Ends in oil up to a level, in air above."""
 
     bath_level: Position = Field(description="height y of the oil over the middle of the shell")
 
@@ -180,27 +180,27 @@ AnyEnds = Annotated[
 class FilmGeometry(Model):
     """The geometry of one film, its supply and its ends."""
 
-    width: Length = Field(description="axial width of the whole bearing")
+    width: Length = Field(description="axial, of the whole bearing")
     diameter: Length = Field(description="of the journal")
-    given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
+    given_clearance: AnyClearance = Field(alias="clearance", description="radial, warm; or `{cold}`")
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
     given_ends: AnyEnds = Field(
         default="free-to-air",
         alias="ends",
-        description="no oil enters at the ends (4.36), or they lie in oil; or a table with `sealed` or `bath_level`",
+        description="no oil enters (4.36), or ends in oil; or `{sealed}` or `{bath_level}`",
     )
-    supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
-    lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
+    supply: Supply = Field(default=NoSupply(), description="see below")
+    lobes: Lobes | None = Field(default=None, description="default: a plain cylinder")
     profile: Profile | None = Field(
         default=None,
-        description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal, over one turn, linear between them; "
-        "no gap is less than the clearance",
+        description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal over one turn, linear in between; no "
+        "gap below the clearance",
     )
-    viscosity: Viscosity | None = Field(default=None, description="of this film, if not oil.viscosity")
-    temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
+    viscosity: Viscosity | None = Field(default=None, description="default: oil.viscosity")
+    temperature: Temperature | None = Field(default=None, description="for the viscosity by Vogel's law")
     side_flow_factor: Ratio | None = Field(
         default=None,
-        description="beta of thermal.side_flow = concentric; by default 1 with a groove around, else 0.6",
+        description="beta of thermal.side_flow = concentric; default: 1 with a groove around, else 0.6",
     )
 
     @property
@@ -247,9 +247,9 @@ class FilmGeometry(Model):
 
 
 class RingFilm(FilmGeometry):
-    """A film inside or outside of a floating ring, which may have a cavitation model of its own."""
+    """A film inside or outside of a floating ring."""
 
-    cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
+    cavitation: Cavitation | None = Field(default=None, description="default: film.cavitation")
 
 
 Coupling = Literal["auto", "monolithic", "dynamic-static", "dynamic-static-semi-implicit", "co-simulation"]
@@ -259,27 +259,27 @@ class FilmModel(Model):
     """How the films are computed."""
 
     theory: Theory = Field(
-        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+        default="auto", description="of the Reynolds equation"
     )
-    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
+    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global",
-        description="torque of a cavitated film: reduced by the mean oil fraction (4.46), the local one, or not",
+        description="torque reduced by the mean oil fraction (4.46), the local one, or not",
     )
     torque: Literal["all", "couette", "simple"] = Field(
-        default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
+        default="all", description="on floating rings: both terms of (3.17), the first, or formula (4.6)"
     )
-    coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
+    coupling: Coupling = Field(default="auto", description="of rotor and films in time")
     grid: Literal["auto", "fixed", "half-speed"] = Field(
         default="auto",
         description="fixed cells, or turning with the mean surface speed; auto: turning for mass-conserving plain gaps",
     )
     solution: Literal["auto", "table", "cells"] = Field(
-        default="auto", description="in runs: tabulated before the run where possible, or solved as finite volumes"
+        default="auto", description="in runs: tabulated where possible, or finite volumes"
     )
     tilt: Literal["none", "follows"] = Field(
         default="none",
-        description="the gap is constant along the axis, or follows the tilt of journals and rings",
+        description="gap constant along the axis, or following the tilt of journals and rings",
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare

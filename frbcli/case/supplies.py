@@ -22,14 +22,14 @@ from frbcli.units import NUMBER, display
 
 MIDDLE = 0.5  # of the width
 TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
-SupplyPressure = Annotated[InputPressure, Field(description="supply pressure, absolute; may change over time")]
+SupplyPressure = Annotated[InputPressure, Field(description="absolute")]
 Ramp = Annotated[
-    RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
+    RiseTime, Field(description="t_1 of (4.11), rise time in squeeze and whirl")
 ]
 
 LargestFlow = Annotated[
     Flow | None,
-    Field(description="flow limit of the whole bearing; where the film would take more, the pressure falls"),
+    Field(description="flow limit of the whole bearing, at which the pressure falls"),
 ]
 
 
@@ -250,10 +250,10 @@ ONE_LAND = 0.25  # flow of one land of the whole width over the flow of two land
 
 
 class CircumferentialGroove(PressureSupply):
-    """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
+    """A groove around the bearing, in the middle or at one end."""
 
     kind: Literal["circumferential-groove"] = Field(description="a groove around the bearing")
-    axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
+    axial_position: Fraction = Field(default=0.5, description="0.5: middle; 0 or 1: ends")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None
@@ -302,9 +302,9 @@ class AxialGrooves(SpacedSupply):
     """Axial grooves in the shell, evenly spaced."""
 
     kind: Literal["axial-grooves"] = Field(description="grooves along the axis, in the shell")
-    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="number of grooves")
-    position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
-    opening_angle: OpeningAngle = Field(description="angle of one groove")
+    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="of grooves")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first")
+    opening_angle: OpeningAngle = Field(description="of one groove")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None
@@ -326,14 +326,14 @@ class AxialGrooves(SpacedSupply):
 
 
 class Bores(SpacedSupply):
-    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
+    """Equal feed holes in shell or journal, evenly spaced."""
 
     kind: Literal["bores"] = Field(description="round feed holes")
-    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
-    diameter: Length = Field(description="of a feed hole")
-    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
-    position: Angle = Field(default=0.0, description="phi of the first feed hole")
-    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
+    count: Annotated[int, Count(1, 100, 6)] = Field(description="of feed holes")
+    diameter: Length = Field(description="of a hole")
+    axial_position: Fraction = Field(default=0.5, description="0 and 1: ends")
+    position: Angle = Field(default=0.0, description="phi of the first")
+    on: Literal["shell", "journal"] = Field(default="shell", description="surface with the holes")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None
@@ -377,9 +377,9 @@ class Pocket(PressureSupply):
     """A pocket in the shell, in the middle of the width."""
 
     kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
-    position: Angle = Field(description="phi of the middle of the pocket")
-    opening_angle: OpeningAngle = Field(description="angle of the pocket")
-    width: Length = Field(description="axial width of the pocket")
+    position: Angle = Field(description="phi of its middle")
+    opening_angle: OpeningAngle = Field(description="of the pocket")
+    width: Length = Field(description="axial")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None
@@ -389,13 +389,13 @@ class Pocket(PressureSupply):
 
 
 class AxialSlots(SpacedSupply):
-    """Axial slots in the shell, in the middle of the width, evenly spaced; lands at their ends hold the pressure."""
+    """Axial slots in the middle of the shell, evenly spaced, closed at their ends."""
 
     kind: Literal["axial-slots"] = Field(description="slots along the axis over a part of the width, in the shell")
-    count: Annotated[int, Count(1, 24, 2)] = Field(default=1, description="number of slots")
-    position: Angle = Field(default=0.0, description="phi of the middle of the first slot")
-    opening_angle: OpeningAngle = Field(description="angle of one slot")
-    length: Length = Field(description="axial length of a slot")
+    count: Annotated[int, Count(1, 24, 2)] = Field(default=1, description="of slots")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first")
+    opening_angle: OpeningAngle = Field(description="of one slot")
+    length: Length = Field(description="axial")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

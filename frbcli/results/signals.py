@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from frbcli.arrays import Array
 from frbcli.results.files.container import refuse
+from frbcli.results.growing import GrownSignal
 
 SIZE = 0  # its position in a stamp
 
@@ -117,7 +118,7 @@ class Signal:
     RunFileError is raised if the file has changed. A slice gives the values (m,) of some samples.
     """
 
-    source: Array | Stored
+    source: Array | Stored | GrownSignal
     unit: str
 
     @property

@@ -57,11 +57,8 @@ class UnfedFilm:
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
-    """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
+    """The films of a case without a pressurised supply."""
     unfed: list[UnfedFilm] = []
-    form = form_of(case)
-    if not form.solved:
-        return ()
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)

@@ -37,23 +37,23 @@ PointTime = Annotated[float, Quantity("s", "1 s", least=0)]
 
 
 class SpeedRamp(Model):
-    """Rotor speed [Hz]: linear from `from` to `to` in `duration`, or through points; a run-down goes back."""
+    """Rotor speed: linear from `from` to `to`, or through points; a run-down goes back."""
 
-    start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
+    start: FirstSpeed = Field(alias="from", description="at the start; negative: reversed rotation")
     end: Speed = Field(alias="to", description="at the end of the run-up")
     duration: Duration = Field(description="of the run-up")
     hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
-    down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
+    down_duration: Duration = Field(default=math.nan, description="of a run-down; default: the duration")
     points: tuple[tuple[PointTime, Speed], ...] = Field(
-        default=(), description="replaces from, to and duration: times from 0 on with speeds, linear between them"
+        default=(), description="replaces from, to and duration: times from 0 on with speeds"
     )
     file: Label = Field(
-        default="", description="replaces points: CSV, WAV, MAT or UFF with the columns time and speed",
+        default="", description="replaces points: CSV, WAV, MAT or UFF with columns time and speed",
     )  # fmt: skip
-    tacho: Label = Field(default="", description="column of `file` with pulses, from which the speed follows")
-    pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` in a revolution")
+    tacho: Label = Field(default="", description="column of `file` with pulses, for the speed")
+    pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` per revolution")
     times: tuple[PointTime, ...] = Field(default=(), description="contents of points or `file`, written by runs")
-    speeds: tuple[Speed, ...] = Field(default=(), description="at these times")
+    speeds: tuple[Speed, ...] = Field(default=(), description="contents of points or `file`, written by runs")
 
     @property
     def course(self) -> tuple[tuple[float, ...], tuple[float, ...]]:
@@ -87,30 +87,30 @@ def _any_per_minute(given: object) -> bool:
 
 
 class KinematicMotion(Model):
-    """A kinematic test of a bearing: the motion of the journal is given."""
+    """Given motion of the journal in a kinematic test."""
 
     film: Label = Field(
         default="",
-        description="name of the tested film, needed where there are several; all outside of it is fixed",
+        description="tested film, required with several; all else is fixed",
     )
-    eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
+    eccentricity: Eccentricity | None = Field(default=None, description="displacement over clearance")
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
-    load: Force | None = Field(default=None, description="replaces the displacement: a static equilibrium")
+    load: Force | None = Field(default=None, description="replaces the displacement: static equilibrium")
     speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is fixed")
-    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
-    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
+    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation")
+    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation")
     velocity: tuple[Velocity, Velocity] | None = Field(
-        default=None, description="of a rotation: of the journal along x, y; replaces the two before"
+        default=None, description="of a rotation, along x, y; replaces the two before"
     )
     tilt: tuple[Tilt, Tilt] | None = Field(
-        default=None, description="of the journal about x, y through the middle of the bearing"
+        default=None, description="of the journal about x, y, at the middle of the bearing"
     )
     tilt_rate: tuple[TiltRate, TiltRate] | None = Field(
-        default=None, description="of a rotation: how fast the journal tilts about x, y"
+        default=None, description="of a rotation, about x, y"
     )
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
     periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = Field(
-        default=3.0, description="of squeeze or whirl, that are computed"
+        default=3.0, description="of squeeze or whirl"
     )
 
     @property
@@ -131,50 +131,50 @@ class Start(Model):
     """Position of the journal at the start of a run."""
 
     position: Literal["centre", "resting"] = Field(
-        default="centre", description="in the middle of the bearings, or in static equilibrium at the first speed"
+        default="centre", description="middle of the bearings, or static equilibrium at the first speed"
     )
     displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
 
 
 class Accuracy(Model):
-    """Accuracy of the result: one target, or mesh and tolerance."""
+    """One target, or mesh and tolerance."""
 
     target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = Field(
-        default=1e-3, description="error of the eccentricities that is aimed at"
+        default=1e-3, description="error of the eccentricities"
     )
     budget: Annotated[float, Quantity("s", "60 s", above=0)] | None = Field(
         default=None, description="CPU time of a run-up, if the target needs more: the most exact plan within it"
     )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
-        default=None, description="elements along the axis, then around the circumference, where there are no fewer"
+        default=None, description="elements along the axis and, at least, around the circumference"
     )
     tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
-        default=None, description="of the time integration, relative to the clearance"
+        default=None, description="of the time integration, over clearance"
     )
     steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = Field(
         default=STEPS_PER_REVOLUTION, description="at least; finite-volume films take fewer by default"
     )
     macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
-        default=MACRO_STEP, description="longest macro step of a co-simulation"
+        default=MACRO_STEP, description="longest, of a co-simulation"
     )
 
 
 class FilmFrames(Model):
-    """Oil fractions and free gas of all cells that a run keeps, for pictures of its films."""
+    """Recorded oil fractions and free gas of all cells, for pictures."""
 
-    begin: Hold = Field(alias="from", description="time of the first ones")
-    end: Duration = Field(alias="to", description="time of the last ones")
-    frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="so many, at even times")
+    begin: Hold = Field(alias="from", description="first and last time")
+    end: Duration = Field(alias="to", description="first and last time")
+    frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="number, at even times")
 
 
 class Output(Model):
     """Output of a run."""
 
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
-        default=OUTPUT_STEP, description="between the samples of a run file"
+        default=OUTPUT_STEP, description="between samples"
     )
     signals: tuple[FilmSignal, ...] = Field(
         default=(),
-        description="further signals of each film that a run records",
+        description="further signals of each film",
     )
-    films: FilmFrames | None = Field(default=None, description="keep oil and gas of mass-conserving films")
+    films: FilmFrames | None = Field(default=None, description="record oil and gas of mass-conserving films")

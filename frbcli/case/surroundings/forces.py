@@ -24,27 +24,27 @@ Order = Annotated[float, Quantity(NUMBER, "2")]
 
 
 class AppliedForce(MachineTable):
-    """A constant, harmonic or tabulated force on a disk, a journal, a ring or a support."""
+    """A constant, harmonic or tabulated force on a disk, journal, ring or support."""
 
     at: Identifier = Field(
-        description="disk or bearing by its name, or a point of a run such as `disk`, `journal_left`, `support`"
+        description="disk or bearing by name, or a point of a run such as `disk`, `journal_left`, `support`"
     )
     force: tuple[ForceEntry, ForceEntry] | None = Field(
         default=None,
-        description="[x, y], of a harmonic force its amplitude; factor of the columns of `file`, by default 1 N",
+        description="[x, y] or amplitude; factor of the columns of `file`, default: 1 N",
     )
     order: Order | None = Field(
-        default=None, description="times the angle of the rotor; a negative order rotates the force clockwise"
+        default=None, description="times the rotor angle; below 0 clockwise"
     )
-    frequency: SignedSpeed | None = Field(default=None, description="replaces `order`: independent of the rotor")
+    frequency: SignedSpeed | None = Field(default=None, description="fixed; replaces `order`")
     rotating: bool = Field(
         default=False,
-        description="the direction turns counter-clockwise, by default with the rotor",
+        description="turns counter-clockwise, default: with the rotor",
     )
-    phase: Angle = Field(default=0.0, description="of a harmonic force at angle and time zero")
+    phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
         default="",
-        description="replaces the four: CSV, WAV, MAT or UFF with the columns time, x and y, or one for both",
+        description="replaces the four: CSV, WAV, MAT or UFF with columns time, x and y, or one for both",
     )
     over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 
@@ -93,19 +93,18 @@ AccelerationEntry = Annotated[float, Quantity("m/s^2", "2 m/s^2")]
 
 
 class Base(MachineTable):
-    """Motion of the ground: harmonic, or a table over time. Displacements are relative to the ground."""
+    """Motion of the ground, harmonic or tabulated. Displacements are relative to it."""
 
     acceleration: tuple[AccelerationEntry, AccelerationEntry] | None = Field(
         default=None,
-        description="[x, y], amplitude of the ground; factor of the columns of `file`, by default 1 m/s^2",
+        description="[x, y] amplitude; factor of the columns of `file`, default: 1 m/s^2",
     )
-    order: Order | None = Field(default=None, description="times the angle of the source; by default 1")
-    speed: Speed | None = Field(default=None, description="of the source, such as an engine; by default of the rotor")
+    order: Order | None = Field(default=None, description="times the angle of the source; default: 1")
+    speed: Speed | None = Field(default=None, description="of the source, such as an engine; default: of the rotor")
     phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
         default="",
-        description="replaces order, speed and phase: CSV, WAV, MAT or UFF with the "
-        "columns time, x and y, or one for both",
+        description="replaces order, speed and phase: as of a [[force]]",
     )
     over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 
@@ -158,12 +157,12 @@ Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
 
 
 class MagneticPull(MachineTable):
-    """The unbalanced magnetic pull of an electrical machine: a spring of negative stiffness."""
+    """Unbalanced magnetic pull of an electrical machine: a negative spring."""
 
     at: Identifier = Field(description="place of the rotor, as of a [[force]]")
-    pull: Pull = Field(description="force over displacement; of a symmetric rotor at each of both journals")
+    pull: Pull = Field(description="force over displacement; of a symmetric rotor at each journal")
     stator: Identifier = Field(
-        default="", description="place that the stator is fixed to, such as `housing`; the ground if not given"
+        default="", description="place of the stator, such as `housing`; default: the ground"
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
@@ -180,25 +179,25 @@ Friction = Annotated[float, Quantity(NUMBER, "0.1", least=0)]
 
 
 class Spring(MachineTable):
-    """A spring with a damper, or a stop, between a place and the ground or another place."""
+    """A spring with damper, or a stop, to ground or between two places."""
 
-    at: Identifier = Field(default="", description="place, as of a [[force]], against the ground")
+    at: Identifier = Field(default="", description="place, as of a [[force]]")
     between: tuple[Identifier, Identifier] | None = Field(
         default=None, description="replaces `at`: two places, such as `compressor` and `housing`"
     )
-    stiffness: Stiffness | None = Field(default=None, description="alike in all directions; of a stop, beyond its gap")
-    cubic: Cubic = Field(default=0.0, description="force over the third power of the displacement")
-    gap: Gap = Field(default=0.0, description="of a stop: radial distance before it touches; its damping acts radially")
-    damping: Damping = Field(default=0.0, description="of a stop, while it touches; it does not pull")
-    friction: Friction = Field(default=0.0, description="coefficient of a stop, against the sliding of the first place")
+    stiffness: Stiffness | None = Field(default=None, description="in all directions; of a stop, beyond its gap")
+    cubic: Cubic = Field(default=0.0, description="force over displacement cubed")
+    gap: Gap = Field(default=0.0, description="radial gap of a stop")
+    damping: Damping = Field(default=0.0, description="of a stop, in contact only, without pull")
+    friction: Friction = Field(default=0.0, description="of a stop, against sliding of the first place")
     radius: Length | None = Field(
         default=None,
-        description="at which a turning shaft rubs: it slides with omega times the radius and the motion "
-        "of its centre; without it with the sense of its rotation",
+        description="where a turning shaft rubs: sliding by rotation and centre motion; without it by the sense of "
+        "rotation",
     )
 
     law: Identifier = Field(
-        default="", description="replaces all of these: a force law that was added from Python, by its name"
+        default="", description="replaces these: a force law from Python, by its name"
     )
     numbers: dict[str, float | str] = Field(default={}, description="of the law, by the names of its fields")
 

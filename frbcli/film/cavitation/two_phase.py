@@ -28,7 +28,7 @@ class Peeken(Law):
     equation = "(3.39)"
     meaning = "Peeken's model."
     cell_words = "dissolved air comes out of the oil"
-    keys = (Key("bunsen", 0.1, "Bunsen's coefficient, the share of dissolved gas", "0.1", least=0.0),)
+    keys = (Key("bunsen", 0.1, "Bunsen's coefficient, share of dissolved gas", "0.1", least=0.0),)
     cost = 1.0
     compared = (("bunsen", (0.1, 0.5, 1.0)),)  # air in oil has about 0.1
 
@@ -122,7 +122,7 @@ class TwoPhase(Law):
             "whirl_steepness", None, "x_1 while the journal whirls at about half the speed, in run-ups", "0.99",
             above=0.0, below=1.0,
         ),
-        Key("form", "conservative", "mass-conserving, or as published (4.31), which creates oil",
+        Key("form", "conservative", "mass-conserving, or as published (4.31), creating oil",
             choices=("conservative", "published")),
         Key("diffusion", "consistent", "artificial (4.42), of the published form",
             choices=("consistent", "streamline", "none")),

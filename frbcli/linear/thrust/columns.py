@@ -61,9 +61,9 @@ AXIAL = (
     Column("axial_load", "N", "load on the rotor along its axis", more="towards larger positions",
            shown=(Shown("load", "{:.4g} N".format, table=STABILITY),)),
     Column("axial_position", "m", "axial position of the collar", attrgetter("position"),
-           more="from the middle of the end play, or from the pads of its only side"),
+           more="from the middle of the end play, or from the pads of the only side"),
     Column("axial_frequency", "Hz", "frequency of the motion along the axis", attrgetter("frequency"),
            more="0 where it does not oscillate"),
-    Column("axial_growth", "1/s", "growth of that motion", attrgetter("eigenvalue.real"), more="below 0 it decays"),
+    Column("axial_growth", "1/s", "growth", attrgetter("eigenvalue.real"), more="below 0 it decays"),
     *named([column for column in THRUST if column.quantity not in ("bearing", "speed")], "", attrgetter("films")),
 )  # fmt: skip
