@@ -40,7 +40,7 @@ from frbcli.scene.course import expected_course
 from frbcli.scene.machine.system import Segment, System, make_segments
 from frbcli.scene.planning.planned import Plan
 from frbcli.scene.supply import advised
-from frbcli.solve.cosimulation.macro_step import advance_in_turn
+from frbcli.solve.cosimulation import advance_in_turn
 from frbcli.solve.state import (
     CONTACT,
     FINISHED,

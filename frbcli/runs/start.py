@@ -24,7 +24,7 @@ from frbcli.scene.coupling import coupling_named
 from frbcli.scene.course import longest_step, steps_of_a_turn
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.planned import Plan
-from frbcli.solve.cosimulation.micro_step import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
+from frbcli.solve.cosimulation import CO_NUMBERS, FILMS_REMEMBER, MICRO_REJECTED, MICRO_STEP, MICRO_STEPS
 from frbcli.solve.drive import DrivenRotor
 from frbcli.solve.films.cells import GLOBAL_FACTOR, LOCAL_FACTOR, NO_FACTOR, SIMPLE_FACTOR
 from frbcli.solve.inputs import Inputs

@@ -25,8 +25,7 @@ from numba.extending import overload
 from frbcli.arrays import Array
 from frbcli.compiled import AS_KERNELS, compiled, compiled_for
 from frbcli.solve.scratch import Scratch, rotation
-from frbcli.solve.stage.equations import CORRECTION, FREE, LATE, U_0, Q, V
-from frbcli.solve.stage.inverse import E_COS, E_GYROSCOPIC, E_SIN
+from frbcli.solve.stage.equations import CORRECTION, E_COS, E_GYROSCOPIC, E_SIN, FREE, LATE, U_0, Q, V
 from frbcli.solve.state import RUNNING, SLIP, STANDSTILL, STEP, TIME, RotorData
 
 CONSTANT, LINEAR, SQUARE = range(3)  # parts of the load

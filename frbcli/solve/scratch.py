@@ -17,15 +17,14 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled
 from frbcli.rotor import loads as speed_profile
 from frbcli.solve.stage.contact import prepare_cones
-from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING
-from frbcli.solve.stage.inverse import prepare
+from frbcli.solve.stage.equations import JOURNAL_ROWS, STAGE_ROWS, STANDING, prepare
 from frbcli.solve.stage.loads import prepare_loads
 from frbcli.solve.state import INVERSE_G, INVERSE_SPEED, RotorData
 
 
 class Scratch(NamedTuple):
     """selection (m, n): see selected; products, loads, spread, compliance, elimination:
-    see prepare of inverse.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of equations.py; stage_v, stage_a
+    see prepare of equations.py; at (STAGE_ROWS, n), journal (JOURNAL_ROWS, m): rows of equations.py; stage_v, stage_a
     (n, stages)."""
 
     selection: Array

@@ -31,8 +31,19 @@ from frbcli.solve.inputs import Inputs, set_inputs, supply_warm
 from frbcli.solve.ring_spin import Rings, guess_speeds, make_rings, set_speeds, spin_up
 from frbcli.solve.scratch import Scratch, make_scratch, selected
 from frbcli.solve.stage.contact import prepare_cones, set_sliding, turn_cones
-from frbcli.solve.stage.equations import STANDING, U, accelerate, begin_lag, guess, limit_of, norm, predict, start_stage
-from frbcli.solve.stage.inverse import outdated, prepare
+from frbcli.solve.stage.equations import (
+    STANDING,
+    U,
+    accelerate,
+    begin_lag,
+    guess,
+    limit_of,
+    norm,
+    outdated,
+    predict,
+    prepare,
+    start_stage,
+)
 from frbcli.solve.stage.journal_newton import correct, forces
 from frbcli.solve.stage.loads import add_loads, prepare_loads
 from frbcli.solve.stage.ports import left_at_ports, push_ports, shortest, turn_ports

@@ -34,7 +34,7 @@ from frbcli.scene.channels import coupled_channels
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.cosimulation.micro_step import _solve_films
+from frbcli.solve.cosimulation import _solve_films
 from frbcli.solve.films.steps import begin_stage, make_work
 from frbcli.solve.stage.equations import BY_X, BY_Y, FORCE, JOURNAL_ROWS, OMEGA, X_0, U
 from frbcli.solve.state import RUNNING, State, make_output

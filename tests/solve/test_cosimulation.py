@@ -20,8 +20,7 @@ from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
-from frbcli.solve.cosimulation.macro_step import advance_in_turn
-from frbcli.solve.cosimulation.micro_step import MICRO_STEPS, parabola
+from frbcli.solve.cosimulation import MICRO_STEPS, advance_in_turn, parabola
 from frbcli.solve.state import FINISHED, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance

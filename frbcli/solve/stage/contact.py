@@ -136,8 +136,8 @@ def sharpness(rough: RoughContact, clearance: float) -> float:
 
 class Cones(NamedTuple):
     """rings: (c,) numbers of the rings; columns: (2 c, n) their slopes in x and y times the root of the inertia;
-    response: as columns, of the inverse E of inverse.py with them; pulls: (2 c,) of the iteration before; elimination:
-    (2, n, 2 n + columns) to work in."""
+    response: as columns, of the inverse E of equations.py with them; pulls: (2 c,) of the iteration before;
+    elimination: (2, n, 2 n + columns) to work in."""
 
     rings: NDArray[np.int64]
     columns: Array

@@ -19,8 +19,7 @@ from frbcli.arrays import Array
 from frbcli.compiled import compiled, compiled_for
 from frbcli.dense import solve_dense
 from frbcli.rotor.loads import Harmonic, Load, Tabulated
-from frbcli.solve.stage.equations import FREE, U_0
-from frbcli.solve.stage.inverse import add_table
+from frbcli.solve.stage.equations import FREE, U_0, add_table
 from frbcli.solve.state import RotorData
 
 ORDER, FREQUENCY = range(2)  # of a harmonic
@@ -31,7 +30,7 @@ class VaryingLoads(NamedTuple):
 
     columns: (2 (h + k), n) N; turns: (h, 2) ORDER and FREQUENCY in rad/s; first: (k + 1,) row of each table, and their
     number; times: (rows,) s of all tables; cubics: (rows, 2, 4); response: as columns, m/s^2, of the inverse E of
-    inverse.py with them; elimination: (2, n, 2 n + columns) to work in.
+    equations.py with them; elimination: (2, n, 2 n + columns) to work in.
     """
 
     columns: Array
@@ -73,7 +72,7 @@ def prepare_loads(loads: VaryingLoads, rotor: RotorData, g: float, speed: float)
 def solve_columns(
     columns: Array, response: Array, elimination: Array, rotor: RotorData, g: float, speed: float
 ) -> None:
-    """response <- the inverse E of inverse.py for this g and speed with columns (c, n) of forces."""
+    """response <- the inverse E of equations.py for this g and speed with columns (c, n) of forces."""
     n, count = rotor.mass.shape[0], columns.shape[0]
     dynamic, right = elimination[0], elimination[1]  # the forces lie behind the columns of add_table
     for i in range(n):

@@ -170,7 +170,7 @@ def tilted_ends(along: int) -> Array:
 
     The error of forces and moments then falls with the square of the cells' size from the coarsest mesh on, so that it
     can be estimated from half of the cells; on equal ones errors of different orders cancel each other there, and so
-    they do on the few cells of a run (tilted.py). """
+    they do on the few cells of a run. """
     equal = np.linspace(0.0, 1.0, along + 1)
     return np.asarray((1.0 - CHEBYSHEV) * equal + CHEBYSHEV * 0.5 * (1.0 - np.cos(np.pi * equal)))
 
