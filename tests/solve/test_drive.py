@@ -89,33 +89,25 @@ def test_too_little_torque_sticks_at_the_critical_speed(torque: float, passes: b
 
 
 def test_work_of_the_drive_is_kept_or_damped(tmp_path: Path) -> None:
-    """Kinetic and elastic energy and what the bearings damp, over the work of the torque."""
-    case = case_from_dict(driven(16.0, 1.5) | {"output": {"step": "20 us"}}, "energy")
+    """Kinetic and elastic energy and what the bearings damp are the work of the torque, through the critical speed.
+    Velocities by differences of eighth order."""
+    case = case_from_dict(
+        driven(16.0, 1.0) | {"output": {"step": "20 us"}, "accuracy": {"tolerance": 1e-8}}, "energy"
+    )
     run = frbcli.runup(case, tmp_path / "run.h5")
-    time, omega = run["time_s"], TURN * run["speed_Hz"]
-    x, y = run["journal_x_m"], run["journal_y_m"]
-    v_x, v_y = (np.gradient(each, time, edge_order=2) for each in (x, y))
-    angle = cumulative_simpson(omega, x=time, initial=0.0)
-    work = 16.0 * angle
+    step = run["time_s"][1] - run["time_s"][0]
+    weights = np.array([-1 / 280, 4 / 105, -1 / 5, 4 / 5, 0, -4 / 5, 1 / 5, -4 / 105, 1 / 280]) / step
+    inner = slice(4, -4)
+    time, omega = run["time_s"][inner], TURN * run["speed_Hz"][inner]
+    angle = cumulative_simpson(TURN * run["speed_Hz"], x=run["time_s"], initial=0.0)[inner]
+    places = [run["journal_x_m"], run["journal_y_m"]]
+    v_x, v_y = (np.convolve(each, weights, "valid") for each in places)
+    x, y = (each[inner] for each in places)
     kinetic = 0.5 * M * (v_x**2 + v_y**2) + 0.5 * J * omega**2
     kinetic -= U * omega * (v_x * np.cos(angle) + v_y * np.sin(angle))
     damped = cumulative_simpson(D * (v_x**2 + v_y**2), x=time, initial=0.0)
-    total = kinetic + 0.5 * K * (x**2 + y**2) + damped
-    late = time > 0.2
-    np.testing.assert_allclose(total[late], work[late], rtol=1e-3)
-
-
-def test_oil_brakes_a_rotor_by_the_torque_that_is_recorded(tmp_path: Path) -> None:
-    """Coast-down on films: J (omega_0 - omega) is the integral of the friction torque."""
-    case = frbcli.load_case("jeffcott", ['rotor.polar_inertia="2e-3 kg*m^2"'])
-    data = case.model_dump(by_alias=True, exclude_unset=True)
-    del data["speed"]
-    data["drive"] = {"start": "150 Hz", "duration": "1 s"}
-    run = frbcli.runup(case_from_dict(data, "coast"), tmp_path / "run.h5")
-    spent = np.trapezoid(run["friction_torque_N_m"], run["time_s"])
-    lost = 2e-3 * TURN * (run["speed_Hz"][0] - run["speed_Hz"][-1])
-    assert lost > 0.05 * 2e-3 * TURN * 150.0
-    assert spent == pytest.approx(lost, rel=1e-5)
+    balance = kinetic + 0.5 * K * (x**2 + y**2) + damped - 16.0 * angle
+    assert np.abs(balance - balance[0]).max() < 1e-8 * 16.0 * angle[-1]  # 2e-10
 
 
 def test_a_rotor_under_a_constant_load_stands_still_when_its_momentum_is_used_up(tmp_path: Path) -> None:
@@ -138,10 +130,6 @@ def test_the_top_speed_is_where_the_torque_falls_to_the_load(tmp_path: Path) -> 
     assert event["kind"] == "top-speed"
     assert event["t_s"] == pytest.approx(0.208, abs=2e-4)
     assert event["speed_Hz"] == pytest.approx((0.04 * 0.2 + 0.5 * 0.04 * 0.008) / INERTIA / (2.0 * math.pi), rel=1e-5)
-
-
-def test_a_rotor_that_only_gains_speed_has_no_top_speed(tmp_path: Path) -> None:
-    assert frbcli.runup(case_from_dict(MACHINE, "drive"), tmp_path / "run.h5").events == []
 
 
 def test_a_moment_of_a_driven_run_keeps_its_drive() -> None:

@@ -26,7 +26,17 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.plot.run.envelope import at_times, extremes
 from frbcli.plot.signals import MICRO, bearing_of, case_tables, clearance, ends, heading, motion
-from frbcli.plot.style import BLACK, BLUE, GREY, LEVEL_MAP, new_figure, plain, styled
+from frbcli.plot.style import (
+    BLACK,
+    BLUE,
+    GREY,
+    LEGEND_ROW,
+    LEVEL_MAP,
+    new_figure,
+    plain,
+    styled,
+    with_subscripts,
+)
 from frbcli.results.columns import event_name
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, TIME
@@ -51,7 +61,9 @@ UNKNOWN_m = 1.0  # stands for the clearance of a measurement without one, whose 
 TOLD_dB = 0.1  # 1 %: a smaller loss of the synchronous line is not stated
 
 MOST_NUMBERED = 10  # events, the first ones
-MARK_pt = 6.5  # height of the number of an event
+MARK_pt, LETTERS_pt = 13.0, 6.5  # diameter of the mark of an event, height of its number
+PANEL_pt = (400.0, 220.0)  # size of a panel, about
+LISTED = 2  # columns of the list of events
 ONE_WAY = 0.8  # share of the spectra of a run that only rises or only falls, which is drawn over its speed
 
 CURVES = 60
@@ -145,20 +157,27 @@ def natural_axis(found: Spectrogram) -> Over:
 
 
 def number_events(axes: Axes, run: Run, part: Spectrogram, over: Over) -> None:
-    """Mark the first events of a run within a part of its spectra by their numbers, each at its frequency."""
-    bottom, top = axes.get_ylim()
+    """Mark the first events of a run within a part of its spectra by their numbers, each at its frequency; marks that
+    would meet stand above each other."""
+    (left, right), (bottom, top) = axes.get_xlim(), axes.get_ylim()
     begin, end = sorted((float(part.time_s[0]), float(part.time_s[-1])))
+    size_pt = np.array([PANEL_pt[0] / (right - left), PANEL_pt[1] / (top - bottom)])
+    placed: list[Array] = []
     for number, event in enumerate(run.events[:MOST_NUMBERED], start=1):
-        if begin <= event["t_s"] <= end:
-            frequency = event.get("frequency_Hz") or abs(event["speed_Hz"])
-            axes.annotate(
-                str(number),
-                (event["t_s"] if over == "time" else event["speed_Hz"], min(max(frequency, bottom), top)),
-                ha="center",
-                va="center",
-                fontsize=MARK_pt,
-                bbox={"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": BLACK, "linewidth": 0.6},
-            )
+        if not begin <= event["t_s"] <= end:
+            continue
+        frequency = event.get("frequency_Hz") or abs(event["speed_Hz"])
+        here = event["t_s"] if over == "time" else event["speed_Hz"], min(max(frequency, bottom), top)
+        at = size_pt * here
+        while any(np.hypot(*(at - other)) < MARK_pt for other in placed):
+            at = at + np.array([0.0, MARK_pt])
+        placed.append(at)
+        raised = float(at[1] - size_pt[1] * here[1])
+        axes.annotate(
+            str(number), here, (0.0, raised), textcoords="offset points", ha="center", va="center", fontsize=LETTERS_pt,
+            bbox={"boxstyle": "circle,pad=0.25", "facecolor": "white", "edgecolor": BLACK, "linewidth": 0.6},
+            arrowprops={"arrowstyle": "-", "color": "white", "linewidth": 0.6} if raised else None,
+        )  # fmt: skip
 
 
 def _list_events(figure: Figure, run: Run, unit: SpeedUnit) -> None:
@@ -170,8 +189,11 @@ def _list_events(figure: Figure, run: Run, unit: SpeedUnit) -> None:
     if len(run.events) > MOST_NUMBERED:
         lines.append(f"and {len(run.events) - MOST_NUMBERED} more")
     if lines:
-        figure.legend([Line2D([], [])] * len(lines), [plain(line) for line in lines], loc="outside lower left",
-                      ncols=2, fontsize="small", handlelength=0.0, handletextpad=0.0)  # fmt: skip
+        figure.legend([Line2D([], [])] * len(lines), [with_subscripts(plain(line)) for line in lines],
+                      loc="outside lower left", ncols=LISTED, fontsize="small", handlelength=0.0,
+                      handletextpad=0.0)  # fmt: skip
+        rows = -(-len(lines) // LISTED)
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW * max(0, rows - 1))
 
 
 def _draw_other_axis(axes: Axes, part: Spectrogram, over: Over) -> None:

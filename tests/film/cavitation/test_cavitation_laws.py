@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
+from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.penalty import SPREAD, Penalty, steepness_exponent
 from frbcli.film.cavitation.two_phase import PUBLISHED_SLOPE, Peeken, TwoPhase
@@ -139,8 +139,3 @@ def test_two_phase_tends_to_elrod() -> None:
     exact = Elrod().cells(w, SCALES)
     gaps = [np.abs(TwoPhase(x, 0.0).cells(w, SCALES).pressure - exact.pressure).max() for x in (0.9, 0.99, 0.999)]
     assert gaps == pytest.approx([CAVITY * 2.0 * (1.0 - x) for x in (0.9, 0.99, 0.999)], rel=0.3)
-
-
-def test_half_sommerfeld_alone_clips() -> None:
-    assert HalfSommerfeld().clips
-    assert not any(law.clips for law in LAWS.values())
