@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from volume_films import ROTATION, section_of
 
-from frbcli.bearing_tests.march import march, whirl_path
+from frbcli.bearing_tests.history import march, whirl_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.law import Law

@@ -11,7 +11,7 @@ from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 from volume_films import section_of
 
-from frbcli.bearing_tests.march import march
+from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
