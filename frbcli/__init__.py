@@ -32,17 +32,17 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.errors import InputError as InputError
     from frbcli.errors import NotConverged as NotConverged
     from frbcli.errors import RunFileError as RunFileError
-    from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
-    from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.balance_quality import balance_quality as balance_quality
     from frbcli.linear.critical_map import critical_map as critical_map
     from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
-    from frbcli.linear.rolling.sheet import ball_bearing_sheet as ball_bearing_sheet
+    from frbcli.linear.sheets.ball import ball_bearing_sheet as ball_bearing_sheet
+    from frbcli.linear.sheets.bearing import bearing_sheet as bearing_sheet
+    from frbcli.linear.sheets.bearing import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.sheets.thrust import thrust_sheet as thrust_sheet
     from frbcli.linear.stability import stability as stability
-    from frbcli.linear.standards.balance_quality import balance_quality as balance_quality
-    from frbcli.linear.standards.vibration import vibration_limits as vibration_limits
-    from frbcli.linear.thrust.sheet import thrust_sheet as thrust_sheet
+    from frbcli.linear.vibration import vibration_limits as vibration_limits
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
     from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
     from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
@@ -90,9 +90,9 @@ _PUBLIC = {  # module, or module:attribute of another name
     "add_law": "frbcli.case.films.additions",
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
-    "balance_quality": "frbcli.linear.standards.balance_quality",
-    "ball_bearing_sheet": "frbcli.linear.rolling.sheet",
-    "bearing_sheet": "frbcli.linear.bearing_sheet",
+    "balance_quality": "frbcli.linear.balance_quality",
+    "ball_bearing_sheet": "frbcli.linear.sheets.ball",
+    "bearing_sheet": "frbcli.linear.sheets.bearing",
     "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",
     "draw_bearing": "frbcli.plot.axes:bearing",
@@ -125,13 +125,13 @@ _PUBLIC = {  # module, or module:attribute of another name
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.reading.shipped",
-    "sommerfeld_chart": "frbcli.linear.bearing_sheet",
+    "sommerfeld_chart": "frbcli.linear.sheets.bearing",
     "stability_map": "frbcli.cycles.maps.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
-    "thrust_sheet": "frbcli.linear.thrust.sheet",
-    "vibration_limits": "frbcli.linear.standards.vibration",
+    "thrust_sheet": "frbcli.linear.sheets.thrust",
+    "vibration_limits": "frbcli.linear.vibration",
     "warm_up": "frbcli.studies.kernels.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",

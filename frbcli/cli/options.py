@@ -86,7 +86,7 @@ class GradeOption(click.ParamType[float]):
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Its number. Fails the option for anything else."""
-        from frbcli.linear.standards.balance_quality import read_grade
+        from frbcli.linear.balance_quality import read_grade
 
         try:
             return read_grade(str(value))

@@ -10,8 +10,8 @@ from __future__ import annotations
 from matplotlib.axes import Axes
 
 from frbcli.analysis.spectra.spectrum import Direction
-from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
 from frbcli.linear.response import Response
+from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
 from frbcli.linear.stability import Stability
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.machine.bearing import draw_coefficient

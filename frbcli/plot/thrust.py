@@ -11,8 +11,7 @@ from matplotlib.tri import Triangulation
 from frbcli.elements.collar.collar import pad_of
 from frbcli.film.pads.geometry import MESH
 from frbcli.film.pads.mesh import pad_mesh
-from frbcli.linear.thrust.sheet import ThrustSheet
-from frbcli.linear.thrust.state import ThrustState
+from frbcli.linear.sheets.thrust import ThrustSheet, ThrustState
 from frbcli.plot.style import COLOURS, LEVEL_MAP, legend_below, new_figure, plain_numbers, styled
 
 LEVELS = 12

@@ -64,7 +64,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("computed")
 
     monkeypatch.setattr(March, "__init__", fail)
-    for place in ("linear.stability.stability", "linear.bearing_sheet.bearing_sheet", "linear.response.response",
+    for place in ("linear.stability.stability", "linear.sheets.bearing.bearing_sheet", "linear.response.response",
                   "cycles.limit_cycles.limit_cycles", "studies.fit.fit", "studies.accuracy.accuracy",
                   "studies.sweep.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
         monkeypatch.setattr(f"frbcli.{place}", fail)

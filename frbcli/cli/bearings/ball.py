@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from frbcli.case.schema import Case
-    from frbcli.linear.rolling.sheet import BallSheet
+    from frbcli.linear.sheets.ball import BallSheet
 
 
 def ball_sheet(
@@ -25,7 +25,7 @@ def ball_sheet(
     terminal: Terminal,
 ) -> int | None:  # fmt: skip
     """Compute, show and write the sheet; the exit code."""
-    from frbcli.linear.rolling.sheet import ball_bearing_sheet
+    from frbcli.linear.sheets.ball import ball_bearing_sheet
     from frbcli.results.export import ross_files
     from frbcli.results.files.kinds import ROSS
 
@@ -52,7 +52,7 @@ def ball_sheet(
 
 def _show(terminal: Terminal, sheet: BallSheet) -> None:
     from frbcli.columns import legend, table_of
-    from frbcli.linear.rolling.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
+    from frbcli.linear.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
 
     for bearing in sheet.bearings:
         name, states = " ".join(filter(None, (sheet.case.heading, bearing))), sheet.of(bearing)

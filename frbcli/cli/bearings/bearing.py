@@ -17,8 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from frbcli.case.schema import Case
-    from frbcli.linear.bearing_sheet import BearingSheet
-    from frbcli.linear.film_state import FilmState
+    from frbcli.linear.sheets.bearing import BearingSheet
+    from frbcli.linear.sheets.film_state import FilmState
 
 FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
 EXPLANATION = (
@@ -61,8 +61,8 @@ def command(
 ) -> int | None:
     """Static equilibrium, coefficients, power loss, oil flow and pressure of every film of CASE."""
     from frbcli.errors import NotConverged
-    from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
-    from frbcli.linear.film_state import heat_capacity
+    from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
+    from frbcli.linear.sheets.film_state import heat_capacity
     from frbcli.results.files.kinds import ROSS
 
     if not case.bearings and any(bearing.kind == "ball" for bearing in case.elements):
@@ -144,7 +144,7 @@ def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: b
     from frbcli.columns import legend, table_of, with_speeds_in
     from frbcli.film.cavitation.table import law_named
     from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
-    from frbcli.linear.film_state import heat_capacity
+    from frbcli.linear.sheets.film_state import heat_capacity
 
     columns, points = with_speeds_in(terminal.speeds, sheet.columns), len(sheet.of(films[0]))
     full = full or points <= FEW_POINTS

@@ -14,7 +14,7 @@ from frbcli.cli.progress import display
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.linear.thrust.sheet import ThrustSheet
+    from frbcli.linear.sheets.thrust import ThrustSheet
 
 
 @click.command()
@@ -35,7 +35,7 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Load, loss, oil flow, pressure, stiffness and damping of every thrust bearing of CASE."""
-    from frbcli.linear.thrust.sheet import thrust_sheet
+    from frbcli.linear.sheets.thrust import thrust_sheet
 
     places = outputs.check(here(case.name, "-thrust.png"))
     with display(terminal) as shown:
@@ -53,7 +53,7 @@ def command(
 
 def _show(terminal: Terminal, sheet: ThrustSheet) -> None:
     from frbcli.columns import legend, table_of
-    from frbcli.linear.thrust.columns import FILMS, THRUST, TILT_DAMPING, TILT_STIFFNESS
+    from frbcli.linear.columns import FILMS, THRUST, TILT_DAMPING, TILT_STIFFNESS
 
     titles = {FILMS: "thrust bearing", TILT_STIFFNESS: "stiffness in tilt, N m", TILT_DAMPING: "damping in tilt, N m s"}
     for bearing in sheet.bearings:

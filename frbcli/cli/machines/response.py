@@ -70,11 +70,11 @@ def command(
     Loads of order 1 and a bow join the unbalance; --excitation takes any of them alone.
     """
     from frbcli.columns import documents, spread_table
+    from frbcli.linear.balance_quality import balance_quality
     from frbcli.linear.columns import PEAKS, RESPONSE_COEFFICIENTS, RESPONSE_FILMS, RESPONSE_FORCES
     from frbcli.linear.modes import own_reduction
     from frbcli.linear.response import response
-    from frbcli.linear.standards.balance_quality import balance_quality
-    from frbcli.linear.standards.vibration import vibration_limits
+    from frbcli.linear.vibration import vibration_limits
     from frbcli.results.store import read_run
     from frbcli.scene.changes import loss_times
 

@@ -185,8 +185,7 @@ def _character(kind: ThresholdKind, unit: SpeedUnit) -> str:
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
     from frbcli.columns import document, documents, keys
-    from frbcli.linear.columns import FILM, MODES, POINT, film_columns
-    from frbcli.linear.thrust.columns import AXIAL
+    from frbcli.linear.columns import AXIAL, FILM, MODES, POINT, film_columns
 
     row, films = document(POINT, point), documents(film_columns(point.films), point.films)
     errors = row.pop("error") | (films[0]["error"] if films else {})

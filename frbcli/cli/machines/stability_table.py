@@ -10,8 +10,7 @@ import math
 from typing import TYPE_CHECKING
 
 from frbcli.columns import heads, table_of
-from frbcli.linear.columns import FILM, MODES, STABILITY
-from frbcli.linear.thrust.columns import AXIAL
+from frbcli.linear.columns import AXIAL, FILM, MODES, STABILITY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 from frbcli.cli.common import Terminal
 
 if TYPE_CHECKING:
-    from frbcli.linear.standards.balance_quality import BalanceQuality
-    from frbcli.linear.standards.vibration import VibrationLimits
+    from frbcli.linear.balance_quality import BalanceQuality
+    from frbcli.linear.vibration import VibrationLimits
 
 
 def show_limits(terminal: Terminal, limits: VibrationLimits) -> None:
     """Tables of the points of the shaft with their limits, and of the critical speeds with their margins."""
     from frbcli.columns import table_of
-    from frbcli.linear.standards.vibration import (
+    from frbcli.linear.vibration import (
         API,
         API_FORMULA,
         API_POINTS,
@@ -71,7 +71,7 @@ def show_grade(terminal: Terminal, grade: BalanceQuality) -> None:
 def limits_document(limits: VibrationLimits) -> dict[str, object]:
     """As JSON."""
     from frbcli.columns import documents
-    from frbcli.linear.standards.vibration import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGINS
+    from frbcli.linear.vibration import API_FORMULA, API_POINTS, ISO_FORMULA, ISO_POINTS, MARGINS
 
     return {
         "operating_Hz": limits.operating_Hz,

@@ -7,7 +7,7 @@ import math
 import numpy as np
 from matplotlib.figure import Figure
 
-from frbcli.linear.rolling.sheet import BallSheet, BallState
+from frbcli.linear.sheets.ball import BallSheet, BallState
 from frbcli.plot.style import COLOURS, new_figure, styled
 
 PRESSURES = (("inner ring", "inner_p_max"), ("outer ring", "outer_p_max"))

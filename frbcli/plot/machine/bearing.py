@@ -10,8 +10,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.plot.style import COLOURS, legend_above, new_figure, plain_numbers, styled
 
 Reading = Callable[[FilmState], float]

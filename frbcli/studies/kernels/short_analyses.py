@@ -9,7 +9,7 @@ from tempfile import TemporaryDirectory
 
 from frbcli.bearing_tests import kinematic
 from frbcli.case.schema import Case
-from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability_points
 from frbcli.runs.inputs import films_change, machine_inputs
 from frbcli.runs.run import runup

@@ -15,7 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.film.pads.film import PadOil, pad_film, ring_of_pads
 from frbcli.film.pads.geometry import Pad
 from frbcli.film.pads.mesh import pad_mesh
-from frbcli.linear.thrust.sheet import thrust_sheet
+from frbcli.linear.sheets.thrust import thrust_sheet
 
 REFERENCE_ERROR = 3e-4
 ROWS = list(csv.DictReader((DATA / "thrust-tapered-land.csv").read_text(encoding="utf-8").splitlines()))

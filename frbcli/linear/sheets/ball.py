@@ -18,7 +18,7 @@ from frbcli.elements.rolling.rest import RestingRings, under_load
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
 from frbcli.html import Tabular
-from frbcli.linear.rolling.columns import BALL_SHEET
+from frbcli.linear.columns import BALL_SHEET
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS
 

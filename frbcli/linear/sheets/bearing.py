@@ -25,7 +25,7 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.contact_gap import closes_freely_until
 from frbcli.html import Tabular
 from frbcli.linear.columns import sheet_columns
-from frbcli.linear.film_state import FilmState, film_state, no_state, under_vertical_load
+from frbcli.linear.sheets.film_state import FilmState, film_state, no_state, under_vertical_load
 from frbcli.rotor.assembly import held_rotor
 from frbcli.scene.films import bearing_films
 from frbcli.scene.gate.gate import require

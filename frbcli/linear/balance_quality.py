@@ -9,8 +9,7 @@ Between two tolerance planes at the bearings, U_per is divided by the levers of 
     U_A = U_per L_B / L,    U_B = U_per L_A / L,
 
 but none has less than 0.3 of it, nor more than 0.7, or 1.3 where the centre of mass overhangs. What the case has is
-transferred to these planes by the same levers, each unbalance as a vector.
-"""
+transferred to these planes by the same levers, each unbalance as a vector."""
 
 from __future__ import annotations
 
