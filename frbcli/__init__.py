@@ -24,8 +24,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.reading.shipped import shipped_cases as shipped_cases
     from frbcli.case.schema import Case as Case
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
-    from frbcli.cycles.maps.stability_map import stability_map as stability_map
-    from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
+    from frbcli.cycles.limit_cycles import limit_cycles_over as limit_cycles_over
+    from frbcli.cycles.stability_map import stability_map as stability_map
     from frbcli.equilibrium.warm_machine import warm_machine as warm_machine
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
@@ -109,7 +109,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "find_events": "frbcli.analysis.events",
     "fit": "frbcli.studies.fit",
     "limit_cycles": "frbcli.cycles.limit_cycles",
-    "limit_cycles_over": "frbcli.cycles.over_key",
+    "limit_cycles_over": "frbcli.cycles.limit_cycles",
     "load_case": "frbcli.case.reading.load",
     "load_case_text": "frbcli.case.reading.load",
     "make_plan": "frbcli.scene.planning.plan",
@@ -126,7 +126,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.reading.shipped",
     "sommerfeld_chart": "frbcli.linear.sheets.bearing",
-    "stability_map": "frbcli.cycles.maps.stability_map",
+    "stability_map": "frbcli.cycles.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",

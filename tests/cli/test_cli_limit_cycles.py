@@ -10,7 +10,7 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 import frbcli
 from frbcli.cli.main import run
 from frbcli.cycles.explain import explanations, threshold_kind
-from frbcli.cycles.over_key import limit_cycles_over
+from frbcli.cycles.limit_cycles import limit_cycles_over
 from frbcli.plot.spectra.orders import run_tracks
 
 SHORT = ("--set", "film.theory=short")

@@ -14,7 +14,7 @@ from synthetic_run import make_run
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
-from frbcli.cycles.maps.stability_map import Growth, MapCurve, MapPoint, StabilityMap
+from frbcli.cycles.stability_map import Growth, MapCurve, MapPoint, StabilityMap
 from frbcli.linear.sheets.thrust import thrust_sheet
 from frbcli.plot.machine.stability_map import stability_map_figure
 from frbcli.plot.run.summary import summary_figure

@@ -20,7 +20,7 @@ from frbcli.analysis.spectra.ridges import ridge_speeds, ridges
 from frbcli.case.reading.listing import values
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.cli.main import frb
-from frbcli.cycles.maps.stability_map import Across
+from frbcli.cycles.stability_map import Across
 from frbcli.errors import InputError
 from frbcli.plot.spectra.ridges import against_figure, fit_figure
 from frbcli.results.store import Run

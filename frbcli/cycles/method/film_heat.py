@@ -2,8 +2,7 @@
 
     P = K slip^2 + (e x F) (omega_J + omega_S) / 2 - F . e',      Q = C q(d, w),      w = d' - (omega/2) J d,
 
-as in docs/heat.md. A film of s times the viscosity has the force of s times the velocities, and s times K.
-"""
+as in docs/heat.md. A film of s times the viscosity has the force of s times the velocities, and s times K."""
 
 from __future__ import annotations
 
@@ -14,7 +13,7 @@ import numpy as np
 from frbcli.arrays import Array, Complex
 from frbcli.compiled import compiled
 from frbcli.cycles.method.balance import loads_along, motion_along
-from frbcli.cycles.parts.machine import Loads, Machine, film_loads
+from frbcli.cycles.method.machine import Loads, Machine, film_loads
 from frbcli.film.kinds.samples import drag_factor
 from frbcli.film.mean_fields.outflow import MeanEndFlow, mean_end_flows
 from frbcli.film.rectangles.end_flow import EndFlow, end_flow

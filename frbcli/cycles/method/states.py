@@ -11,8 +11,7 @@ Modes far above the whirl follow the films at once, and what they add to the dis
 always the same. The motions that films and unbalance make behind them, at frequencies of both signs and at several
 speeds, depend on each other but for little; their principal components (proper orthogonal decomposition) replace the
 modes, as many as the transfer T_k of machine.py needs. Both planes have the same ones. Motions of whirls and of their
-first harmonics weigh most: of the higher ones a disturbance has little.
-"""
+first harmonics weigh most: of the higher ones a disturbance has little."""
 
 from __future__ import annotations
 
@@ -22,8 +21,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from frbcli.arrays import Array, Complex
-from frbcli.cycles.parts.machine import Machine
-from frbcli.cycles.parts.rotor_parts import Part
+from frbcli.cycles.method.machine import Machine, Part
 from frbcli.equilibrium.linearised import first_order
 
 

@@ -17,20 +17,21 @@ from frbcli.columns import Table, table_of
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.columns import map_columns
 from frbcli.cycles.diagram import criticality_of, cycle_special, hopf_special
-from frbcli.cycles.family import Family, check, positive_range
-from frbcli.cycles.maps.curves import (
+from frbcli.cycles.limit_cycles import Family, check, positive_range
+from frbcli.cycles.map_curves import (
     MOST_HARMONICS,
+    KeyPlane,
+    MapPlane,
+    SpeedPlane,
     fitted,
     fold_equations,
     follow_both,
     hopf_equations,
 )
-from frbcli.cycles.maps.planes import KeyPlane, MapPlane, SpeedPlane
 from frbcli.cycles.method.continuation import Equations, Place, Unreachable, located
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FOLD, HOPF, amplitude, eccentricities, with_harmonics
-from frbcli.cycles.method.equilibria import hopf_at, settled
+from frbcli.cycles.method.equilibria import hopf_at, lyapunov_coefficient, settled
+from frbcli.cycles.method.follower import FOLD, HOPF, amplitude, eccentricities, with_harmonics
 from frbcli.cycles.result import SpecialPoint, hertz
 from frbcli.errors import NotConverged, input_error
 from frbcli.html import Tabular

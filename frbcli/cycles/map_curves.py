@@ -1,4 +1,5 @@
-"""Curves of Hopf points and of folds in a plane of two numbers, see planes.py.
+"""The planes of stability maps, the rotor speed and a number of the case or two numbers of the case at one speed; and
+the curves of Hopf points and of folds in them.
 
 Both are curves of solutions as in continuation.py, with one equation more than the static equilibria or the cycles that
 lie on them. That a matrix A is singular is asked by g = 0 of
@@ -9,19 +10,23 @@ which is regular on the curve if b and c are near to the vectors that A has no p
 Bifurcations of Dynamical Equilibria, 2000). Of a Hopf point A = 1 - T_1 (dg/du + i nu dg/du' + kappa), as small as the
 films; of a fold, the derivative of the harmonic balance by the motion and its frequency at a constant speed.
 
-The unknowns end with both numbers over their largest values, which for the speed is the pace. """
+The unknowns end with both numbers over their largest values, which for the speed is the pace.
+"""
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
+from typing import ClassVar
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
 
 from frbcli.arrays import Array, Complex
-from frbcli.cycles.maps.planes import MapPlane
+from frbcli.cycles.diagram import Walk
+from frbcli.cycles.limit_cycles import Family, resting_over
 from frbcli.cycles.method.balance import Balance, left_out, unpacked
 from frbcli.cycles.method.continuation import (
     Equations,
@@ -36,9 +41,90 @@ from frbcli.cycles.method.continuation import (
     step_from,
     unit_vector,
 )
-from frbcli.cycles.method.cycle import with_harmonics
+from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import equations as resting_equations
-from frbcli.cycles.parts.machine import film_loads, transfer
+from frbcli.cycles.method.equilibria import resting_curve
+from frbcli.cycles.method.follower import FoldFollower, with_harmonics
+from frbcli.cycles.method.machine import Machine, film_loads, transfer
+from frbcli.cycles.result import SPEED, hertz
+
+FAMILIES = 8  # that are kept, of values of the second number
+
+
+class MapPlane(ABC):
+    """over, unit: name and unit of the first number, which times `scale` is in it; second: the machines over the second
+    number; corners: the lowest and the highest of both numbers; by_difference: places of the numbers from the end that
+    derivatives are differences by; shaded: values of the second number at which the growth at rest is computed."""
+
+    by_difference: ClassVar[tuple[int, ...]]
+    shaded: ClassVar[int]
+
+    def __init__(self, over: str, unit: str, scale: float, second: Family, corners: tuple[Array, Array]) -> None:
+        self.over, self.unit, self.scale, self.second, self.corners = over, unit, scale, second, corners
+
+    @abstractmethod
+    def machine(self, y: Array) -> Machine:
+        """The machine at unknowns that end with both numbers."""
+
+    @abstractmethod
+    def cycle(self, y: Array) -> Array:
+        """The unknowns with the speed of the rotor over the pace instead of both numbers."""
+
+    @abstractmethod
+    def walk(self, share: float) -> Walk:
+        """Over the first number at a value of the second. Raises NotConverged, Unreachable."""
+
+
+class SpeedPlane(MapPlane):
+    """The speed of the rotor, between two in rad/s, and a number from a share of its largest value on."""
+
+    by_difference, shaded = (-1,), 41
+
+    def __init__(self, second: Family, speeds: tuple[float, float], lowest: float) -> None:
+        slowest, fastest = (speed / second.speed for speed in speeds)
+        corners = np.array([slowest, lowest]), np.array([fastest, 1.0])
+        super().__init__(SPEED, "Hz", hertz(second.speed), second, corners)
+        self.speeds = speeds
+
+    def machine(self, y: Array) -> Machine:
+        """See MapPlane."""
+        return self.second.machine_at(float(y[-1]))
+
+    def cycle(self, y: Array) -> Array:
+        """See MapPlane."""
+        return y[:-1]
+
+    def walk(self, share: float) -> Walk:
+        """See MapPlane."""
+        machine, lowest = self.second.machine_at(share), float(self.corners[0][0])
+        resting = resting_curve(self.second.system(share), machine, *self.speeds)
+        return Walk(resting, FoldFollower(MachineCourse(machine), lowest))
+
+
+class KeyPlane(MapPlane):
+    """Two numbers at one speed. first: the machines over the first one at the largest value of the second; lowest: of
+    both over their largest values."""
+
+    by_difference, shaded = (-2, -1), 15
+
+    def __init__(self, first: Family, second: Family, lowest: tuple[float, float]) -> None:
+        super().__init__(first.over, first.unit, first.high, second, (np.array(lowest), np.ones(2)))
+        self._omega, self._lowest = first.speed, lowest[0]
+        self._family = lru_cache(FAMILIES)(lambda share: first.with_setting(second.setting(share)))
+
+    def machine(self, y: Array) -> Machine:
+        """See MapPlane."""
+        return self._family(float(y[-1])).machine_at(float(y[-2]))
+
+    def cycle(self, y: Array) -> Array:
+        """See MapPlane."""
+        return np.append(y[:-2], self._omega / self.machine(y).pace)
+
+    def walk(self, share: float) -> Walk:
+        """See MapPlane."""
+        family, lowest = self._family(share), self._lowest
+        return Walk(resting_over(family, lowest), FoldFollower(family, lowest))
+
 
 STRIDES = Strides(first=0.02, shortest=1e-5, longest=0.06, points=300)
 DIFFERENCE = 1e-5  # of the unknowns of Hopf points, of numbers of the case, and along the vector v of folds
