@@ -31,6 +31,14 @@ from frbcli.results.store import Run
 from frbcli.scene.shafts.shaft import BalancingPlane
 from frbcli.scene.shafts.table import shaft_of
 
+ERROR = 0.01  # error of vectors and of influence coefficients over the vectors of the same point, at least
+QUIET = 0.05  # of the largest amplitude, by which a point counts at least
+NOTHING = 1e-9  # of the largest vector: what was not measured has round-off
+ALIKE, INSEPARABLE = 10.0, 1e6  # condition numbers
+DOUBTFUL_RESIDUAL = 0.10
+DOUBTFUL_UNCERTAINTY = 0.20  # over the largest unbalance
+FEEBLE = 0.10  # change of the vectors by a trial, over themselves
+
 
 def planes_named(case: Case, names: Sequence[str]) -> tuple[BalancingPlane, ...]:
     """The planes of a case with these names. Raises InputError for one that it does not have."""
@@ -62,15 +70,6 @@ def computed_influence(
         motion = forced_motion(rotor, omega, (omega, pull), *coefficients_of(point.films))
         influence.append([nodes[name] @ motion for name in points])
     return linear, np.array(influence)
-
-
-ERROR = 0.01  # error of vectors and of influence coefficients over the vectors of the same point, at least
-QUIET = 0.05  # of the largest amplitude, by which a point counts at least
-NOTHING = 1e-9  # of the largest vector: what was not measured has round-off
-ALIKE, INSEPARABLE = 10.0, 1e6  # condition numbers
-DOUBTFUL_RESIDUAL = 0.10
-DOUBTFUL_UNCERTAINTY = 0.20  # over the largest unbalance
-FEEBLE = 0.10  # change of the vectors by a trial, over themselves
 
 
 @dataclass(frozen=True)

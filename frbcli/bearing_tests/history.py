@@ -36,6 +36,8 @@ RISE_TIME = 0.01  # s, t_1 of (4.49)
 FAST = 1e6  # 1/s: oil that is replaced so fast has no time for an exchange of gas
 MOST_HALVINGS = 6  # of a step whose equations do not converge
 FilmAt = Callable[[float, Motion], VolumeFilm]
+PROBE = math.pi  # phi of the probe and of the stated gap: the bottom of the bearing
+PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
 
 
 def squeeze_path(eccentricity: float, frequency: float, omega: float) -> Path:
@@ -152,10 +154,6 @@ class _Steps:
         if film is not self._solver.film:
             self._solver = FilmSolver(film)
         return self._solver
-
-
-PROBE = math.pi  # phi of the probe and of the stated gap: the bottom of the bearing
-PROBE_WIDTH = 0.25  # of the bearing's width from the end z = 0
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,14 @@ from frbcli.thermal.steady import FilmHeat, SteadyHeat, steady_heat
 RATIO, MOST = 10.0**0.2, 24  # of two speeds of a curve, and points on either side of the speed of the test
 BOUNDARY = 0.9  # share of the summits in the load, from which on they carry it
 FILM_ALONE = 10.0  # times the largest speed at which summits touch: the right end
+Placed = Callable[[Case, KinematicPlan], Motion]
+Dissipated = Callable[[Case, KinematicPlan], tuple[float, float]]  # power in W and side flow in m^3/s
+
+COARSER = 8  # steps of a test for each one of the course of which means are taken, or with which they are begun
+Observer = Callable[[int, int], None]
+
+OK, NOT_CONVERGED = "ok", "not-converged"
+FEWEST_TIMES = 8
 
 
 @dataclass(frozen=True)
@@ -109,12 +117,6 @@ def _point(case: Case, plan: KinematicPlan, load: float, speed: float) -> _Point
     return _Point(speed, friction_coefficient(torque, load, section.radius), 0.0 + float(own[1]) / load)
 
 
-Placed = Callable[[Case, KinematicPlan], Motion]
-Dissipated = Callable[[Case, KinematicPlan], tuple[float, float]]  # power in W and side flow in m^3/s
-
-COARSER = 8  # steps of a test for each one of the course of which means are taken, or with which they are begun
-
-
 @dataclass(frozen=True)
 class WarmFilm:
     """The case and its plan with the viscosity and clearance at which the heat of its film balances; steady: that."""
@@ -168,12 +170,6 @@ def _warm_film(case: Case, plan: KinematicPlan, omega: float, dissipated: Dissip
 
     steady = steady_heat(heat.model, ("",), solve, start, np.array([omega]))
     return WarmFilm(*at(steady.viscosities, steady.clearances), steady)
-
-
-Observer = Callable[[int, int], None]
-
-OK, NOT_CONVERGED = "ok", "not-converged"
-FEWEST_TIMES = 8
 
 
 @dataclass(frozen=True)

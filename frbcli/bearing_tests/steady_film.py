@@ -35,6 +35,16 @@ from frbcli.scene.tilt import gaps_at_ends
 
 MODAL_MESH, COARSE_MODAL_MESH = Mesh(10, 192), Mesh(5, 96)
 NUDGE = 1e-3  # share of the gap by which the journal is moved for a derivative
+Near = Callable[[Motion, FilmForce | None], FilmForce]  # on the journal in a motion, sought from one near by
+ForceOf = Callable[[Case, KinematicPlan, tuple[int, int], Motion, FilmForce | None], FilmForce]  # the same on cells
+
+BAR = 1e5
+COARSE_CELLS = (80, 20)
+TABLE_MESH = Mesh(4, 64)  # of the film from which the search begins
+STARTS = (0.6, 0.85, 0.3, 0.95)
+ATTITUDE = math.radians(20.0)
+SETTLED = 1e-5  # force left over, relative to the load
+SMALLEST_SHARE = 0.05  # of a step that is tried
 
 
 @dataclass(frozen=True)
@@ -219,18 +229,6 @@ def pressure_at(field: FilmField, phi: float, z: float) -> float:
 def _si(plan: KinematicPlan, motion: Motion) -> tuple[Array, Array]:
     clearance = plan.section.clearance
     return clearance * np.array(motion.d), clearance * np.array(motion.v)
-
-
-Near = Callable[[Motion, FilmForce | None], FilmForce]  # on the journal in a motion, sought from one near by
-ForceOf = Callable[[Case, KinematicPlan, tuple[int, int], Motion, FilmForce | None], FilmForce]  # the same on cells
-
-BAR = 1e5
-COARSE_CELLS = (80, 20)
-TABLE_MESH = Mesh(4, 64)  # of the film from which the search begins
-STARTS = (0.6, 0.85, 0.3, 0.95)
-ATTITUDE = math.radians(20.0)
-SETTLED = 1e-5  # force left over, relative to the load
-SMALLEST_SHARE = 0.05  # of a step that is tried
 
 
 def resting_displacement(

@@ -43,6 +43,7 @@ from frbcli.scene.planning.kinematic_plan import KinematicPlan
 UNKNOWN = math.nan
 NO_MESH = Mesh(1, 1)
 ANGLES = 720  # at which the largest pressure is sought
+Report = Callable[[int], None]
 
 
 def short_moment(plan: KinematicPlan, motion: Motion, share: float = 1.0) -> FilmMoment:
@@ -165,9 +166,6 @@ def _side_flow(section: Section, film: ShortFilm | SuppliedShortFilm, motion: Mo
     """Oil that leaves through the open ends, m^3/s."""
     (x, y), (v_x, v_y), half = motion.d, motion.v, 0.5 * motion.omega
     return section.clearance * end_flow(make_end_flow(section, film), x, y, v_x + half * y, v_y - half * x, 1.0)
-
-
-Report = Callable[[int], None]
 
 
 @dataclass(frozen=True)

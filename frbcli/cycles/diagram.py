@@ -56,6 +56,9 @@ from frbcli.scene.films import film_places
 
 RISE = Strides(first=0.02, shortest=1e-6, longest=0.2, points=400)
 MOST = 50.0  # share up to which springs and dashpots are added
+Observer = Callable[[int, float, float], None]
+
+SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
 
 
 class _WithoutMultipliers(FoldFollower):
@@ -116,11 +119,6 @@ def _stabilised(course: _Stiffening, resting: Equilibrium) -> HopfPoint | None:
             return None
         low = high
     return None
-
-
-Observer = Callable[[int, float, float], None]
-
-SAME = 0.02  # relative: a branch that ends at rest at this distance from a Hopf point ends in it
 
 
 @dataclass

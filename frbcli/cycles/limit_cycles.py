@@ -45,6 +45,7 @@ from frbcli.scene.speeds import default_speeds
 LONGEST_SHOWN = 40  # characters of a value in a fault
 REMEDY = 'Write e.g. "40 um".'
 NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*)", re.DOTALL)
+POINTS = 41  # static equilibria of the diagram
 
 
 class Family(Changing):
@@ -130,9 +131,6 @@ def check(case: Case, shooting: bool = False, with_unbalance: bool = False) -> t
     require(case, WHIRLS if with_unbalance else SPEED_CYCLES if shooting else CYCLES)
     speeds = default_speeds(case)
     return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]
-
-
-POINTS = 41  # static equilibria of the diagram
 
 
 def limit_cycles_over(

@@ -46,6 +46,18 @@ from frbcli.rotor.loads import largest_first
 
 DIFFERENCE = 1e-6  # of the pace
 WHIRLS = 1e-3  # of the clearance: harmonic of the whirl in a motion that is not the synchronous one
+ANGLES = 12  # at which theta is tried
+SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last
+SHARP = 1e-5  # of theta
+PERIODS = 2  # of the rotor in one of the motion
+APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
+NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
+ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
+LINES, FAINT = 8, 1e-4  # besides whirl and unbalance: how many lines, and the smallest over the clearance
+# Why no whirl locks in
+FREE = "its frequency is not near half the speed"
+NOT_FOUND = "no stable motion of half the speed was found"
+UNSETTLED = "its temperatures do not settle"
 
 
 class Synchronous(Follower):
@@ -124,12 +136,6 @@ def driven_motion(machine: Machine, harmonics: int, periods: int, share: float, 
 def first_harmonics(machine: Machine, periods: int) -> int:
     """Harmonics that the motion of some periods of the rotor begins with: enough for all that drives it."""
     return max(FIRST_HARMONICS, periods * max(machine.orders))
-
-
-ANGLES = 12  # at which theta is tried
-SMALLEST = 1.0 / 64.0  # share of the unbalance, and step to a larger one, at which it is tried last
-SHARP = 1e-5  # of theta
-PERIODS = 2  # of the rotor in one of the motion
 
 
 def locked_whirl(machine: Machine, motion: Complex, nu: float, omega: float) -> Cycle | None:
@@ -242,16 +248,6 @@ def padded(motion: Complex, harmonics: int) -> Complex:
     """(H + 1, c) harmonics with zeros behind them, so that H is not below `harmonics`."""
     more = max(0, harmonics + 1 - len(motion))
     return np.concatenate([motion, np.zeros((more, motion.shape[1]))])
-
-
-APART = 1.0 / 40.0  # of the range of speeds: distance between the cycles of a branch that are taken
-NEAR_HALF = 0.05  # of the speed: distance of twice the whirl from it up to which the whirl may lock in
-ROUNDS, WARM_ENOUGH = 20, 1e-4  # of temperatures and motion in turn, and K by which the last one may differ
-LINES, FAINT = 8, 1e-4  # besides whirl and unbalance: how many lines, and the smallest over the clearance
-# Why no whirl locks in
-FREE = "its frequency is not near half the speed"
-NOT_FOUND = "no stable motion of half the speed was found"
-UNSETTLED = "its temperatures do not settle"
 
 
 def whirls_with_unbalance(diagram: LimitCycles, course: MachineCourse, observe: Observer | None = None) -> LimitCycles:

@@ -23,8 +23,7 @@ from frbcli.nearest import did_you_mean
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
 from frbcli.runs.record.header import POWER
-from frbcli.runs.record.wear import earlier_run, is_interrupted, standing_run
-from frbcli.runs.run import PROFILES
+from frbcli.runs.run import PROFILES, earlier_run, is_interrupted, standing_run
 from frbcli.scene.coupling import COUPLINGS, chosen_coupling
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import COMPARISON

@@ -27,7 +27,7 @@ from frbcli.rotor.assembly import Link, assembled
 from frbcli.rotor.body import COORDINATES, PLANE, spin, tilting_ring
 from frbcli.rotor.linear import without_spins
 from frbcli.rotor.loads import speed_profile
-from frbcli.runs.record.film_signals import tilt_signals
+from frbcli.runs.record.films import tilt_signals
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.gate.gate import faults

@@ -13,9 +13,8 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.errors.account import grows_late
-from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FilmErrors, grows_from, quiet_until, summed
-from frbcli.runs.errors.fewer_cells import (
+from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FewerCells, FilmErrors, grows_from, quiet_until, summed
+from frbcli.runs.errors.second_run import (
     SAFETY,
     SAFETY_OF_OPENINGS,
     SAFETY_OF_RINGS,

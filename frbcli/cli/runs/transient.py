@@ -94,8 +94,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
     from frbcli.runs.errors.second_run import SECOND_RUN
-    from frbcli.runs.record.wear import INTERRUPTED, standing_run
-    from frbcli.runs.run import run_cost
+    from frbcli.runs.run import INTERRUPTED, run_cost, standing_run
 
     path = options.output or here(case.name, ".h5")
     check_output(path)

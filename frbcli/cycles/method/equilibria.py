@@ -48,6 +48,13 @@ from frbcli.scene.machine.system import System
 
 STRIDES = Strides(first=0.01, shortest=1e-7, longest=0.04, points=2000)
 SHARP = 1e-12  # relative tolerance of the number at a Hopf point
+States = Mapping[int, NDArray[Any]]
+
+ANGLES = 32
+SMOOTH = 0.02  # radius over the gap in closed forms
+LEVELS = 4  # radii, each half of the one before, of a closed form
+# Radii in tables, whose third derivatives jump between cells: an ellipse has to pass over some.
+TABULATED = (0.1, 0.15, 0.2)
 
 
 @dataclass(frozen=True)
@@ -184,15 +191,6 @@ def hopf_at(here: Equilibrium, rising: bool, nu: float | None = None) -> HopfPoi
     mode = space.read @ state
     unit = mode[first_largest(mode[: 2 * machine.film_count])]
     return HopfPoint(here, float(values[own].imag), mode / unit, rising, state / unit)
-
-
-States = Mapping[int, NDArray[Any]]
-
-ANGLES = 32
-SMOOTH = 0.02  # radius over the gap in closed forms
-LEVELS = 4  # radii, each half of the one before, of a closed form
-# Radii in tables, whose third derivatives jump between cells: an ellipse has to pass over some.
-TABULATED = (0.1, 0.15, 0.2)
 
 
 @dataclass(frozen=True)

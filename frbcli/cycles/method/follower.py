@@ -32,6 +32,13 @@ FIRST_HARMONICS = 5  # of a cycle of no size
 MOMENTS = 256  # of a period at which eccentricities are taken
 FOLD, FLIP, TORUS, HOPF = "fold", "flip", "torus", "hopf"
 ASKED = "asked"  # a cycle at a speed that was asked for
+MOST_HARMONICS = 80
+REFITS = 4  # of a fold with more harmonics
+TAIL = (1e-7, 1e-6)  # of one film, of several: what the harmonics left out may have of the clearance
+SPARE = 0.1  # of it: what the last harmonics have where there are too many
+LOOSE = 10.0  # times it: what may be left out with the most harmonics, as by a film that nearly rests for a moment
+NARROWER = 0.6  # share of the smallest gap that one step may leave
+NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 
 
 @dataclass(frozen=True)
@@ -94,15 +101,6 @@ def passed_rest(machine: Machine, before: Place, after: Place) -> bool:
     """Whether the cycle has shrunk to rest between two places: behind it the branch comes back."""
     one, other = (unpacked(place.y[:-2], machine.size)[1] for place in (before, after))
     return bool(np.sum(np.conj(one) * other).real < 0.0)
-
-
-MOST_HARMONICS = 80
-REFITS = 4  # of a fold with more harmonics
-TAIL = (1e-7, 1e-6)  # of one film, of several: what the harmonics left out may have of the clearance
-SPARE = 0.1  # of it: what the last harmonics have where there are too many
-LOOSE = 10.0  # times it: what may be left out with the most harmonics, as by a film that nearly rests for a moment
-NARROWER = 0.6  # share of the smallest gap that one step may leave
-NOTHING = 1e-9  # amplitude over the clearance of a cycle that is none
 
 
 class Follower:

@@ -44,6 +44,9 @@ SETTLING = 150  # pairs of periods of the rotor in a run, after which a whirl th
 RUNS = 5  # each of as many periods, as long as the whirl nearly repeats
 LAST, PER_PERIOD = 100, 32  # of them, in which a whirl is watched, and its moments in each
 REPEATS = 0.02  # change of the state in one or two periods above which a motion does not nearly repeat
+SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
+HELD = 0.05  # error of the trivial multiplier from which on it is stated
+FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle next to a Hopf point
 
 
 def whirls_of_branch(
@@ -148,11 +151,6 @@ def _whirl(driven: Shooting, shot: Shot) -> UnbalancedWhirl:
         lines=locked_lines(2.0 * math.pi * speed, harmonics.reshape(len(harmonics), -1)),
         stable=shot.multipliers.stable,
     )
-
-
-SLOWLY = 1e-3  # rate of growth over the frequency that the Hopf point may have by its own pair
-HELD = 0.05  # error of the trivial multiplier from which on it is stated
-FIRST_SIZES = (0.1, 0.2, 0.05)  # of the first cycle next to a Hopf point
 
 
 def limit_cycles_by_shooting(

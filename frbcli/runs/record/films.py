@@ -1,42 +1,70 @@
-"""Film signals that a run records on request (`output.signals`), at the samples of its file.
+"""What a run records of its films at the samples of its file: their signals on request (`output.signals`), the films
+that it keeps on its way (`output.films`: oil fractions and free gas of their cells at some moments), the balance of the
+oil that has passed through them, and the wear of rough surfaces.
 
 The force of a film is what the equation of the rotor leaves for it: with the accelerations at the ends of the steps it
 is the force of the time loop, whatever the film, and in contact the force of the surfaces is part of it.
+
+Wear is an estimate by Archard; the gap of the run does not follow it. A place of the shell loses the depth k p |u| dt,
+with the pressure p of the summits, their sliding speed u and the specific wear rate k, volume over force and path. A
+shell that turns, a ring, and every journal lose it all around.
+
+Source: Archard: Contact and rubbing of flat surfaces. J. Appl. Phys. 24 (1953), 981-988.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.arrays import Array
+from frbcli.case.course.control import FilmFrames
+from frbcli.compiled import Indices
+from frbcli.film.cells.motion import Motion, turned
 from frbcli.film.rectangles.end_flow import EndFlow, end_flows
-from frbcli.film.roughness.asperities import rub_along
+from frbcli.film.roughness.asperities import rub_along, wear_along
+from frbcli.film.state import GAS, OIL
+from frbcli.results import kept_films
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.linear import LinearRotor, unbalance_shares
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.drive import Rotation, friction_signal
-from frbcli.runs.record.film_numbers import FilmNumbers, unchanged
-from frbcli.runs.record.header import (
-    FLOW,
-    FORCE,
-    FRICTION,
-    POWER,
-    SHARE,
-    THICKNESS,
-    TORQUE,
-    signal_names,
-    tilt_names,
-)
+from frbcli.runs.inputs import FilmNumbers, unchanged
+from frbcli.runs.record.header import FLOW, FORCE, FRICTION, POWER, SHARE, THICKNESS, TORQUE, signal_names, tilt_names
+from frbcli.runs.record.restored import WrongCheckpoint, array
 from frbcli.scene.machine.system import System
 from frbcli.solve.stage.contact import felt_motion, touches
-from frbcli.solve.state import SLIP, SUM, Control
+from frbcli.solve.state import GRID, SLIP, SUM, TIME, Control, State
 from frbcli.solve.watched import DRAG, FILLED, LEAVES
 
 OF_THE_STEPS = (FORCE, POWER, TORQUE, FLOW, SHARE)  # they ask for what is known at the ends of the steps alone
+ANGLES = 72  # places around a shell, evenly from the top on, counter-clockwise
+WEAR, DEEPEST = "wear", 1.0  # in a checkpoint; m, deeper than any shell
+
+
+def oil_defect(system: System, state: State, angle: float = 0.0) -> float | None:
+    """Oil that is not accounted for over what has passed through, see Films.oil_defect; None for films that keep none.
+    angle: of the rotor in rad, with which films with feed holes in the journal turn."""
+    stations = system.films.stations
+    seen = system.films.seen(system.journals_of(state.q)) / np.repeat(system.clearances, stations)[:, None]
+    places = [
+        turned((float(x), float(y)), -grid_angle(system, state, i // stations, angle)) for i, (x, y) in enumerate(seen)
+    ]
+    return system.films.oil_defect(places, state.wet, state.flows)
+
+
+def displacement(system: System, state: State, film: int) -> tuple[float, float]:
+    """The displacement of a film's journal in its middle, over the clearance."""
+    x, y = (system.rotor.journals[film] @ state.q)[:2] / system.clearances[film]
+    return float(x), float(y)
+
+
+def grid_angle(system: System, state: State, film: int, angle: float) -> float:
+    """Angle in rad by which a film's grid has turned; angle: of the rotor, rad."""
+    return float(system.turning[film, GRID] @ np.concatenate([[angle], state.q[list(system.spins)]]))
 
 
 @dataclass(frozen=True)
@@ -232,3 +260,101 @@ def _touching(control: Control, d: Array) -> NDArray[np.int64]:
     """The samples at which the film feels less than its displacement d (k, 2) over the clearance."""
     limits = control.contact_eccentricity, control.contact_stiffness
     return np.flatnonzero([touches(float(each), *limits) for each in np.hypot(d[:, 0], d[:, 1])])
+
+
+class KeptFilms:
+    """The films kept so far: each at the end of the first step that reaches a moment. Without any asked for, empty."""
+
+    def __init__(self, wanted: FilmFrames | None, system: System) -> None:
+        self._times = np.zeros(0) if wanted is None else np.linspace(wanted.begin, wanted.end, wanted.frames)
+        films = system.films.with_fields if wanted is not None else ()
+        self._gassy = len(films) if any(film.law.carries_gas for film in films) else 0
+        shape = films[0].grid.shape if films else (0, 0)
+        self._moments = np.empty((0, 1 + kept_films.OF_A_FILM * len(films)))
+        self._oil, self._gas = np.empty((0, len(films), *shape)), np.empty((0, self._gassy, *shape))
+        self._edges = np.array([film.grid.phi for film in films])
+
+    def steps(self, t: float, longest: float, budget: int) -> int:
+        """At most `budget` steps from a time t in s on, each at most `longest` s, that end before the next moment; one
+        where that is near."""
+        if len(self._moments) == len(self._times):
+            return budget
+        return max(1, min(budget, int((self._times[len(self._moments)] - t) / longest)))
+
+    def take(self, system: System, state: State, angle: float) -> None:
+        """Keep the films of a state if a moment has come; angle: of the rotor in rad."""
+        t, kept = float(state.numbers[TIME]), len(self._moments)
+        due = int(np.searchsorted(self._times, t, side="right")) - kept
+        if due <= 0:
+            return
+        moment, oils, gases = [t], [], []
+        for i, film in enumerate(system.films.with_fields):
+            place, turn = displacement(system, state, i), grid_angle(system, state, i, angle)
+            oil, fixed = state.wet[OIL, i], film.grid.fixed
+            gaps = film.gaps(Motion(turned(place, -turn), (0.0, 0.0), 0.0))
+            oils.append(np.where(fixed, 1.0, oil / gaps))
+            if self._gassy:
+                carried = state.wet[GAS, i] / np.where(fixed, 1.0, oil)
+                gases.append(np.where(fixed, film.law.supplied_gas, carried))
+            moment += [turn, *place]
+        # Several moments in one step have the same films.
+        self._moments = np.concatenate([self._moments, np.tile(moment, (due, 1))])
+        self._oil = np.concatenate([self._oil, np.repeat(np.array(oils)[None], due, axis=0)])
+        if self._gassy:
+            self._gas = np.concatenate([self._gas, np.repeat(np.array(gases)[None], due, axis=0)])
+        else:
+            self._gas = np.empty((len(self._moments), *self._gas.shape[1:]))
+
+    def snapshot(self) -> dict[str, Array]:
+        """The arrays of a checkpoint."""
+        if not len(self._times):
+            return {}
+        parts = (self._moments, self._oil, self._gas, self._edges)
+        return dict(zip((kept_films.MOMENTS, kept_films.OIL, kept_films.GAS, kept_films.EDGES), parts, strict=True))
+
+    def restore(self, checkpoint: Mapping[str, Array], t: float) -> None:
+        """Take up what a checkpoint at the time t in s holds. Raises WrongCheckpoint if it is not one of this run."""
+        if not len(self._times):
+            return
+        n = int(np.searchsorted(self._times, t, side="right"))
+        self._moments = array(checkpoint, kept_films.MOMENTS, (n, *self._moments.shape[1:]))
+        self._oil = array(checkpoint, kept_films.OIL, (n, *self._oil.shape[1:]))
+        self._gas = array(checkpoint, kept_films.GAS, (n, *self._gas.shape[1:]))
+
+
+class RunWear:
+    """Depths that the shells of a run have lost so far, as if none of them turned. rate: m^2/N, None for none; step: of
+    the output in s; bodies: see System."""
+
+    def __init__(self, rate: float | None, step: float, bodies: Indices) -> None:
+        self._scale = 0.0 if rate is None else rate * step
+        self._depths = np.zeros((0 if rate is None else len(bodies), ANGLES))
+        self._turns = bodies[:, 1] >= 0
+
+    def add(self, system: System, warm: FilmNumbers | None, samples: Samples) -> None:
+        """Let the surfaces wear as they slide at these samples."""
+        if system.asperities is None or not len(self._depths):
+            return
+        for i, depths in enumerate(self._depths):
+            clearances, motions = film_motions(system, warm or unchanged(system), samples, i)
+            wear_along(system.asperities, i, clearances, motions, self._scale, depths)
+
+    def snapshot(self) -> dict[str, Array]:
+        """What a checkpoint holds: (films, ANGLES) m."""
+        return {WEAR: self._depths.copy()} if len(self._depths) else {}
+
+    def restore(self, checkpoint: Mapping[str, Array]) -> None:
+        """Take up the depths of a checkpoint. Raises WrongCheckpoint."""
+        if len(self._depths):
+            depths = array(checkpoint, WEAR, self._depths.shape)
+            if not np.all((depths >= 0.0) & (depths <= DEEPEST)):
+                raise WrongCheckpoint("wear holds depths that no shell has")
+            self._depths = depths
+
+    def deepest(self) -> dict[str, float]:
+        """The largest depth in m and phi of its place in degrees, 0 all around a shell that turns."""
+        if not len(self._depths):
+            return {}
+        depths = np.where(self._turns[:, None], self._depths.mean(axis=1, keepdims=True), self._depths)
+        film, place = np.unravel_index(int(np.argmax(depths)), depths.shape)
+        return {"wear_depth_m": float(depths[film, place]), "wear_angle_deg": 360.0 * float(place) / ANGLES}
