@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.measured import Measurement as Measurement
     from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.orders.order_tracking import order_track as order_track
-    from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.balancing.balance import TrialRun as TrialRun
     from frbcli.balancing.balance import balance as balance
     from frbcli.case.films.additions import add_law as add_law
@@ -65,8 +65,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
     from frbcli.studies.fit import fit as fit
-    from frbcli.studies.kernels.warm_up import warm_up as warm_up
     from frbcli.studies.sweep.sweep import sweep as sweep
+    from frbcli.studies.warm_up import warm_up as warm_up
 
 
 __version__ = "0.1.0"
@@ -132,10 +132,10 @@ _PUBLIC = {  # module, or module:attribute of another name
     "sweep": "frbcli.studies.sweep.sweep",
     "thrust_sheet": "frbcli.linear.sheets.thrust",
     "vibration_limits": "frbcli.linear.vibration",
-    "warm_up": "frbcli.studies.kernels.warm_up",
+    "warm_up": "frbcli.studies.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
-    "waterfall": "frbcli.analysis.spectra.spectrum",
+    "waterfall": "frbcli.analysis.spectrum",
     "write_report": "frbcli.report.page",
 }
 

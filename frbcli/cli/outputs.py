@@ -23,7 +23,7 @@ from frbcli.errors import InputError
 if TYPE_CHECKING:
     from frbcli.html import Tabular
     from frbcli.plot.style import Picture
-    from frbcli.results.files.kinds import Kind
+    from frbcli.results.files.write import Kind
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -70,7 +70,7 @@ class OutputOptions:
     def check(self, default: Path, *others: tuple[Path | None, Kind]) -> Outputs:
         """The places of picture and table, default: of the picture. Raises UsageError or InputError, before the work,
         if these files, or others that the command writes, cannot be written."""
-        from frbcli.results.files.kinds import TABLES
+        from frbcli.results.files.write import TABLES
 
         if self.output is not None and not self.picture:
             raise click.UsageError("-o names the picture that --no-picture leaves out.")

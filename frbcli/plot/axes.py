@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from frbcli.analysis.spectra.spectrum import Direction
+from frbcli.analysis.spectrum import Direction
 from frbcli.linear.response import Response
 from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
 from frbcli.linear.stability import Stability

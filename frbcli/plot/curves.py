@@ -15,8 +15,7 @@ from frbcli.plot.run.envelope import Envelope, EnvelopeColumn, curve, extremes
 from frbcli.plot.signals import cut, heading, labels
 from frbcli.plot.style import COLOURS, legend_below, new_figure, styled
 from frbcli.results.files.container import refuse
-from frbcli.results.records import SPEED
-from frbcli.results.signals import Signal, pieces
+from frbcli.results.records import SPEED, Signal, pieces
 from frbcli.results.store import Run
 
 Over = Literal["time", "speed"]

@@ -9,15 +9,14 @@ from dataclasses import asdict
 from typing import Any
 
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.revolutions import CELLS
+from frbcli.analysis.orders.order_tracking import CELLS
 from frbcli.analysis.signals import bearing_clearance, films, in_film, located, point_of, points, speed_at
 from frbcli.case.reading.toml import TomlFault, parse
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.run.envelope import extremes
 from frbcli.plot.style import MOST_MARKED, plain
 from frbcli.results.files.container import refuse
-from frbcli.results.records import SPEED, TIME
-from frbcli.results.signals import Signal
+from frbcli.results.records import SPEED, TIME, Signal
 from frbcli.results.store import Run
 
 MICRO = 1e6

@@ -33,8 +33,7 @@ from frbcli.plot.style import Picture, narrowed, picture
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import amplitude_text, event_name, frequency_text
-from frbcli.results.files.kinds import MARK, PAGE
-from frbcli.results.files.write import require_places, write
+from frbcli.results.files.write import MARK, PAGE, require_places, write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.runs.errors.account import about_certainty, account, grows_late

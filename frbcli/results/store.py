@@ -29,13 +29,16 @@ from frbcli.results.records import (
     MOST_EVENTS,
     MOST_SAMPLES,
     TIME,
+    RunPlace,
+    Signal,
+    Stored,
+    StoredArrays,
     wrong_event,
     wrong_record,
     wrong_text,
     wrong_unit,
     wrong_values,
 )
-from frbcli.results.signals import RunPlace, Signal, Stored, StoredArrays
 
 if TYPE_CHECKING:
     import pandas as pd

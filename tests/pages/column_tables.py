@@ -54,7 +54,7 @@ from frbcli.scene.machine.findings import FILM_LOADS
 from frbcli.scene.machine.operating import FILM_OPERATION
 from frbcli.scene.machine.shaft_tilt import FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
-from frbcli.studies.comparison_columns import HEAT, VARIANT
+from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
 from frbcli.studies.ladder import LADDER
 from frbcli.studies.sweep.sweep import point_columns

@@ -29,8 +29,8 @@ from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.signals import clearance, labels, model
 from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.plot.style import LABEL_ROWS, new_figure, picture, save_figure, styled
-from frbcli.results.files.kinds import MARK
-from frbcli.results.signals import pieces
+from frbcli.results.files.write import MARK
+from frbcli.results.records import pieces
 from frbcli.results.store import Run
 
 FILM = '[film]\ntheory = "finite"\ncavitation = "{}"\n'

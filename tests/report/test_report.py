@@ -30,7 +30,7 @@ from frbcli.plot.style import narrowed
 from frbcli.report.page import NARROW, NARROW_COLUMNS, report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.svg import SYMBOLS
-from frbcli.results.signals import Signal
+from frbcli.results.records import Signal
 from frbcli.results.store import Run
 
 SETTINGS = ["film.theory=short", "speed.to=250 Hz", "speed.duration=1 s", 'output.signals=["force"]']

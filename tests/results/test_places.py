@@ -27,9 +27,8 @@ from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
 from frbcli.plot.moving.orbits import animate_orbits
-from frbcli.results.files.kinds import PAGE, TABLES, has_checksum, mark_table
 from frbcli.results.files.lock import locked
-from frbcli.results.files.write import write, written
+from frbcli.results.files.write import PAGE, TABLES, has_checksum, mark_table, write, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup

@@ -16,7 +16,7 @@ from synthetic_run import CLEARANCE, Rotor, make_run
 
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.spectra.ridges import ridge_speeds, ridges
+from frbcli.analysis.ridges import ridge_speeds, ridges
 from frbcli.case.reading.listing import values
 from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.cli.main import frb

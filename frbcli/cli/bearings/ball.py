@@ -27,7 +27,7 @@ def ball_sheet(
     """Compute, show and write the sheet; the exit code."""
     from frbcli.linear.sheets.ball import ball_bearing_sheet
     from frbcli.results.export import ross_files
-    from frbcli.results.files.kinds import ROSS
+    from frbcli.results.files.write import ROSS
 
     if ross is not None and len(loads) > 1:
         raise click.UsageError("--ross is a table over speed, at one load.")

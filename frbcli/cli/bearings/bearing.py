@@ -63,7 +63,7 @@ def command(
     from frbcli.errors import NotConverged
     from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
     from frbcli.linear.sheets.film_state import heat_capacity
-    from frbcli.results.files.kinds import ROSS
+    from frbcli.results.files.write import ROSS
 
     if not case.bearings and any(bearing.kind == "ball" for bearing in case.elements):
         from frbcli.cli.bearings.ball import ball_sheet

@@ -28,7 +28,7 @@ from frbcli.cli.progress import WRITING, display
 def command(run_file: Path, table_format: str, output: Path | None, terminal: Terminal) -> None:
     """Write the signals of RUN.h5, one column each."""
     from frbcli.results.export import export_run, write_csv
-    from frbcli.results.files.kinds import TABLES
+    from frbcli.results.files.write import TABLES
     from frbcli.results.store import read_run
 
     to_stdout = output == Path("-")

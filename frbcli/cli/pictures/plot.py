@@ -118,11 +118,11 @@ def _animate(
     from frbcli.plot.moving.films import animate_films
     from frbcli.plot.moving.orbits import animate_orbits
     from frbcli.plot.moving.writer import check_animation
-    from frbcli.results.files import kinds
+    from frbcli.results.files.write import PICTURES
     from frbcli.results.store import read_run
 
     check_animation(target, forced())
-    check_outputs((target, kinds.PICTURES[target.suffix.lower()]))
+    check_outputs((target, PICTURES[target.suffix.lower()]))
     run = read_run(run_file)
     with display(terminal, "Drawing.") as shown:
         observe = shown.counting("frame ")

@@ -28,7 +28,7 @@ def command(
 ) -> None:  # fmt: skip
     """Write RUN.h5 as one page: machine, plan, events, waterfall that reads out under the pointer, orbits, spectra,
     errors, balances, cost and how to repeat it."""
-    from frbcli.results.files.kinds import PAGE
+    from frbcli.results.files.write import PAGE
     from frbcli.results.store import read_run
 
     target = output or next_to(run_file, "-report.html")

@@ -20,7 +20,7 @@ from frbcli.columns import table_of
 if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.analysis.orders.order_tracking import OrderTrack
-    from frbcli.analysis.spectra.spectrum import Direction
+    from frbcli.analysis.spectrum import Direction
     from frbcli.plot.spectra.waterfall import Over
     from frbcli.results.store import Run
 

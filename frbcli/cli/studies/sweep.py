@@ -25,7 +25,7 @@ from frbcli.units import SpeedUnit
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from frbcli.studies.sweep.distributions import Distribution
+    from frbcli.studies.sweep.points import Distribution
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
@@ -61,7 +61,7 @@ class Machines:
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
         """The machines. others: keys with several values, or a list of points, with which nothing can scatter. Raises
         InputError."""
-        from frbcli.studies.sweep.distributions import read_correlation, samples
+        from frbcli.studies.sweep.points import read_correlation, samples
 
         if others:
             problem, remedy = "gives several values while other keys scatter.", "Sweep each of its values by itself."
@@ -145,7 +145,7 @@ def command(
 
 def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
     """Other settings, and the distributions of the keys that scatter."""
-    from frbcli.studies.sweep.distributions import read_distribution
+    from frbcli.studies.sweep.points import read_distribution
 
     others: list[str] = []
     distributions: dict[str, Distribution] = {}
@@ -164,7 +164,7 @@ def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
     if table.parent.is_dir():  # else it is made, or that is refused
-        from frbcli.results.files.kinds import TABLES
+        from frbcli.results.files.write import TABLES
 
         check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 

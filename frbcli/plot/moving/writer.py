@@ -14,8 +14,7 @@ from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.figure import Figure
 
 from frbcli.plot.style import refused
-from frbcli.results.files.kinds import MARK, PICTURES
-from frbcli.results.files.write import require_places, written
+from frbcli.results.files.write import MARK, PICTURES, require_places, written
 
 FORMATS = (".gif", ".mp4")
 FRAMES, PER_SECOND = 80, 20

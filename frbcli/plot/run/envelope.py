@@ -10,8 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.results.records import TIME
-from frbcli.results.signals import pieces
+from frbcli.results.records import TIME, pieces
 from frbcli.results.store import Run
 
 DRAWN_POINTS = 4000  # more than a picture has columns of pixels

@@ -13,7 +13,7 @@ from frbcli.analysis.signals import joined, points
 from frbcli.arrays import Array
 from frbcli.plot.signals import MICRO, cut, ends, heading, labels, motion, shell
 from frbcli.plot.style import COLOURS, GREY, legend_below, new_figure, styled
-from frbcli.results.signals import Signal, pieces
+from frbcli.results.records import Signal, pieces
 from frbcli.results.store import Run
 
 LAST_s = 0.1  # what is shown if no time is given

@@ -19,8 +19,7 @@ from frbcli.plot.run.envelope import extremes
 from frbcli.plot.signals import case_tables, ends
 from frbcli.plot.style import GREY
 from frbcli.results.files.container import refuse
-from frbcli.results.records import SPEED
-from frbcli.results.signals import Signal
+from frbcli.results.records import SPEED, Signal
 from frbcli.results.store import Run
 
 SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn

@@ -12,7 +12,7 @@ from matplotlib import image
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 
-from frbcli.analysis.spectra.spectrum import Spectrogram
+from frbcli.analysis.spectrum import Spectrogram
 from frbcli.arrays import Array
 from frbcli.plot.spectra.waterfall import LEVELS_dB, orders
 from frbcli.plot.style import LEVEL_MAP

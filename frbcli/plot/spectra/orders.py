@@ -15,12 +15,12 @@ from matplotlib.figure import Figure
 
 from frbcli.analysis.orders.order_tracking import OrderTrack
 from frbcli.analysis.signals import joined, located
-from frbcli.analysis.spectra.spectrum import Direction
+from frbcli.analysis.spectrum import Direction
 from frbcli.arrays import Array
 from frbcli.plot.curves import Over
 from frbcli.plot.signals import MICRO, heading
 from frbcli.plot.style import legend_below, new_figure, styled
-from frbcli.results.signals import pieces
+from frbcli.results.records import pieces
 from frbcli.results.store import Run
 
 

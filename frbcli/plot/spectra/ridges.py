@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.analysis.spectra.ridges import Ridges
+from frbcli.analysis.ridges import Ridges
 from frbcli.plot.signals import MICRO
 from frbcli.plot.spectra.waterfall import draw_levels, level_label, run_spectra
 from frbcli.plot.style import BLACK, BLUE, VERMILION, in_words, legend_below, name_of_key, new_figure, styled

@@ -18,8 +18,8 @@ from matplotlib.ticker import LogLocator, MaxNLocator, ScalarFormatter
 
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
-from frbcli.analysis.spectra.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
-from frbcli.analysis.spectra.spectrum import waterfall as spectra
+from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
+from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.arrays import Array
 from frbcli.case.course.speed import given_speed_unit
 from frbcli.case.reading.load import load_case_text
@@ -102,7 +102,7 @@ def waterfall_figure(
     over: the axis, None for that of `natural_axis`; over "speed" a run that goes up and down is drawn in two parts.
     signal: "journal", "disk" or "journal_NAME" of a bearing, "disk_NAME" of a wheel; cascade: one curve per spectrum,
     behind each other; window_s (None: as the ramp asks for) and direction as `waterfall` of
-    analysis/spectra/spectrum.py; log: logarithmic frequency; found: the spectra of `run_spectra`, where they are known;
+    analysis/spectrum.py; log: logarithmic frequency; found: the spectra of `run_spectra`, where they are known;
     scale: what the colours or heights are; unit: of the speeds of the events, None for that of the case.
 
     Raises InputError if the run does not have the signal, is shorter than a window, or lacks the clearance of levels.

@@ -2,8 +2,7 @@
 
 A frequency that changes within a window lowers and widens its line. By default the length of the windows follows from
 the ramp of the rotor speed, with enough resolution to separate the lines of interest; the remaining loss of the
-synchronous line is computed (smear.py) and stated. Amplitudes of order_tracking.py do not depend on the ramp.
-"""
+synchronous line is computed (smear.py) and stated. Amplitudes of order_tracking.py do not depend on the ramp."""
 
 from __future__ import annotations
 

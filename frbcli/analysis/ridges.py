@@ -1,8 +1,7 @@
 """The ridges of a run-up: what its synchronous motion and its whirl are at chosen rotor speeds.
 
 They are what a computed and a measured run are compared by: both have them, whatever their samples, and neither needs
-a common zero of time, of phase or of place.
-"""
+a common zero of time, of phase or of place."""
 
 from __future__ import annotations
 
@@ -11,9 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.analysis.peaks import summit
 from frbcli.analysis.signals import joined, located
-from frbcli.analysis.spectra.peaks import summit
-from frbcli.analysis.spectra.spectrum import Spectrogram, waterfall, window_length
+from frbcli.analysis.spectrum import Spectrogram, waterfall, window_length
 from frbcli.arrays import Array, Truths
 from frbcli.results.records import SPEED, TIME
 from frbcli.results.store import Run
