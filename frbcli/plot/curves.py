@@ -11,8 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from frbcli.arrays import Array
-from frbcli.plot.run.envelope import Envelope, EnvelopeColumn, curve, extremes
-from frbcli.plot.signals import cut, heading, labels
+from frbcli.plot.signals import Envelope, EnvelopeColumn, curve, cut, extremes, heading, labels
 from frbcli.plot.style import COLOURS, legend_below, new_figure, styled
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED, Signal, pieces

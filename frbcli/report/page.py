@@ -27,9 +27,8 @@ from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
 from frbcli.plot.run.summary import FEWEST_SAMPLES
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
-from frbcli.plot.spectra.levels import levels
-from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, narrowed, picture
+from frbcli.plot.waterfall import level_label, levels, reading, run_spectra
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import amplitude_text, event_name, frequency_text

@@ -36,7 +36,7 @@ COMMANDS = {
                  "--no-picture")),
     "report": ("frbcli.report.page", "write_report", ("run.h5",)),
     "export": ("frbcli.results.export", "export_run", ("run.h5",)),
-    "waterfall": ("frbcli.plot.spectra.waterfall", "run_spectra", ("run.h5",)),
+    "waterfall": ("frbcli.plot.waterfall", "run_spectra", ("run.h5",)),
     "thrust": ("frbcli.linear.sheets.thrust", "thrust_sheet", ("thrust", "--gap", "12 um", "--speed", "900 Hz")),
     "accuracy": ("frbcli.studies.accuracy", "accuracy", ("jeffcott", *SHORT, "--until", "10 ms")),
     "sweep": ("frbcli.studies.sweep.sweep", "sweep",

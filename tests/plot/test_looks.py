@@ -20,11 +20,11 @@ from synthetic_run import Rotor, make_run
 import frbcli
 from frbcli.cli.looks import Look, Size
 from frbcli.cli.main import frb
-from frbcli.plot.machine.campbell import campbell_figure
+from frbcli.plot.machine.modes import campbell_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.eccentricity import eccentricity_figure
-from frbcli.plot.spectra.waterfall import LevelScale, waterfall_figure
 from frbcli.plot.style import COLOURS
+from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 
 DRAWING = ("runup", "rundown", "waterfall", "plot", "compare", "bearing", "stability", "response", "accuracy", "sweep",

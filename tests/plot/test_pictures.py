@@ -17,6 +17,7 @@ from frbcli.columns import table_of
 from frbcli.cycles.stability_map import Growth, MapCurve, MapPoint, StabilityMap
 from frbcli.linear.sheets.thrust import thrust_sheet
 from frbcli.plot.machine.stability_map import stability_map_figure
+from frbcli.plot.machine.thrust import thrust_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.style import (
     legend_below,
@@ -29,7 +30,6 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
-from frbcli.plot.thrust import thrust_figure
 from frbcli.results.columns import EVENTS
 
 

@@ -21,14 +21,13 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.picture import fit
 from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
-from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
 from frbcli.plot.run.orbit import orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
-from frbcli.plot.signals import clearance, labels, model
-from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
+from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import LABEL_ROWS, new_figure, picture, save_figure, styled
+from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
 from frbcli.results.files.write import MARK
 from frbcli.results.records import pieces
 from frbcli.results.store import Run
@@ -401,7 +400,7 @@ def test_letters_of_a_title_are_neither_mathematics_nor_orders_to_a_terminal(run
 def test_a_curve_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = curve(run, run.signal("eccentricity"), 100, 150_001)
     between = at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333))
-    monkeypatch.setattr("frbcli.plot.run.envelope.pieces", lambda first, last: pieces(first, last, 777))
+    monkeypatch.setattr("frbcli.plot.signals.pieces", lambda first, last: pieces(first, last, 777))
     for all_at_once, in_pieces in zip(whole, curve(run, run.signal("eccentricity"), 100, 150_001), strict=True):
         np.testing.assert_array_equal(all_at_once, in_pieces)
     np.testing.assert_array_equal(between, at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333)))

@@ -25,8 +25,8 @@ from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.speeds import between
-from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
 from frbcli.plot.style import narrowed
+from frbcli.plot.waterfall import LOWEST_dB, STEP_dB
 from frbcli.report.page import NARROW, NARROW_COLUMNS, report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.svg import SYMBOLS

@@ -26,7 +26,7 @@ from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.plot.moving.orbits import animate_orbits
+from frbcli.plot.moving import animate_orbits
 from frbcli.results.files.lock import locked
 from frbcli.results.files.write import PAGE, TABLES, has_checksum, mark_table, write, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
@@ -153,7 +153,7 @@ FOREIGN = {  # files of others of the kinds that frb writes, and the words that 
 def test_a_file_that_frb_did_not_write_is_replaced_by_force_alone(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("frbcli.plot.moving.orbits.FRAMES", 2)
+    monkeypatch.setattr("frbcli.plot.moving.FRAMES", 2)
     words, other = FOREIGN[name]
     if name.endswith(".parquet"):
         pytest.importorskip("pyarrow")

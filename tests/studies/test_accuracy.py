@@ -15,7 +15,7 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
-from frbcli.plot.studies.accuracy import accuracy_figure
+from frbcli.plot.accuracy import accuracy_figure
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.planning.plan import make_plan

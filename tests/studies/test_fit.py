@@ -22,7 +22,7 @@ from frbcli.case.rules.machine_keys import machine_fault
 from frbcli.cli.main import frb
 from frbcli.cycles.stability_map import Across
 from frbcli.errors import InputError
-from frbcli.plot.spectra.ridges import against_figure, fit_figure
+from frbcli.plot.compare import against_figure, fit_figure
 from frbcli.results.store import Run
 from frbcli.studies.against import against_measured
 from frbcli.studies.fit import Fit, fit

@@ -13,7 +13,7 @@ from scipy.stats import norm, truncnorm
 
 from frbcli import InputError, load_case
 from frbcli.cli.main import run as frb
-from frbcli.plot.studies.sweep import can_draw, sweep_figure
+from frbcli.plot.sweep import can_draw, sweep_figure
 from frbcli.studies.sweep.points import linked, read_correlation, read_distribution, read_values, samples
 from frbcli.studies.sweep.scatter import _wilson, scatter, whirl_speed
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint, Workers, sweep

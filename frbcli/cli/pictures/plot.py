@@ -115,9 +115,7 @@ def _animate(
     run_file: Path, target: Path, span: tuple[float | None, float | None], what: str, film: str | None,
     terminal: Terminal,
 ) -> None:  # fmt: skip
-    from frbcli.plot.moving.films import animate_films
-    from frbcli.plot.moving.orbits import animate_orbits
-    from frbcli.plot.moving.writer import check_animation
+    from frbcli.plot.moving import animate_films, animate_orbits, check_animation
     from frbcli.results.files.write import PICTURES
     from frbcli.results.store import read_run
 
@@ -149,7 +147,7 @@ def _figure(
     what: str, runs: Sequence[Run], span: tuple[float | None, float | None], over: Over, point: str | None
 ) -> Picture:
     """point: the point or film that is asked for."""
-    from frbcli.plot.moving.films import film_moments_figure
+    from frbcli.plot.moving import film_moments_figure
     from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
     from frbcli.plot.run.orbit import orbit_figure
     from frbcli.plot.run.quantities import quantity_figure

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.analysis.orders.order_tracking import OrderTrack
     from frbcli.analysis.spectrum import Direction
-    from frbcli.plot.spectra.waterfall import Over
+    from frbcli.plot.waterfall import Over
     from frbcli.results.store import Run
 
 MICRO = 1e6
@@ -115,7 +115,7 @@ def command(
 
 def _spectra(terminal: Terminal, run: Run, signal: str, view: View, target: Path) -> dict[str, Any]:
     """Draw spectra, and return their part of the JSON document."""
-    from frbcli.plot.spectra.waterfall import LevelScale, natural_axis, reading, run_spectra, waterfall_figure
+    from frbcli.plot.waterfall import LevelScale, natural_axis, reading, run_spectra, waterfall_figure
 
     with display(terminal):
         levels = run_spectra(run, signal, view.window, view.direction)
@@ -137,7 +137,7 @@ def _orders(
 ) -> dict[str, Any]:
     """Draw amplitudes by order, and return their part of the JSON document."""
     from frbcli.analysis.orders.order_tracking import order_tracks
-    from frbcli.plot.spectra.orders import orders_figure
+    from frbcli.plot.orders import orders_figure
 
     with display(terminal):
         tracks = order_tracks(run, orders, signal)

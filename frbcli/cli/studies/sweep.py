@@ -248,7 +248,7 @@ def _report(swept: Sweep, terminal: Terminal) -> None:
 
 
 def _picture(swept: Sweep, target: Path, terminal: Terminal) -> Path | None:
-    from frbcli.plot.studies.sweep import can_draw, sweep_figure
+    from frbcli.plot.sweep import can_draw, sweep_figure
 
     if not can_draw(swept):
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
@@ -284,7 +284,7 @@ def of_machines(
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
     drawn = None
     if target is not None:
-        from frbcli.plot.studies.sweep import scatter_figure
+        from frbcli.plot.sweep import scatter_figure
 
         drawn = draw(terminal, lambda: scatter_figure(swept.case.heading, seen), target)
     percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]

@@ -18,8 +18,7 @@ from matplotlib.figure import Figure
 from frbcli.analysis.signals import SignalColumn, films, joined, located, points
 from frbcli.arrays import Array
 from frbcli.plot.curves import HEIGHT, Over, Span, curves_figure, draw_curves
-from frbcli.plot.run.envelope import curve
-from frbcli.plot.signals import MICRO, cut, heading, labels, motion
+from frbcli.plot.signals import MICRO, curve, cut, heading, labels, motion
 from frbcli.plot.style import legend_below, new_figure, styled
 from frbcli.results.store import Run
 

@@ -15,8 +15,8 @@ from scipy.signal import resample_poly
 from frbcli.analysis.signals import located, speed_at
 from frbcli.analysis.spectrum import Spectrogram
 from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
-from frbcli.plot.spectra.waterfall import orders
 from frbcli.plot.style import BLUE, GREY, NotebookFigure, styled
+from frbcli.plot.waterfall import orders
 from frbcli.results.records import SPEED, Signal, pieces
 from frbcli.results.store import Run
 

@@ -1,31 +1,155 @@
-"""A film of a run on its way, as far as the run has kept it: oil fraction and free gas over the whole gap, at some
-moments side by side, or as a moving picture."""
+"""Moving pictures, GIF, or MP4 where ffmpeg is installed: the orbits of the journals; and a film of a run on its way,
+as far as the run has kept it, oil fraction and free gas over the whole gap, also at some moments side by side."""
 
 from __future__ import annotations
 
+import os
+import shutil
+from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.animation import FFMpegWriter, FuncAnimation, PillowWriter
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
-from frbcli.analysis.signals import films, joined, speed_at
+from frbcli.analysis.signals import films, joined, points, speed_at
 from frbcli.case.course.speed import given_speed_unit
-from frbcli.plot.moving.writer import DPI, FRAMES, Observer, check_animation, write_animation
-from frbcli.plot.run.envelope import at_times
-from frbcli.plot.signals import cut, heading
-from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, styled
+from frbcli.plot.run.orbit import LAST_s
+from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
+from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
 from frbcli.results.files.container import refuse
+from frbcli.results.files.write import MARK, PICTURES, require_places, written
 from frbcli.results.kept_films import KeptFilm, kept_film
 from frbcli.results.store import Run
 
+FORMATS = (".gif", ".mp4")
+FRAMES, PER_SECOND = 80, 20
+DPI = 90
+GIF_ENDS = b";"
+
+Observer = Callable[[int, int], None]  # frames drawn, and how many there are
+BETWEEN = 24  # points of the trail per frame
+TRAIL = 2.0  # revolutions of the rotor that stay seen
 MOMENTS = 6  # side by side in a still picture
 COLUMNS, COURSE = 256, 400  # of a map around, and points of a curve over time
 MAP_HEIGHT, COURSE_HEIGHT, WIDTH = 0.75, 1.5, 8.0  # inches
 TICKS = 5  # of a scale, at most
 NEARLY_FULL, GAS_FREE = 0.99, 1e-3  # least upper ends of the scales of missing oil and of gas
+
+
+def check_animation(path: Path, force: bool = False) -> None:
+    """Raises InputError if a moving picture cannot have this name or this place, or its program is missing. force: also
+    replace a file that frb did not write."""
+    if path.suffix.lower() not in FORMATS:
+        raise refused(path, "is not a format of moving pictures.", f"End it with {' or '.join(FORMATS)}.")
+    if path.suffix.lower() == ".mp4" and _ffmpeg() is None:
+        raise refused(path, "needs the program ffmpeg, which is not here.", "Install it, or end the name with .gif.")
+    require_places([(path, PICTURES[path.suffix.lower()])], force=force)
+
+
+def _ffmpeg() -> str | None:
+    """The program ffmpeg, not one of the current folder; None if there is none."""
+    program = shutil.which(mpl.rcParams["animation.ffmpeg_path"])
+    return program if program is not None and os.path.isabs(program) else None
+
+
+def write_animation(
+    path: Path, figure: Figure, draw: Callable[[int], None], frames: int, dpi: int = DPI,
+    observe: Observer | None = None, force: bool = False,
+) -> None:  # fmt: skip
+    """Write a figure as a moving picture; draw: changes it to a frame of that number; force: see check_animation."""
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # it would be sought anew for each frame
+    moving: Any = FuncAnimation(figure, draw, frames=frames, blit=False)
+    as_film = path.suffix.lower() == ".mp4"
+    writer: Any = FFMpegWriter(PER_SECOND, metadata={"comment": MARK}) if as_film else PillowWriter(PER_SECOND)
+    progress = None if observe is None else lambda frame, _: observe(frame + 1, frames)
+    with written(path, PICTURES[path.suffix.lower()], force=force) as part, TemporaryDirectory(prefix="frb-") as folder:
+        drawn = Path(folder) / f"moving{path.suffix.lower()}"  # by which its writers know the format
+        with mpl.rc_context({"animation.ffmpeg_path": _ffmpeg() or ""}):
+            moving.save(str(drawn), writer=writer, dpi=dpi, progress_callback=progress)
+        if not as_film:
+            _comment(drawn)
+        shutil.copyfile(drawn, part)
+
+
+def _comment(gif: Path) -> None:
+    """Put the mark of frb into a GIF, as a comment in front of the byte that ends it."""
+    with gif.open("r+b") as file:
+        file.seek(-len(GIF_ENDS), os.SEEK_END)
+        file.write(b"!\xfe" + bytes([len(MARK)]) + MARK.encode() + b"\0" + GIF_ENDS)
+
+
+def animate_orbits(
+    run: Run, path: str | Path, from_time: float | None = None, to_time: float | None = None, frames: int = FRAMES,
+    dpi: int = DPI, observe: Observer | None = None, force: bool = False,
+) -> Path:  # fmt: skip
+    """Write the orbits of all journals from from_time to to_time in s (default: the last 0.1 s) as a moving picture.
+
+    force: also replace a file that frb did not write. Raises InputError if it cannot be written, RunFileError if
+    the run has no samples between these times.
+    """
+    path = Path(path)
+    check_animation(path, force)
+    end = ends(run)[1] if to_time is None else to_time
+    begin = max(end - LAST_s, 0.0) if from_time is None else from_time
+    cut(run, begin, end)
+    with styled():
+        write_animation(path, *_scene(run, begin, end, frames), frames, dpi, observe, force)
+    return path
+
+
+def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Callable[[int], None]]:
+    """The figure, and what draws a frame on it by its number."""
+    bearings = list(points(run.signals, "journal")) or [""]
+    title, subtitle = heading([run])
+    figure = new_figure(title, subtitle, 3.8 * len(bearings) + 0.4, 4.4)
+    times = np.linspace(begin, end, frames * BETWEEN)
+    turn = 1.0 / max(abs(speed_at(run, 0.5 * (begin + end))), 1.0 / (end - begin))
+    kept = max(2, int(TRAIL * turn / (times[1] - times[0])))
+    lines = []
+    for axes, bearing in zip(figure.subplots(1, len(bearings), squeeze=False)[0], bearings, strict=True):
+        x, y = (MICRO * at_times(run, part, times) for part in motion(run, joined("journal", bearing)))
+        _prepare(axes, bearing, _radius(run, bearing), float(np.max(np.hypot(x, y))))
+        trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
+        dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
+        lines.append((x, y, trail, dot))
+    unit = given_speed_unit(run.case_text)
+    caption = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
+
+    def draw(frame: int) -> None:
+        last = (frame + 1) * BETWEEN
+        first = max(0, last - kept)
+        for x, y, trail, dot in lines:
+            trail.set_data(x[first:last], y[first:last])
+            dot.set_data(x[last - 1 : last], y[last - 1 : last])
+        now = float(times[last - 1])
+        caption.set_text(f"{now:.4f} s, {unit.words(speed_at(run, now), 1)}")
+
+    return figure, draw
+
+
+def _radius(run: Run, bearing: str) -> float:
+    """The radius of the circle around a journal in um, 0 without a film."""
+    return MICRO * (shell(run, bearing) or 0.0)
+
+
+def _prepare(axes: Axes, bearing: str, radius: float, reach: float) -> None:
+    axes.set_title(bearing)
+    if radius > 0.0:
+        axes.add_patch(Circle((0.0, 0.0), radius, fill=False, edgecolor=GREY, linewidth=1.2))
+    widest = 1.08 * max(radius, reach)
+    axes.set_xlim(-widest, widest)
+    axes.set_ylim(-widest, widest)
+    axes.set_aspect("equal")
+    axes.set_xlabel("x in µm")
+    axes.set_ylabel("y in µm")
 
 
 def film_moments_figure(

@@ -2,8 +2,7 @@
 
 Amplitudes by order over rotor speed or time.
 
-A run in a diagram over the speed: the largest eccentricity of each film in each short span of time.
-"""
+A run in a diagram over the speed: the largest eccentricity of each film in each short span of time."""
 
 from __future__ import annotations
 
