@@ -15,8 +15,7 @@ import click
 
 from frbcli.cli.common import Terminal
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import gathered
+from frbcli.cli.options import gathered, look_options
 from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
 

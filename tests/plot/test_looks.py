@@ -18,8 +18,8 @@ from PIL import Image
 from synthetic_run import Rotor, make_run
 
 import frbcli
-from frbcli.cli.looks import Look, Size
 from frbcli.cli.main import frb
+from frbcli.cli.options import Look, Size
 from frbcli.plot.machine.modes import campbell_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.eccentricity import eccentricity_figure

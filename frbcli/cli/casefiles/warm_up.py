@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.completion import complete_case, complete_key
+from frbcli.cli.options import complete_case, complete_key
 from frbcli.cli.progress import display
 
 

@@ -12,8 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import gathered
+from frbcli.cli.options import gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
 from frbcli.columns import table_of

@@ -111,7 +111,7 @@ def command(
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
-    from frbcli.cli.bearings.kinematic import run_test
+    from frbcli.cli.machines.kinematic import run_test
     from frbcli.film.cavitation.table import laws, names
 
     for option, given, problem in (

@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.completion import complete_case
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import SPEED_OPTION, gathered
+from frbcli.cli.options import SPEED_OPTION, complete_case, gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES

@@ -12,8 +12,7 @@ import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, forced, here, next_to
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import TIME_OPTION, gathered, over_option, signal_option
+from frbcli.cli.options import TIME_OPTION, gathered, look_options, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
 from frbcli.cli.progress import display
 

@@ -10,8 +10,7 @@ import click
 
 from frbcli.cli.common import Terminal, output_options
 from frbcli.cli.files import INPUT, check_outputs, force_option, next_to
-from frbcli.cli.looks import Span, look_options
-from frbcli.cli.options import TIME_OPTION, Numbers, gathered, over_option, signal_option
+from frbcli.cli.options import TIME_OPTION, Numbers, Span, gathered, look_options, over_option, signal_option
 from frbcli.cli.outputs import draw_wanted, picture_option
 from frbcli.cli.progress import READING, display
 from frbcli.cli.studies.measured import measured_options, run_of, show_columns

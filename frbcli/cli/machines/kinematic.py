@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.bearings.heat import film_document, show_film
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
+from frbcli.cli.machines.static_tables import film_document, show_film
 from frbcli.cli.options import cavitation_option
 from frbcli.cli.outputs import OutputOptions, outputs_options
 from frbcli.cli.progress import computing

@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.linear.sheets.thrust import ThrustSheet
 
-
 @click.command()
 @case_argument
 @click.option("--gap", "gaps", multiple=True, type=LENGTH_OPTION, metavar="GAP",
