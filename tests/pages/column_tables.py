@@ -13,7 +13,7 @@ from paths import DOCS
 
 from frbcli.balancing.balance import PLANES, POINTS
 from frbcli.bearing_tests.columns import GAS, MOMENT, MOMENT_HISTORY, RESULT, STRIBECK, moment_columns
-from frbcli.cli.casefiles.cases import HARD_CASE
+from frbcli.cli.casefiles.hard import HARD_CASE
 from frbcli.columns import Column, Columns
 from frbcli.cycles.columns import (
     MISSING,

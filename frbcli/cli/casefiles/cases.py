@@ -1,8 +1,7 @@
-"""`frb cases`: the shipped cases and the hard ones, to print and to copy."""
+"""`frb cases`: the shipped cases, to print and to copy."""
 
 from __future__ import annotations
 
-from operator import attrgetter
 from pathlib import Path
 
 import click
@@ -10,19 +9,6 @@ import click
 from frbcli.cli.common import SETTING, Terminal, output_options
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
 from frbcli.cli.options import complete_key
-from frbcli.columns import Column, Shown, table_of
-
-LIST = "list"  # table of the terminal
-
-# Of a HardCase
-HARD_CASE = (
-    Column("name", "", "name of the hard case", shown=(Shown("case"), Shown("case", table=LIST))),
-    Column("topic", "", "topic"),
-    Column("hard", "", "difficulty", shown=(Shown("difficulty"), Shown("difficulty", table=LIST)), flat=False),
-    Column("command", "", "command that it is for", attrgetter("words"), flat=False),
-    Column("expected", "", "how it has to end", attrgetter("end"), shown=(Shown("ends", table=LIST),)),
-    Column("why", "", "cause of that end", flat=False),
-)
 
 
 @click.command()
@@ -44,6 +30,8 @@ def command(
     if names:
         _show(names[0], settings, output, hard, terminal)
     elif hard:
+        from frbcli.cli.casefiles.hard import list_hard
+
         list_hard(terminal)
     else:
         _list(terminal)
@@ -52,11 +40,10 @@ def command(
 def _show(name: str, settings: tuple[str, ...], output: Path | None, hard: bool, terminal: Terminal) -> None:
     """Print a case or copy it."""
     if hard:
-        text = hard_text(name)
+        from frbcli.cli.casefiles.hard import hard_text as text_of
     else:
-        from frbcli.case.reading.shipped import find_shipped
-
-        text = find_shipped(name)
+        from frbcli.case.reading.shipped import find_shipped as text_of
+    text = text_of(name)
     if settings:
         from frbcli.case.reading.load import load_case_text
 
@@ -87,24 +74,3 @@ def _write(text: str, output: Path) -> None:
 
     check_outputs((output, NEW))
     write(output, NEW, text, forced())
-
-
-def list_hard(terminal: Terminal) -> None:
-    """The table of all hard cases."""
-    from frbcli.case.reading.hard import hard_cases
-
-    table = table_of(HARD_CASE, hard_cases())
-    terminal.show("hard cases", table, LIST)
-    terminal.remark("`frb cases --hard NAME` prints one as a case file.")
-    terminal.emit({"command": "cases", "hard": table.documents()})
-
-
-def hard_text(name: str) -> str:
-    """The case file of a hard case: its shipped case with the settings put in. Raises InputError for an unknown name;
-    a case that has to be refused is given as its base and its settings."""
-    from frbcli.case.reading.hard import hard_cases
-
-    (hard,) = hard_cases([name])
-    settings = "".join(f"#   --set '{text}'\n" for text in hard.settings)
-    head = f"# {hard.hard}\n# The shipped case {hard.base} for `frb {hard.command}`, with\n{settings}"
-    return head + (hard.case().source_text if hard.end != "input-error" else "# which has to be refused.\n")
