@@ -30,7 +30,7 @@ import click
 
 from frbcli.cli.files import INPUT, note_read
 from frbcli.cli.options import PER_MINUTE, Look, complete_case, complete_key, look_of
-from frbcli.cli.streams import OutputLost
+from frbcli.cli.process import OutputLost
 from frbcli.errors import printable
 from frbcli.units import HERTZ, SpeedUnit
 

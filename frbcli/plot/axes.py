@@ -17,8 +17,7 @@ from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.machine.bearing import draw_coefficient
 from frbcli.plot.machine.modes import draw_frequencies
 from frbcli.plot.machine.response import draw_amplitude
-from frbcli.plot.run.eccentricity import draw_eccentricity
-from frbcli.plot.run.orbit import LAST_s, draw_orbits
+from frbcli.plot.run.motion import LAST_s, draw_eccentricity, draw_orbits
 from frbcli.plot.run.quantities import draw_quantity
 from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends

@@ -20,7 +20,7 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, points, speed_at
 from frbcli.case.course.speed import given_speed_unit
-from frbcli.plot.run.orbit import LAST_s
+from frbcli.plot.run.motion import LAST_s
 from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
 from frbcli.results.files.container import refuse

@@ -21,7 +21,7 @@ from frbcli.case.course.speed import given_speed_unit
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable
-from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
+from frbcli.plot.run.motion import displacement_figure, eccentricity_figure
 from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.speeds import speeds_figure, times_of_speeds

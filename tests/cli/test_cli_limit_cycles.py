@@ -11,7 +11,7 @@ import frbcli
 from frbcli.cli.main import run
 from frbcli.cycles.explain import explanations, threshold_kind
 from frbcli.cycles.limit_cycles import limit_cycles_over
-from frbcli.plot.orders import run_tracks
+from frbcli.plot.curves import run_tracks
 
 SHORT = ("--set", "film.theory=short")
 AROUND = ("--set", "speed.from=165 Hz", "--set", "speed.to=185 Hz")  # Hopf point and fold of the Jeffcott rotor

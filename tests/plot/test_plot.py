@@ -20,8 +20,7 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.picture import fit
-from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
-from frbcli.plot.run.orbit import orbit_figure, visible_steps
+from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
@@ -378,7 +377,7 @@ def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
 
 
 def test_drawing_does_not_import_pyplot() -> None:
-    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.motion; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
 
 
@@ -418,7 +417,7 @@ def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monke
 
 def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = run.signal("journal_x_m"), run.signal("journal_y_m")
-    monkeypatch.setattr("frbcli.plot.run.orbit.ALL_DRAWN", 1000)
+    monkeypatch.setattr("frbcli.plot.run.motion.ALL_DRAWN", 1000)
     begins, ends, gaps = np.stack(visible_steps(x, y, 0, len(run))).reshape(2, -1, 3).T
     assert np.isnan(gaps).all()
     assert len(begins) < 0.1 * len(run)

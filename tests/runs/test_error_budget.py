@@ -29,7 +29,7 @@ from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
-from frbcli.studies.differences import difference, verify
+from frbcli.studies.accuracy import difference, verify
 
 SHORT_RUN = ("speed.duration=0.3 s", "speed.to=30 Hz", "output.step=1e-3 s")
 

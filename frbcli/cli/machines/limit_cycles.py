@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from frbcli.case.schema import Case
     from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
     from frbcli.cycles.stability_map import StabilityMap
-    from frbcli.plot.orders import RunTrack
+    from frbcli.plot.curves import RunTrack
     from frbcli.plot.style import Picture
     from frbcli.scene.costs.preparation import Kernels
 
@@ -207,7 +207,7 @@ def _map_document(names: tuple[str, ...], chart: StabilityMap) -> dict[str, obje
 
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
     """The way up of a run, and the way down if it has one."""
-    from frbcli.plot.orders import run_tracks
+    from frbcli.plot.curves import run_tracks
     from frbcli.results.store import read_run
 
     return run_tracks(read_run(path), path.stem)

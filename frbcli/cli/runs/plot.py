@@ -147,8 +147,7 @@ def _figure(
 ) -> Picture:
     """point: the point or film that is asked for."""
     from frbcli.plot.moving import film_moments_figure
-    from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
-    from frbcli.plot.run.orbit import orbit_figure
+    from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure
     from frbcli.plot.run.quantities import quantity_figure
     from frbcli.plot.run.ring_speed import ring_speed_figure
     from frbcli.plot.run.summary import summary_figure

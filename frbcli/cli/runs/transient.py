@@ -170,7 +170,7 @@ def _watch(terminal: Terminal, shown: Display) -> Observer:
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     """The change in a finer run, as text and as part of the JSON document."""
-    from frbcli.studies.differences import verify
+    from frbcli.studies.accuracy import verify
 
     try:
         with display(terminal) as shown:

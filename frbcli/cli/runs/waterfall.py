@@ -136,7 +136,7 @@ def _orders(
 ) -> dict[str, Any]:
     """Draw amplitudes by order, and return their part of the JSON document."""
     from frbcli.analysis.orders.order_tracking import order_tracks
-    from frbcli.plot.orders import orders_figure
+    from frbcli.plot.curves import orders_figure
 
     with display(terminal):
         tracks = order_tracks(run, orders, signal)

@@ -12,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
 from frbcli.case.course.speed import given_speed_unit
-from frbcli.plot.run.eccentricity import draw_distances, draw_eccentricity
+from frbcli.plot.run.motion import draw_distances, draw_eccentricity
 from frbcli.plot.signals import curve, ends, events, heading, is_searchable, uncertain_times
 from frbcli.plot.style import (
     BAND,
