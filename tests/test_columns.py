@@ -85,8 +85,8 @@ def test_noise_is_zero_and_large_numbers_are_plain(value: float, form: Any, cell
 def test_a_page_has_names_units_and_meaning() -> None:
     rows = column_tables.page_list(COLUMNS).splitlines()
     assert len(rows) == len(COLUMNS)
-    assert rows[2] == "- `p_max_Pa`, terminal `p` in bar: largest pressure: absolute"
-    assert rows[3].startswith("- `stiffness_xx_N_m` to `stiffness_yy_N_m`, terminal ")
+    assert rows[2] == "- `p_max_Pa` (`p` in bar): largest pressure: absolute"
+    assert rows[3].startswith("- `stiffness_xx_N_m` to `_yy_N_m` (")
     assert rows[4].startswith("- JSON `load_N`")
     assert rows[6] == "- CSV `rise_K`: temperature rise"
 

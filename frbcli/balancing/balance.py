@@ -134,7 +134,7 @@ def _gram_millimetres(size: float) -> str:
 # Of a PlaneCorrection
 PLANES = (
     Column("plane", "", "plane", shown=(Shown("plane"),)),
-    Column("correction", "kg m", "unbalance that has to be added", lambda plane: abs(plane.correction),
+    Column("correction", "kg m", "unbalance to be added", lambda plane: abs(plane.correction),
            shown=(Shown("add g mm", _gram_millimetres),)),
     Column("angle", "deg", "its angle on the rotor, in the sense of rotation",
            lambda plane: _degrees(plane.correction), shown=(Shown("at deg", ".1f"),)),
@@ -150,7 +150,7 @@ POINTS = (
     Column("speed", "Hz", "rotor speed", attrgetter("speed_Hz"), shown=(speed_shown(),)),
     Column("point", "", "point", key="node", shown=(Shown("point", lambda name: name.replace("_", " ")),)),
     Column("amplitude", "m", "synchronous amplitude, larger semi-axis", shown=(Shown("um", ".3g", "um"),)),
-    Column("remaining", "m", "that is expected with the correction", shown=(Shown("corrected um", ".3g", "um"),)),
+    Column("remaining", "m", "expected with the correction", shown=(Shown("corrected um", ".3g", "um"),)),
 )  # fmt: skip
 
 
@@ -240,7 +240,7 @@ def balance(
     --------
     >>> import frbcli
     >>> run = frbcli.read_run("run.h5")  # doctest: +SKIP
-    >>> frbcli.balance(run, ["compressor", "turbine"]).planes  # doctest: +SKIP
+    >>> frbcli.balance(run, ["disk"]).planes  # doctest: +SKIP
     """
     _check_angles([run, *(trial.run for trial in trials)], triggered)
     named = tuple(dict.fromkeys(planes or (trial.plane for trial in trials)))

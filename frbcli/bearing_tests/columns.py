@@ -60,20 +60,20 @@ def _angle(result: Any) -> float:
 
 
 HEAD = (
-    Column("cavitation", "", "cavitation model"),
+    Column("cavitation", "", "cavitation model", shown=(
+        Shown("cavitation", table=FORCES), Shown("cavitation", table=OIL), Shown("cavitation", table=GASES)
+    )),
     Column("theory", "", "of the film: `finite` or `short`"),
     Column("status", "", "`ok` or `not-converged`"),
 )
 
 # Of a KinematicResult; of a squeeze or a whirl at the moment of the largest force
 RESULT = (
-    Column("name", "", "", shown=(Shown("films", table=FORCES), Shown("cavitation", table=OIL),
-                                       Shown("cavitation", table=GASES)), key="", flat=False),
     *HEAD,
-    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,)),
+    Column("displacement", "", "journal displacement over clearance", shape=(2,)),
     Column("eccentricity", "", "relative eccentricity of the journal", lambda result: math.hypot(*result.displacement),
            shown=(Shown("eps", ".3f", table=FORCES),), key=""),
-    Column("force", "N", "force of the whole bearing on the journal", _force, shape=(2,),
+    Column("force", "N", "force on the journal", _force, shape=(2,),
            shown=(Shown(("Fx", "Fy", "|F|"), partial(_fixed, digits=3), table=FORCES),)),
     Column("sommerfeld_number", "", "Sommerfeld number (3.14)", shown=(Shown("So", ".3g", table=FORCES),), key=""),
     Column("force_angle", "deg", "angle of the force from the x-axis", _angle,
@@ -85,43 +85,43 @@ RESULT = (
     Column("torque_shell", "N m", "torque on the shell", _loads("torque.shell")),
     Column("oil_fraction", "", "mean oil fraction (4.46)", _loads("oil_fraction"),
            shown=(Shown("oil", ".3f", table=OIL),)),
-    Column("oil_in", "m^3/s", "oil that comes in", _loads("oil.in_m3_s"), shown=(Shown("in", ".4g", "mm^3/s", OIL),),
+    Column("oil_in", "m^3/s", "incoming oil", _loads("oil.in_m3_s"), shown=(Shown("in", ".4g", "mm^3/s", OIL),),
            key="oil_balance.in_m3_s"),
-    Column("oil_out", "m^3/s", "oil that leaves", _loads("oil.out_m3_s"), shown=(Shown("out", ".4g", "mm^3/s", OIL),),
+    Column("oil_out", "m^3/s", "leaving oil", _loads("oil.out_m3_s"), shown=(Shown("out", ".4g", "mm^3/s", OIL),),
            key="oil_balance.out_m3_s"),
-    Column("oil_defect_relative", "", "oil that is lost, or created (negative), over the flow",
+    Column("oil_defect_relative", "", "lost oil (negative: created) over the flow",
            _loads("oil.defect_relative"), shown=(Shown("balance", ".0e", table=OIL),),
            key="oil_balance.defect_relative"),
-    Column("force_error_relative", "", "error of the force over its size: from half the cells, of a short bearing from "
-           "the finite one", attrgetter("force_error"), key="error.force_relative"),
-    Column("temperature", "K", "temperature of the film, with heat", lambda result: math.nan if result.heat is None
+    Column("force_error_relative", "", "relative error: from half the cells, or of a short bearing "
+                                       "from the finite one", attrgetter("force_error"), key="error.force_relative"),
+    Column("temperature", "K", "temperature of the film", lambda result: math.nan if result.heat is None
            else float(result.heat.temperatures[0]), key=""),
     Column("viscosity", "Pa s", "viscosity of its oil", attrgetter("plan.section.viscosity"), key=""),
     Column("cpu", "s", "CPU time", attrgetter("cpu_s"), shown=(Shown("CPU", ".1f", table=OIL),), key="cost.cpu_s"),
     Column("unknowns", "", "number of unknowns", key="cost.unknowns"),
-    Column("newton_iterations", "", "number of Newton's steps", key="cost.newton_iterations"),
+    Column("newton_iterations", "", "Newton steps", key="cost.newton_iterations"),
 )  # fmt: skip
 
 # Of a KinematicResult whose journal tilts, or of a rotation whose velocity is given
 MOMENT = (
-    Column("moment", "N m", "moment of the force about x, y through the middle of the bearing", _moment,
+    Column("moment", "N m", "moment about x, y through the middle", _moment,
            shape=(2,), shown=(Shown(("Mx", "My"), lambda moment: _fixed(moment, 4)[:2], table=FORCES),)),
-    Column("moment_error_relative", "", "error of the moment, from half the cells, over its size",
+    Column("moment_error_relative", "", "relative error, from half the cells",
            attrgetter("moment_error"), key="error.moment_relative"),
 )  # fmt: skip
 
 
 # Of a KinematicResult of a test with a model whose oil carries gas
 GAS = (
-    Column("free_gas", "", "free gas at the saturation pressure over the oil, in the mean", _gas("share"),
+    Column("free_gas", "", "mean free gas over oil, at saturation pressure", _gas("share"),
            shown=(Shown("free gas", ".4f", table=GASES),), key="gas_balance.free"),
-    Column("gas_in", "m^3/s", "free gas that comes in, at the saturation pressure", _gas("in_m3_s"),
+    Column("gas_in", "m^3/s", "incoming free gas at saturation pressure", _gas("in_m3_s"),
            shown=(Shown("in", ".4g", "mm^3/s", GASES),), key="gas_balance.in_m3_s"),
-    Column("gas_out", "m^3/s", "free gas that leaves", _gas("out_m3_s"),
+    Column("gas_out", "m^3/s", "leaving free gas", _gas("out_m3_s"),
            shown=(Shown("out", ".4g", "mm^3/s", GASES),), key="gas_balance.out_m3_s"),
     Column("gas_released", "m^3/s", "gas that leaves the solution, net", _gas("released_m3_s"),
            shown=(Shown("released", ".4g", "mm^3/s", GASES),), key="gas_balance.released_m3_s"),
-    Column("gas_defect_relative", "", "what the balance of the gas is off by, over all gas that the oil carries",
+    Column("gas_defect_relative", "", "defect over all gas of the oil",
            _gas("defect_relative"), shown=(Shown("balance", ".0e", table=GASES),), key="gas_balance.defect_relative"),
 )  # fmt: skip
 
@@ -134,9 +134,9 @@ def result_columns(moment: bool, gas: bool) -> Columns:
 # Of a History: whole in JSON, moment by moment in pandas
 HISTORY = (
     Column("time", "s", "time", attrgetter("time_s"), key="t_s"),
-    Column("displacement", "", "displacement of the journal over the clearance", shape=(2,), key=""),
+    Column("displacement", "", "journal displacement over clearance", shape=(2,), key=""),
     Column("force", "N", "force on the journal", shape=(2,), key="force_history_N"),
-    Column("probe_pressure", "Pa", "absolute pressure at the bottom, a quarter of the width from the end"),
+    Column("probe_pressure", "Pa", "absolute, at the bottom, a quarter of the width from the end"),
     Column("gap_ratio", "", "gap there over the clearance"),
 )
 
@@ -167,7 +167,7 @@ STRIBECK = tuple(
     replace(column, key=f"stribeck.{column.quantity}" + ("_Hz" if column.unit else ""), flat=False)
     for column in (
         Column("speed", "Hz", "speed of the journal"),
-        Column("friction_coefficient", "", "coefficient of friction of film and asperities, `mu = |T| / (R F)`"),
+        Column("friction_coefficient", "", "`mu = |T| / (R F)`"),
         Column("asperity_share", "", "share of the load that asperities carry"),
     )
 )

@@ -35,27 +35,27 @@ from frbcli.materials.solids import SOLIDS, Solid
 class BearingWalls(Model):
     """Keys of a bearing that override the keys of [thermal]."""
 
-    shaft: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.shaft")
-    housing: AnyWall | None = Field(default=None, description="of this bearing, if not thermal.housing")
+    shaft: AnyWall | None = Field(default=None, description="replaces thermal.shaft")
+    housing: AnyWall | None = Field(default=None, description="replaces thermal.housing")
     supply_temperature: InputTemperature | None = Field(
-        default=None, description="of this bearing, if not thermal.supply_temperature; may change over time"
+        default=None, description="replaces thermal.supply_temperature"
     )
 
 
 Misalignment = Annotated[
     tuple[Tilt, Tilt] | None,
-    Field(description="tilt of the shell about x, y; around a ring it needs film.tilt = follows"),
+    Field(description="shell tilt about x, y; around a ring requires film.tilt = follows"),
 ]
 
 
 class SingleFilmBearing(FilmGeometry, BearingWalls):
-    """A journal in a shell with one film between them."""
+    """A journal in a shell with one film."""
 
     kind: Literal["single-film"] = Field(description="one film between journal and shell")
-    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
-    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
-    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position | None = Field(default=None, description="along a turbocharger's shaft")
+    damper: Damper | None = Field(default=None, description="squeeze film damper around shell or outer ring")
+    support: Support | None = Field(default=None, description="shell as a body; fixed by default")
     misalignment: Misalignment = None
     pin: ClassVar[None] = None
 
@@ -82,34 +82,34 @@ class SingleFilmBearing(FilmGeometry, BearingWalls):
 
 
 class Ring(Model):
-    """The floating ring itself, or the body of a cartridge."""
+    """The floating ring, or the body of a cartridge."""
 
     given_mass: RingMass | None = Field(
         default=None,
         alias="mass",
-        description="of one ring; by default from its material, width and diameters",
+        description="of one ring; default: from material, width and diameters",
     )
     given_inertia: RingInertia | None = Field(
         default=None,
         alias="inertia",
-        description="about the axis of rotation; by default m (D_i^2 + D_o^2) / 8",
+        description="about the axis; default: m (D_i^2 + D_o^2) / 8",
     )
     tilt_inertia: RingInertia | None = Field(
         default=None,
-        description="about a diameter, for film.tilt = follows; by default half of inertia and m "
-        "B^2/12; must be given for a cartridge",
+        description="about a diameter, for film.tilt = follows; default: half of inertia and m B^2/12; required "
+        "for a cartridge",
     )
     width: Length | None = Field(
-        default=None, description="axial, for a mass that is not given; by default of the wider film"
+        default=None, description="for the default mass; default: of the wider film"
     )
     spin: Literal["free", "blocked"] = Field(
-        default="free", description="the films turn the ring; a blocked one floats without turning"
+        default="free", description="turned by the films, or not turning"
     )
-    material: Material = Field(default="brass", description="for conduction, heat and growth of the ring")
-    conductivity: ThermalConductivity | None = Field(default=None, description="thermal, if not of its material")
-    heat_capacity: SpecificHeat | None = Field(default=None, description="specific, if not of its material")
+    material: Material = Field(default="brass", description="for conduction, heat and growth")
+    conductivity: ThermalConductivity | None = Field(default=None, description="default: of the material")
+    heat_capacity: SpecificHeat | None = Field(default=None, description="default: of the material")
     expansion: Expansion | None = Field(
-        default=None, description="coefficient of linear thermal expansion, if not of its material"
+        default=None, description="linear thermal, default: of the material"
     )
 
     @property
@@ -120,41 +120,41 @@ class Ring(Model):
 
 
 class Pin(Model):
-    """A pin in the housing that reaches into a hole of a ring, which turns within its play and then pushes against it.
-    It acts on the turning of the ring alone."""
+    """A pin of the housing in a hole of the ring, which turns within its play and then pushes against it. It acts on
+    the ring's rotation only."""
 
-    radius: Length = Field(description="at which ring and pin touch, from the axis")
-    play: Play = Field(description="distance at this radius to either side before they touch")
+    radius: Length = Field(description="of the contact, from the axis")
+    play: Play = Field(description="to either side, at this radius")
     stiffness: Stiffness = Field(description="of pin and hole, across the radius")
-    damping: Damping = Field(default=0.0, description="while they touch; they do not pull at each other")
+    damping: Damping = Field(default=0.0, description="in contact, without pull")
 
 
 GivenPin = Annotated[
-    Pin | None, Field(description="semi-floating: keeps the ring from turning beyond its play; not in limit cycles")
+    Pin | None, Field(description="semi-floating ring; not in limit cycles")
 ]
 CentrifugalPressure = Annotated[
-    bool, Field(description="the spin of the ring changes the pressure in its channels, (4.27) to (4.29)")
+    bool, Field(description="ring spin changes the pressure in its channels, (4.27) to (4.29)")
 ]
 Channels = Annotated[
     Literal["pressure", "coupled"],
-    Field(description="feed holes of the inner film: at given pressure, or coupled to the outer film"),
+    Field(description="feed holes of the inner film: given pressure, or coupled to the outer film"),
 ]
 
 
 class FloatingRingBearing(BearingWalls):
-    """A ring that floats between an inner film around the journal and an outer film in the shell."""
+    """A ring between an inner and an outer film."""
 
     kind: Literal["floating-ring"] = Field(description="a ring between two films")
-    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
-    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
-    ring: Ring = Field(description="mass and inertia of the ring, or what they follow from")
-    inner: RingFilm = Field(description="film between journal and ring")
-    outer: RingFilm = Field(description="film between ring and shell; its diameter is the outer diameter of the ring")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position | None = Field(default=None, description="along a turbocharger's shaft")
+    ring: Ring = Field(description="mass and inertia, or what they follow from")
+    inner: RingFilm = Field(description="between journal and ring")
+    outer: RingFilm = Field(description="between ring and shell; its diameter: outer diameter of the ring")
     centrifugal_pressure: CentrifugalPressure = True
     channels: Channels = "pressure"
     pin: GivenPin = None
-    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
+    damper: Damper | None = Field(default=None, description="squeeze film damper around shell or outer ring")
+    support: Support | None = Field(default=None, description="shell as a body; fixed by default")
     misalignment: Misalignment = None
 
     @property
@@ -220,9 +220,9 @@ class CartridgeBearing(BearingWalls):
     """One rigid ring over two journals, which moves and tilts, between two inner and two outer films."""
 
     kind: Literal["cartridge"] = Field(description="one ring over two inner and two outer films")
-    name: Identifier = Field(default="", description="of the bearing in results, followed by left or right")
+    name: Identifier = Field(default="", description="in results, with left or right")
     positions: tuple[Position, Position] = Field(description="of both journals along the shaft, ascending")
-    ring: Ring = Field(description="its body: mass, inertia and tilt_inertia must be given")
+    ring: Ring = Field(description="requires mass, inertia and tilt_inertia")
     inner: _Films = Field(description="films between journals and ring: one table for both ends, or two")
     outer: _Films = Field(description="films between ring and shells, as inner; diameter: outer diameter of the ring")
     centrifugal_pressure: CentrifugalPressure = True

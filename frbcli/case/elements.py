@@ -62,22 +62,22 @@ MassMatrix = Annotated[tuple[tuple[MassEntry, MassEntry], tuple[MassEntry, MassE
 
 
 class CoefficientsOverSpeed(Model):
-    """Coefficients at several speeds, as they were read from a file: linear between them, constant beyond."""
+    """Values over speed: linear in between, constant beyond."""
 
-    source: Label = Field(default="", description="the file that they were read from")
-    speed: tuple[SignedSpeed, ...] = Field(description="of the rotor, ascending")
-    kxx: tuple[Entry, ...] = Field(description="stiffness at each speed")
-    kxy: tuple[Entry, ...] = Field(description="stiffness at each speed")
+    source: Label = Field(default="", description="file they were read from")
+    speed: tuple[SignedSpeed, ...] = Field(description="ascending")
+    kxx: tuple[Entry, ...] = Field(description="stiffness")
+    kxy: tuple[Entry, ...] = Field(description="stiffness")
     kyx: tuple[Entry, ...] = Field(description="stiffness")
     kyy: tuple[Entry, ...] = Field(description="stiffness")
-    cxx: tuple[DampingEntry, ...] = Field(description="damping at each speed")
+    cxx: tuple[DampingEntry, ...] = Field(description="damping")
     cxy: tuple[DampingEntry, ...] = Field(description="damping")
     cyx: tuple[DampingEntry, ...] = Field(description="damping")
     cyy: tuple[DampingEntry, ...] = Field(description="damping")
-    mxx: tuple[MassEntry, ...] = Field(default=(), description="mass at each speed; 0 without the four")
-    mxy: tuple[MassEntry, ...] = Field(default=(), description="mass")
-    myx: tuple[MassEntry, ...] = Field(default=(), description="mass")
-    myy: tuple[MassEntry, ...] = Field(default=(), description="mass")
+    mxx: tuple[MassEntry, ...] = Field(default=(), description="mass; 0 by default")
+    mxy: tuple[MassEntry, ...] = Field(default=(), description="mass; 0 by default")
+    myx: tuple[MassEntry, ...] = Field(default=(), description="mass; 0 by default")
+    myy: tuple[MassEntry, ...] = Field(default=(), description="mass; 0 by default")
 
 
 class BearingWithoutFilm(Model):
@@ -107,36 +107,36 @@ class BearingWithoutFilm(Model):
 
 
 class CoefficientsBearing(BearingWithoutFilm):
-    """Given coefficients between shaft and ground or support: a force of -K d - C d' - M d'' on the shaft."""
+    """Coefficients between shaft and ground or support: force -K d - C d' - M d'' on the shaft."""
 
     kind: Literal["coefficients"] = Field(description="given stiffness, damping and mass, without a film")
-    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
-    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position | None = Field(default=None, description="along a turbocharger's shaft")
     stiffness: StiffnessMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
+        default=None, description="one value, or [[xx, xy], [yx, yy]]; 0 by default"
     )
     damping: DampingMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
+        default=None, description="as stiffness"
     )
     mass: MassMatrix | None = Field(
-        default=None, description="[[xx, xy], [yx, yy]], or one for both directions; 0 if not given"
+        default=None, description="as stiffness"
     )
     file: Label = Field(
         default="",
-        description="replaces the three: .toml of ROSS or of `--ross`, or .csv with speed_Hz, "
-        "kxx to kyy, cxx to cyy, perhaps mxx to myy",
+        description="replaces the three: .toml of ROSS or of `--ross`, or .csv with speed_Hz, kxx to kyy, cxx to cyy, "
+        "optionally mxx to myy",
     )
     over_speed: CoefficientsOverSpeed | None = Field(default=None, description="contents of `file`, written by runs")
-    damper: Damper | None = Field(default=None, description="squeeze film damper around its shell or outer ring")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
+    damper: Damper | None = Field(default=None, description="squeeze film damper around shell or outer ring")
+    support: Support | None = Field(default=None, description="shell as a body; fixed by default")
 
 
 class RollingMaterial(Model):
-    """A material of balls or rings that is not known by name."""
+    """A material of balls or rings."""
 
-    modulus: Modulus = Field(description="of elasticity")
-    poisson: PoissonRatio = Field(description="Poisson's ratio")
-    density: Density = Field(description="for the centrifugal force of balls")
+    modulus: Modulus = Field(description="of the material")
+    poisson: PoissonRatio = Field(description="of the material")
+    density: Density = Field(description="of the material")
 
     @property
     def solid(self) -> Elastic:
@@ -145,9 +145,9 @@ class RollingMaterial(Model):
 
 
 class AxialOffset(Model):
-    """A preload by rings that are held along the axis."""
+    """Preload by axially held rings."""
 
-    offset: Play = Field(description="axial displacement of the inner ring of each row from its first contact")
+    offset: Play = Field(description="axial displacement of each inner ring from first contact")
 
 
 def _material_form(given: object) -> str:
@@ -169,42 +169,42 @@ AnyPreload = Annotated[
 
 
 class BallBearingKeys(BearingWithoutFilm):
-    """One or two rows of balls between two rings: angular contact, or deep groove."""
+    """One or two rows of balls: angular contact, or deep groove."""
 
     kind: Literal["ball"] = Field(description="balls between two rings")
-    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
-    position: Position | None = Field(default=None, description="along the shaft of a turbocharger")
-    balls: Annotated[int, Count(3, 100, 8)] = Field(description="number of balls of a row")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position | None = Field(default=None, description="along a turbocharger's shaft")
+    balls: Annotated[int, Count(3, 100, 8)] = Field(description="in a row")
     ball_diameter: Length = Field(description="of the balls")
-    pitch_diameter: Length = Field(description="of the circle of their centres")
+    pitch_diameter: Length = Field(description="circle of their centres")
     contact_angle: ContactAngle | None = Field(default=None, description="without load")
     radial_clearance: Play | None = Field(
-        default=None, description="in place of the contact angle: way of a ring from side to side, of a deep groove"
+        default=None, description="replaces the contact angle, of a deep groove: radial travel from side to side"
     )
-    inner_curvature: GrooveCurvature = Field(default=0.52, description="groove radius over ball diameter, inner ring")
-    outer_curvature: GrooveCurvature = Field(default=0.53, description="groove radius over ball diameter, outer ring")
+    inner_curvature: GrooveCurvature = Field(default=0.52, description="groove radius over ball diameter")
+    outer_curvature: GrooveCurvature = Field(default=0.53, description="groove radius over ball diameter")
     ball_material: AnyRollingMaterial = Field(
-        default="steel", description="a name, or `{ modulus, poisson, density }`"
+        default="steel", description="a name, or `{modulus, poisson, density}`"
     )
-    ring_material: AnyRollingMaterial = Field(default="steel", description="the same")
+    ring_material: AnyRollingMaterial = Field(default="steel", description="a name, or `{modulus, poisson, density}`")
     arrangement: Literal["single", "face-to-face", "back-to-back", "tandem"] = Field(
-        default="single", description="one row, or two; they differ in tilt alone, which is left out"
+        default="single", description="one row, or two; two differ in tilt only, which is neglected"
     )
     preload: AnyPreload = Field(
-        default=0.0, description="axial, on each row: constant, by a spring, or `{ offset }` of rings that are held"
+        default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
     )
     damping: Damping = Field(
-        default=0.0, description="between the rings, radial; usual: 0.25e-5 to 2.5e-5 s times the stiffness"
+        default=0.0, description="radial, between the rings; usual: 0.25e-5 to 2.5e-5 s times the stiffness"
     )
     cage: Literal["turning", "mean"] = Field(
         default="turning",
-        description="the balls pass in runs, at rest one is below the shaft; or they act as if spread evenly",
+        description="balls pass in runs (in equilibrium one is below the shaft), or are spread evenly",
     )
     dynamic_rating: Force | None = Field(
-        default=None, description="basic dynamic load rating C of its catalogue, for the rating life"
+        default=None, description="catalogue load rating C, for the life"
     )
-    damper: Damper | None = Field(default=None, description="squeeze film damper around its outer ring")
-    support: Support | None = Field(default=None, description="its shell as a body; fixed by default")
+    damper: Damper | None = Field(default=None, description="squeeze film damper around shell or outer ring")
+    support: Support | None = Field(default=None, description="shell as a body; fixed by default")
 
 
 Element = CoefficientsBearing | BallBearingKeys
@@ -213,24 +213,24 @@ EMPTY_MATRIX = ((0.0, 0.0), (0.0, 0.0))
 
 
 class ThrustBearing(Model):
-    """A ring of equal fixed pads on one or both sides of a collar, with grooves at ambient pressure between them."""
+    """Equal fixed pads on one or both sides of a collar, with grooves at ambient pressure between them."""
 
-    name: Identifier = Field(default="", description="of the bearing in results; several are numbered if not given")
-    position: Position | None = Field(default=None, description="of the collar along the shaft of a turbocharger")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position | None = Field(default=None, description="of the collar on a turbocharger's shaft")
     side: Literal["both", "left", "right"] = Field(
-        default="both", description="of the collar on which the pads stand; left is towards smaller positions"
+        default="both", description="side of the collar with pads; left: smaller positions"
     )
     inner_radius: Length = Field(description="of the pads")
     outer_radius: Length = Field(description="of the pads")
-    pads: Annotated[int, Count(1, 60, 6)] = Field(description="number of pads on each side")
-    pad_angle: OpeningAngle = Field(description="of the sector of a pad, from its leading edge")
-    taper_angle: OpeningAngle = Field(description="from the leading edge to the land; at most the pad angle")
-    taper: Clearance = Field(description="depth at the leading edge below the land")
+    pads: Annotated[int, Count(1, 60, 6)] = Field(description="on each side")
+    pad_angle: OpeningAngle = Field(description="of a pad")
+    taper_angle: OpeningAngle = Field(description="from leading edge to land; at most the pad angle")
+    taper: Clearance = Field(description="depth of the leading edge below the land")
     profile: Literal["taper", "step"] = Field(
-        default="taper", description="the depth falls linearly to 0 in the angle, or is constant up to the land"
+        default="taper", description="depth falls linearly to 0, or is constant up to the land"
     )
     end_play: Clearance | None = Field(
-        default=None, description="sum of the gaps over the lands of both sides; must be given with pads on both"
+        default=None, description="sum of both gaps over the lands; required with pads on both sides"
     )
 
 
@@ -246,10 +246,10 @@ ThrustBearings = Annotated[tuple[ThrustBearing, ...], BeforeValidator(_numbered)
 
 
 class LoadAtSpeed(Model):
-    """An axial load that grows with the square of the speed."""
+    """An axial load that grows with the speed squared."""
 
-    at: TopSpeed = Field(description="speed at which the rotor has this load")
-    load: AxialForce = Field(description="towards larger positions; below 0 the other way")
+    at: TopSpeed = Field(description="speed with this load")
+    load: AxialForce = Field(description="towards larger positions")
 
     def over(self, speed: float) -> float:
         """The load in N at a speed in Hz."""
@@ -268,9 +268,8 @@ AnyLoad = Annotated[
 
 
 class Axial(Model):
-    """The load along the axis, with which the thrust bearing acts on the machine."""
+    """The axial load, with which thrust bearings act on the machine."""
 
     load: AnyLoad = Field(
-        description="on the rotor, towards larger positions; or `{ at, load }`, with the "
-        "square of the speed; or over time"
+        description="on the rotor, towards larger positions; or `{at, load}`"
     )

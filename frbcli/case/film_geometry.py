@@ -33,14 +33,14 @@ from frbcli.film.gap import NO_BATH, LobedShell, ShellProfile, TabledShell
 
 
 class ColdClearance(Model):
-    """A clearance at the reference temperature and its change by thermal expansion, equation (4.24)."""
+    """A clearance that changes by thermal expansion, (4.24)."""
 
-    cold: Clearance = Field(description="radial clearance at the reference temperature")
-    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="temperature of `cold`")
+    cold: Clearance = Field(description="radial, at the reference temperature")
+    reference_temperature: Temperature = Field(default=ROOM_TEMPERATURE, description="of `cold`")
     shell_temperature: Temperature = Field(description="in operation")
     journal_temperature: Temperature = Field(description="in operation")
-    shell_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
-    journal_expansion: Expansion = Field(description="coefficient of linear thermal expansion")
+    shell_expansion: Expansion = Field(description="linear thermal")
+    journal_expansion: Expansion = Field(description="linear thermal")
 
     def warm(self, diameter: float) -> float:
         """The warm radial clearance [m] of a bearing of `diameter` [m]."""
@@ -50,10 +50,10 @@ class ColdClearance(Model):
 
 
 class ClearanceStep(Model):
-    """A clearance from a given time of a run on: the gap changes suddenly, and the oil in it stays."""
+    """A sudden change of the gap in a run; its oil stays."""
 
     time: Duration = Field(description="from the start of the run")
-    clearance: Clearance = Field(description="radial, warm, from this time on")
+    clearance: Clearance = Field(description="radial, warm, from then on")
 
 
 AnyClearance = Annotated[
@@ -63,15 +63,15 @@ AnyClearance = Annotated[
 
 
 class Lobes(Model):
-    """Equal lobes of the shell, machined with a larger radius than the assembled clearance (preload)."""
+    """Equal lobes, machined with a larger radius than the assembled clearance."""
 
-    count: Annotated[int, Count(2, 12, 3)] = Field(description="number of lobes")
+    count: Annotated[int, Count(2, 12, 3)] = Field(description="of lobes")
     preload: Preload = Field(
-        description="1 - c_b / c_p, with the assembled clearance c_b (`clearance`) and the machined clearance c_p"
+        description="1 - c_b / c_p: assembled clearance c_b (`clearance`), machined clearance c_p"
     )
     position: Angle = Field(default=0.0, description="phi of the middle of the first lobe")
     offset: Fraction = Field(
-        default=0.5, description="narrowest place of a lobe, as a share of its arc from its start, counter-clockwise"
+        default=0.5, description="narrowest place, as a share of the arc from its start, counter-clockwise"
     )
 
 
@@ -80,15 +80,15 @@ Profile = Annotated[tuple[tuple[Angle, Gap], ...], Field(min_length=2, max_lengt
 
 
 class SealedEnds(Model):
-    """Ends with a seal, such as a piston ring, beyond which lies the air."""
+    """Ends with a seal, such as a piston ring, to the air."""
 
     sealed: Fraction = Field(
-        description="share of the side flow of open ends that leaves the film: 1 is open, 0 is tight"
+        description="share of the open side flow that leaves: 1 open, 0 tight"
     )
 
 
 class PartBath(Model):
-    """Ends that lie in oil up to a level, and above it in the air."""
+    """Ends in oil up to a level, in air above."""
 
     bath_level: Position = Field(description="height y of the oil over the middle of the shell")
 
@@ -110,27 +110,27 @@ AnyEnds = Annotated[
 class FilmGeometry(Model):
     """The geometry of one film, its supply and its ends."""
 
-    width: Length = Field(description="axial width of the whole bearing")
+    width: Length = Field(description="axial, of the whole bearing")
     diameter: Length = Field(description="of the journal")
-    given_clearance: AnyClearance = Field(alias="clearance", description="radial; warm, or a table with `cold`")
+    given_clearance: AnyClearance = Field(alias="clearance", description="radial, warm; or `{cold}`")
     clearance_steps: tuple[ClearanceStep, ...] = Field(default=(), description="sudden changes, in order of time")
     given_ends: AnyEnds = Field(
         default="free-to-air",
         alias="ends",
-        description="no oil enters at the ends (4.36), or they lie in oil; or a table with `sealed` or `bath_level`",
+        description="no oil enters (4.36), or ends in oil; or `{sealed}` or `{bath_level}`",
     )
-    supply: Supply = Field(default=NoSupply(), description="where the oil comes from, see below")
-    lobes: Lobes | None = Field(default=None, description="of the shell; a plain cylinder if not given")
+    supply: Supply = Field(default=NoSupply(), description="see below")
+    lobes: Lobes | None = Field(default=None, description="default: a plain cylinder")
     profile: Profile | None = Field(
         default=None,
-        description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal, over one turn, linear between them; "
-        "no gap is less than the clearance",
+        description="replaces `lobes`: `[[phi, gap], ...]` of the centred journal over one turn, linear in between; no "
+        "gap below the clearance",
     )
-    viscosity: Viscosity | None = Field(default=None, description="of this film, if not oil.viscosity")
-    temperature: Temperature | None = Field(default=None, description="of this film, for the viscosity by Vogel's law")
+    viscosity: Viscosity | None = Field(default=None, description="default: oil.viscosity")
+    temperature: Temperature | None = Field(default=None, description="for the viscosity by Vogel's law")
     side_flow_factor: Ratio | None = Field(
         default=None,
-        description="beta of thermal.side_flow = concentric; by default 1 with a groove around, else 0.6",
+        description="beta of thermal.side_flow = concentric; default: 1 with a groove around, else 0.6",
     )
 
     @property
@@ -177,6 +177,6 @@ class FilmGeometry(Model):
 
 
 class RingFilm(FilmGeometry):
-    """A film inside or outside of a floating ring, which may have a cavitation model of its own."""
+    """A film inside or outside of a floating ring."""
 
-    cavitation: Cavitation | None = Field(default=None, description="of this film, if not film.cavitation")
+    cavitation: Cavitation | None = Field(default=None, description="default: film.cavitation")

@@ -43,7 +43,7 @@ def adopt(film: type[Model], others: Iterable[type[Model]] = ()) -> None:
         del fields[name]
     for of in _with_keys():
         alias = None if attribute(of) == of.name else of.name
-        made = Field(default=_table(of)(), alias=alias, description=f"keys of the model {of.label}")
+        made = Field(default=_table(of)(), alias=alias, description="keys of this model")
         fields[attribute(of)] = FieldInfo.from_annotated_attribute(_table(of), made)
     for model in (film, *others):
         its = model.model_fields[CAVITATION]

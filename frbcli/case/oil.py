@@ -48,7 +48,7 @@ ReferencePressure = Annotated[float, _Constant("Pa", "1 bar", above=0)]
 
 
 class Vogel(Model):
-    """Vogel's law (3.12), viscosity(T) = eta_0 exp(A / (T + C)), T in kelvin."""
+    """Vogel's law (3.12): eta_0 exp(A / (T + C)), T in kelvin."""
 
     eta_0: Viscosity = Field(description="of (3.12)")
     A: TemperatureDifference = Field(description="of (3.12)")
@@ -61,16 +61,16 @@ class Vogel(Model):
 
 
 class Grade(Model):
-    """An oil of the library: viscosity over temperature, density, heat capacity and conductivity."""
+    """An oil of the library."""
 
-    grade: GradeName = Field(description="SAE or ISO VG grade, see [heat](heat.md#oils-and-materials)")
+    grade: GradeName = Field(description="SAE or ISO VG, see [heat](heat.md#oils-and-materials)")
 
 
 class ViscosityPoints(Model):
-    """Kinematic viscosity at two temperatures of a data sheet, elsewhere by Walther's rule (ASTM D341)."""
+    """Kinematic viscosity at two temperatures, elsewhere by Walther's rule (ASTM D341)."""
 
     points: tuple[tuple[Temperature, KinematicViscosity], tuple[Temperature, KinematicViscosity]] = Field(
-        description='of a data sheet, such as [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]], with oil.density'
+        description='of a data sheet: [["40 degC", "46 cSt"], ["100 degC", "6.8 cSt"]], with oil.density'
     )
 
     def law(self, density_15: float) -> VogelLaw:
@@ -99,7 +99,7 @@ AnyViscosity = Annotated[
 
 
 class Oil(Model):
-    """The lubricant: a viscosity, or Vogel's coefficients or a grade, and a temperature."""
+    """The lubricant."""
 
     given_viscosity: AnyViscosity | None = Field(
         default=None,
@@ -111,20 +111,20 @@ class Oil(Model):
     temperature: Temperature | None = Field(default=None, description="of the films, for Vogel's law or a grade")
     shear_factor: Annotated[float, Quantity(NUMBER, "0.8", above=0, most=1)] = Field(
         default=1.0,
-        description="viscosity at 1e6 to 1e7 1/s over the one at low shear rates",
+        description="viscosity at 1e6 to 1e7 1/s over low shear rates",
     )
     density: OilDensity = Field(
         default=USUAL_DENSITY,
-        description="of the oil; by default of the grade at `temperature`, or at 80 degC",
+        description="default: of the grade at `temperature`, or at 80 degC",
     )
     heat_capacity: SpecificHeat | None = Field(
-        default=None, description="specific; by default of a petroleum oil of this density over temperature"
+        default=None, description="default: of petroleum oil of this density"
     )
     conductivity: ThermalConductivity | None = Field(
-        default=None, description="thermal; by default of a petroleum oil of this density"
+        default=None, description="default: of petroleum oil of this density"
     )
     ambient_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="at the ends of the bearings, absolute")
-    cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="the ambient pressure if not given")
+    cavitation_pressure: ReferencePressure = Field(default=ATMOSPHERE, description="default: the ambient pressure")
 
     @model_validator(mode="before")
     @classmethod

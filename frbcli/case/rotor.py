@@ -52,11 +52,11 @@ GRAVITY = 9.81
 
 
 class Loss(Model):
-    """A blade or a weight that is lost: an unbalance that joins the others at a time of a run."""
+    """A lost blade or weight: an unbalance that is added during a run."""
 
-    time: Hold = Field(description="from the start of the run; at 0 it is there from the beginning")
-    unbalance: Unbalance = Field(description="mass times radius, in addition")
-    phase: Angle = Field(default=0.0, description="its angle on the rotor")
+    time: Hold = Field(description="from the start of the run")
+    unbalance: Unbalance = Field(description="added mass times radius")
+    phase: Angle = Field(default=0.0, description="angle on the rotor")
 
 
 def with_loss(unbalance: float, phase: float, loss: Loss | None) -> tuple[float, float]:
@@ -72,39 +72,39 @@ def unbalance_sizes(part: RigidRotor | JeffcottRotor | Disk) -> float:
 
 
 class RigidRotor(Model):
-    """A rigid rotor that does not tilt, carried by two equal bearings."""
+    """A rigid rotor without tilt in two equal bearings."""
 
     symmetric: ClassVar[bool] = True
 
     kind: Literal["rigid"] = Field(description="one mass, no tilting (2.3)")
-    mass: Mass = Field(description="mass of the whole rotor")
+    mass: Mass = Field(description="of the rotor")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
-    loss: Loss | None = Field(default=None, description="unbalance that joins at a time")
-    external_damping: Damping = Field(default=0.0, description="damping of the rotor against the ground")
-    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
-    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+    loss: Loss | None = Field(default=None, description="unbalance that joins later")
+    external_damping: Damping = Field(default=0.0, description="of rotor or disk to ground")
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis, for [drive]")
+    gravity: Acceleration = Field(default=GRAVITY, description="along -y; 0: off")
 
 
 class JeffcottRotor(Model):
-    """A disk on a massless elastic shaft with a journal at each end, carried by two equal bearings."""
+    """A disk on a massless elastic shaft with a journal at each end, in two equal bearings."""
 
     symmetric: ClassVar[bool] = True
 
     kind: Literal["jeffcott"] = Field(description="a disk on an elastic shaft (2.4)")
-    mass: Mass = Field(description="mass of the disk")
-    journal_mass: JournalMass = Field(description="mass of both journals together")
-    shaft_stiffness: Stiffness = Field(description="stiffness between disk and journals")
-    unbalance: Unbalance = Field(default=0.0, description="mass times radius, at the disk")
-    loss: Loss | None = Field(default=None, description="unbalance of the disk that joins at a time")
-    bow: Offset = Field(default=0.0, description="of the disk off the line of the journals, without any load")
-    bow_phase: Angle = Field(default=0.0, description="angle of the bow on the rotor; the unbalance is at 0")
-    external_damping: Damping = Field(default=0.0, description="damping of the disk against the ground")
-    shaft_damping: Damping = Field(default=0.0, description="damping between disk and journals that does not turn")
+    mass: Mass = Field(description="of the disk")
+    journal_mass: JournalMass = Field(description="of both journals together")
+    shaft_stiffness: Stiffness = Field(description="between disk and journals")
+    unbalance: Unbalance = Field(default=0.0, description="mass times radius")
+    loss: Loss | None = Field(default=None, description="unbalance that joins later")
+    bow: Offset = Field(default=0.0, description="of the unloaded disk off the line of the journals")
+    bow_phase: Angle = Field(default=0.0, description="angle on the rotor; the unbalance is at 0")
+    external_damping: Damping = Field(default=0.0, description="of rotor or disk to ground")
+    shaft_damping: Damping = Field(default=0.0, description="between disk and journals, does not turn")
     internal_damping: Damping = Field(
-        default=0.0, description="damping between disk and journals that turns with the shaft"
+        default=0.0, description="between disk and journals, turns with the shaft"
     )
-    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis of rotation, for [drive]")
-    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+    polar_inertia: RotorInertia | None = Field(default=None, description="about the axis, for [drive]")
+    gravity: Acceleration = Field(default=GRAVITY, description="along -y; 0: off")
 
 
 class TurbochargerRotor(Model):
@@ -117,15 +117,15 @@ class TurbochargerRotor(Model):
     file: Label = Field(default="", description="rotor file of ROSS; replaces [[shaft]]")
     modes: Annotated[int, Count(2, 200, 6)] | None = Field(
         default=None,
-        description="modes of the free rotor kept in each plane; by default as many as `accuracy.target` needs",
+        description="modes of the free rotor in each plane; default: by `accuracy.target`",
     )
-    cutoff: Speed | None = Field(default=None, description="replaces `modes`: keep the modes up to this frequency")
-    modal_damping: Fraction = Field(default=0.0, description="damping ratio of every elastic mode; does not turn")
+    cutoff: Speed | None = Field(default=None, description="replaces `modes`: highest modal frequency")
+    modal_damping: Fraction = Field(default=0.0, description="ratio of every elastic mode; does not turn")
     internal_damping: DampingTime = Field(
-        default=0.0, description="damping of the shaft over its stiffness; turns with the shaft"
+        default=0.0, description="damping over stiffness; turns with the shaft"
     )
-    external_damping: Damping = Field(default=0.0, description="damping of each disk against the ground")
-    gravity: Acceleration = Field(default=GRAVITY, description="acts along -y; 0 switches it off")
+    external_damping: Damping = Field(default=0.0, description="of each disk to ground")
+    gravity: Acceleration = Field(default=GRAVITY, description="along -y; 0: off")
 
 
 Rotor = Annotated[RigidRotor | JeffcottRotor | TurbochargerRotor, Field(discriminator="kind")]
@@ -133,20 +133,20 @@ SYMMETRIC, OF_SECTIONS = ("rigid", "jeffcott"), ("turbocharger",)  # kinds
 
 
 class ShaftSection(Model):
-    """One cylindrical section of a turbocharger's shaft; the sections follow each other along z."""
+    """A cylindrical section; the sections follow each other along z."""
 
-    length: Length = Field(description="along the axis")
-    diameter: Length = Field(description="outer diameter")
-    inner_diameter: InnerDiameter = Field(default=0.0, description="of a hollow shaft")
-    density: Density = Field(default=7850.0, description="of the material")
-    youngs_modulus: Modulus = Field(default=210e9, description="of the material; steel")
-    poisson_ratio: Ratio = Field(default=0.3, description="of the material, for its shear")
+    length: Length = Field(description="of the section")
+    diameter: Length = Field(description="of the section")
+    inner_diameter: InnerDiameter = Field(default=0.0, description="of the section")
+    density: Density = Field(default=7850.0, description="of the section")
+    youngs_modulus: Modulus = Field(default=210e9, description="of the section")
+    poisson_ratio: Ratio = Field(default=0.3, description="of the section")
     internal_damping: DampingTime | None = Field(
         default=None,
-        description="of the section over its stiffness, instead of the damping of the rotor; turns with it",
+        description="damping over stiffness, turns; replaces the rotor's",
     )
-    mass_damping: DampingRate = Field(default=0.0, description="of the section over its mass; does not turn")
-    stiffness_damping: DampingTime = Field(default=0.0, description="of the section over its stiffness; does not turn")
+    mass_damping: DampingRate = Field(default=0.0, description="damping over mass; does not turn")
+    stiffness_damping: DampingTime = Field(default=0.0, description="damping over stiffness; does not turn")
 
     @property
     def polar_inertia(self) -> float:
@@ -156,11 +156,11 @@ class ShaftSection(Model):
 
 
 class Bow(MachineTable):
-    """A place of a bent shaft, as it is without any load."""
+    """A point of an unloaded bent shaft."""
 
-    position: Position = Field(description="along the shaft, from the start of its first section")
+    position: Position = Field(description="from the start of the shaft")
     offset: Offset = Field(description="off the line through the outermost bearings")
-    phase: Angle = Field(default=0.0, description="its angle on the rotor")
+    phase: Angle = Field(default=0.0, description="angle on the rotor")
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:
         length = sum(section.length for section in case.shaft)
@@ -193,13 +193,13 @@ def bow_places(case: Case) -> tuple[tuple[float, complex], ...]:
 
 
 class Disk(Model):
-    """A wheel, a nut or a thrust disk on a turbocharger's shaft."""
+    """A wheel, nut or thrust disk on a turbocharger's shaft."""
 
-    name: Identifier = Field(default="", description="of the disk in results; numbered if not given")
-    position: Position = Field(description="along the shaft, from the start of its first section")
+    name: Identifier = Field(default="", description="in results; numbered by default")
+    position: Position = Field(description="from the start of the shaft")
     mass: Mass = Field(description="of the disk")
-    polar_inertia: Inertia = Field(default=0.0, description="about the axis of rotation")
-    diametral_inertia: Inertia = Field(default=0.0, description="about a diameter")
+    polar_inertia: Inertia = Field(default=0.0, description="of the disk")
+    diametral_inertia: Inertia = Field(default=0.0, description="of the disk")
     unbalance: Unbalance = Field(default=0.0, description="mass times radius")
-    phase: Angle = Field(default=0.0, description="angle of the unbalance on the rotor")
-    loss: Loss | None = Field(default=None, description="unbalance that joins at a time")
+    phase: Angle = Field(default=0.0, description="angle on the rotor")
+    loss: Loss | None = Field(default=None, description="unbalance that joins later")

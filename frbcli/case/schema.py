@@ -47,57 +47,57 @@ _UNCOMPUTED = {"name": "", "title": "", "confirm": ()}
 
 
 class Case(Model):
-    """One machine and one run, as the user describes them."""
+    """One machine and one run."""
 
-    name: Label = Field(default="", description="short name for results; the file's name if not given")
+    name: Label = Field(default="", description="for results; default: the file's name")
     title: Label = Field(default="", description="of tables and pictures")
     confirm: tuple[Confirmation, ...] = Field(
         default=(),
-        description="intended values outside the usual range: surface speed above 500 m/s, centrifugal "
-        "growth above half of the clearance, clearance below 1 um or above R/10",
+        description="accepted values outside the usual range: surface speed above 500 m/s, centrifugal growth above "
+        "half the clearance, clearance below 1 um or above R/10",
     )
     given_rotor: Rotor | None = Field(
-        default=None, alias="rotor", description="must be given, but for a case with [motion]"
+        default=None, alias="rotor", description="required unless there is [motion]"
     )
-    shaft: tuple[ShaftSection, ...] = Field(default=(), description="sections of the shaft of a turbocharger, in order")
-    disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="disks on the shaft of a turbocharger")
-    bows: tuple[Bow, ...] = Field(default=(), alias="bow", description="places of a bent shaft of a turbocharger")
+    shaft: tuple[ShaftSection, ...] = Field(default=(), description="shaft sections of a turbocharger, in order")
+    disks: tuple[Disk, ...] = Field(default=(), alias="disk", description="on a turbocharger's shaft")
+    bows: tuple[Bow, ...] = Field(default=(), alias="bow", description="of a turbocharger's shaft")
     forces: tuple[AppliedForce, ...] = Field(
-        default=(), alias="force", description="forces besides unbalance and weight"
+        default=(), alias="force", description="besides unbalance and weight"
     )
     magnetic_pulls: tuple[MagneticPull, ...] = Field(
-        default=(), alias="magnetic_pull", description="of electrical machines on places of the rotor"
+        default=(), alias="magnetic_pull", description="of electrical machines"
     )
     springs: tuple[Spring, ...] = Field(
-        default=(), alias="spring", description="springs, dampers and stops between places of the machine"
+        default=(), alias="spring", description="springs, dampers and stops"
     )
-    bases: Bases = Field(default=(), alias="base", description="motion of the ground that the machine stands on")
+    bases: Bases = Field(default=(), alias="base", description="motion of the ground")
     given_bearings: Bearings = Field(
-        default=(), alias="bearing", description="one [bearing] for both of a symmetric rotor, or [[bearing]] for each"
+        default=(), alias="bearing", description="one for both of a symmetric rotor, or [[bearing]]"
     )
     thrust_bearings: ThrustBearings = Field(
-        default=(), alias="thrust_bearing", description="pads at a collar; must be given without a bearing"
+        default=(), alias="thrust_bearing", description="pads at a collar; required without a bearing"
     )
     axial: Axial | None = Field(
-        default=None, description="load along the axis; without it thrust bearings are left out of the motion"
+        default=None, description="axial load; without it thrust bearings do not act on the motion"
     )
     housing: Housing | None = Field(
-        default=None, description="carries all bearings; by default they are fixed to the ground"
+        default=None, description="carries all bearings; default: fixed to ground"
     )
     given_oil: Oil | None = Field(
-        default=None, alias="oil", description="the lubricant; must be given where a bearing has a film"
+        default=None, alias="oil", description="required for films"
     )
-    film: FilmModel = Field(default=FilmModel(), description="how the films are computed")
-    thermal: AnyThermal = Field(default=None, description="heat; without it film temperatures are constant")
+    film: FilmModel = Field(default=FilmModel(), description="film models")
+    thermal: AnyThermal = Field(default=None, description="heat; without it temperatures are constant")
     speed_ramp: SpeedRamp | None = Field(
-        default=None, alias="speed", description="must be given, but for a case with [motion] or [drive]"
+        default=None, alias="speed", description="required unless there is [motion] or [drive]"
     )
-    drive: Drive | None = Field(default=None, description="free speed, by a torque; replaces [speed]")
-    motion: KinematicMotion | None = Field(default=None, description="motion of the journal in a kinematic test")
-    start: Start = Field(default=Start(), description="where the rotor begins a run")
-    contact: Contact = Field(default=Contact(), description="what happens where journal and shell touch")
+    drive: Drive | None = Field(default=None, description="speed by a torque; replaces [speed]")
+    motion: KinematicMotion | None = Field(default=None, description="of the journal in a kinematic test")
+    start: Start = Field(default=Start(), description="of a run")
+    contact: Contact = Field(default=Contact(), description="of journal and shell")
     accuracy: Accuracy = Field(default=Accuracy(), description="target, or mesh and tolerance")
-    output: Output = Field(default=Output(), description="what a run file holds")
+    output: Output = Field(default=Output(), description="contents of a run file")
     _read: tuple[str, dict[str, Any]] | None = PrivateAttr(None)  # a text, and the values that were read from it
     _speed_unit: SpeedUnit | None = PrivateAttr(None)
 

@@ -22,11 +22,11 @@ Clearances = Literal["fixed", "follows"]
 
 
 class WallNode(Model):
-    """A body at a film with one temperature, which passes heat on to a place of given temperature."""
+    """A body of one temperature at a film, which passes heat on."""
 
-    capacity: HeatCapacity = Field(description="heat that warms it by 1 K")
-    conductance: Conductance = Field(description="heat that it passes on per K")
-    temperature: InputTemperature = Field(description="of the place that it passes heat on to; may change over time")
+    capacity: HeatCapacity = Field(description="heat per K")
+    conductance: Conductance = Field(description="heat flow per K")
+    temperature: InputTemperature = Field(description="of the place it passes heat to")
 
 
 def _wall_form(given: object) -> str:
@@ -44,47 +44,47 @@ AnyWall = Annotated[
 
 
 class Thermal(Model):
-    """Heat: films, rings, shaft and housing that warm up, from what the films dissipate; docs/heat.md."""
+    """Films, rings, shaft and housing that warm up by dissipation; docs/heat.md."""
 
     model: Literal["lumped", "none"] = Field(
-        default="lumped", description="one temperature per film, two per ring; or none: all keep their temperature"
+        default="lumped", description="one temperature per film, two per ring; none: constant temperatures"
     )
-    supply_temperature: InputTemperature = Field(description="of the supplied oil; may change over time")
+    supply_temperature: InputTemperature = Field(description="of the supplied oil")
     start_temperature: Temperature | None = Field(
         default=None,
-        description="of films, rings and walls at the start of a run; by default of the supply",
+        description="of films, rings and walls in a run; default: of the supply",
     )
     shaft: AnyWall = Field(
         default="adiabatic",
-        description="`adiabatic`, a temperature, perhaps over time, or `{ capacity, conductance, temperature }`",
+        description="`adiabatic`, a temperature, or `{capacity, conductance, temperature}`",
     )
-    housing: AnyWall = Field(default="adiabatic", description="the same")
+    housing: AnyWall = Field(default="adiabatic", description="as shaft")
     clearance: Clearances = Field(
-        default="fixed", description="clearances follow the temperatures of journal, ring and shell (4.24)"
+        default="fixed", description="follows the temperatures of journal, ring and shell (4.24)"
     )
     centrifugal_growth: Clearances = Field(
-        default="fixed", description="clearances follow the centrifugal growth of shafts and rings"
+        default="fixed", description="clearances follow the growth of shafts and rings"
     )
     reference_temperature: Temperature = Field(
-        default=ROOM_TEMPERATURE, description="at which clearances that follow have their given value"
+        default=ROOM_TEMPERATURE, description="of given clearances"
     )
-    shaft_material: Material = Field(default="steel", description="for its expansion and growth")
-    housing_material: Material = Field(default="steel", description="for its expansion")
+    shaft_material: Material = Field(default="steel", description="for expansion and growth")
+    housing_material: Material = Field(default="steel", description="for expansion and growth")
     mixing: Annotated[float, Quantity(NUMBER, "0.5", least=0.5, most=1)] = Field(
         default=0.5,
-        description="m: 0.5, a film has the mean temperature of inlet and outlet; 1, the outlet temperature",
+        description="m: film temperature: 0.5 mean of inlet and outlet, 1 outlet",
     )
     nusselt: Annotated[float, Quantity(NUMBER, "3.77", above=0, most=1000)] = Field(
-        default=3.77, description="heat transfer from a film to each wall, Nu k / C"
+        default=3.77, description="heat transfer to each wall, Nu k / C"
     )
     side_flow: Literal["film", "concentric"] = Field(
-        default="film", description="outflow of the solved film, or the formula of a concentric film"
+        default="film", description="of the solved film, or by formula for a concentric film"
     )
     films: Literal["states", "quasi-steady"] = Field(
-        default="states", description="of a run: films store heat, or are in balance at each instant"
+        default="states", description="in runs films store heat, or are in balance at each instant"
     )
     hottest_film: Temperature = Field(
-        default=HOTTEST_FILM, description="a film that reaches it ends the run as `overheated`"
+        default=HOTTEST_FILM, description="ends the run as `overheated`"
     )
 
 

@@ -16,14 +16,14 @@ MULTIPLIERS = 6  # of a cycle in JSON: the trivial one and the largest others
 
 SPEED_COLUMN = Column("speed", "Hz", "rotor speed")
 FREQUENCY = Column("frequency", "Hz", "frequency of the cycle")
-STABLE = Column("stable", "", "whether all disturbances decay")
-VALUE = Column("value", "", "value of the number that is varied", flat=False)
-TEMPERATURE = "temperature of a film, with heat"
-END_MEANING = "larger eccentricity of both ends, of films whose journals tilt"
+STABLE = Column("stable", "", "all disturbances decay")
+VALUE = Column("value", "", "value of the varied key", flat=False)
+TEMPERATURE = "of a film, with heat"
+END_MEANING = "larger one of both ends of tilting films"
 RINGS = Column("ring_speeds", "Hz", "mean speeds of the rings", flat=False)
 CRITICALITY = Column("criticality", "", "`subcritical` or `supercritical`, of a Hopf point")
 LYAPUNOV = Column("lyapunov", "1/s", "first Lyapunov coefficient, of a Hopf point")
-FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "uncertainty of its frequency")
+FREQUENCY_UNCERTAINTY = Column("frequency_uncertainty", "Hz", "its uncertainty")
 DIGITS = 6  # of a value that is varied, in the terminal
 
 
@@ -42,12 +42,12 @@ def _largest_uncertainty(films: Sequence[str]) -> Column:
         uncertainty = point.eccentricity_max_uncertainty
         return None if uncertainty is None else by_film(films, uncertainty)
 
-    return Column("eccentricity_max_uncertainty", "", "uncertainty of the largest eccentricity, by film", by_name,
+    return Column("eccentricity_max_uncertainty", "", "its uncertainty, by film", by_name,
                   flat=False)  # fmt: skip
 
 
 def _temperatures(films: Sequence[str], heat: bool) -> tuple[Column, ...]:
-    column = Column("temperatures", "K", "temperatures of the films, with heat, by film",
+    column = Column("temperatures", "K", "with heat, by film",
                     lambda point: by_film(films, point.temperatures_K), flat=False)  # fmt: skip
     return (column,) if heat else ()
 
@@ -62,7 +62,7 @@ def equilibrium_columns(films: Sequence[str], heat: bool = False, tilts: bool = 
     return (
         VALUE,
         SPEED_COLUMN,
-        Column("displacement", "", "displacement of the first journal over the clearance",
+        Column("displacement", "", "of the first journal over the clearance",
                lambda point: point.displacement[0], flat=False),
         STABLE,
         Column("films", "", "displacements, by film", lambda point: by_film(films, point.displacement), flat=False),
@@ -80,13 +80,13 @@ def cycle_columns(films: Sequence[str], heat: bool = False, tilts: bool = False)
         FREQUENCY,
         _largest(films),
         STABLE,
-        Column("multipliers", "", "Floquet multipliers, real and imaginary part: the trivial one, then the largest",
+        Column("multipliers", "", "Floquet multipliers (real, imaginary): the trivial one, then the largest",
                lambda point: [[value.real, value.imag] for value in point.multipliers[:MULTIPLIERS].tolist()],
                flat=False),
         RINGS,
         *_temperatures(films, heat),
-        Column("torque", "N m", "mean torque that turns the rotor against its films"),
-        Column("kind", "", "kind of a special point, `asked` at a speed that was asked for", lambda p: p.kind or None),
+        Column("torque", "N m", "mean torque against its films"),
+        Column("kind", "", "of a special point, or `asked`", lambda p: p.kind or None),
         FREQUENCY_UNCERTAINTY,
         _largest_uncertainty(films),
         *_at_ends(films, "end_eccentricity_max", tilts),
@@ -96,9 +96,9 @@ def cycle_columns(films: Sequence[str], heat: bool = False, tilts: bool = False)
 def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
     """The columns of a SpectralLine in JSON."""
     return (
-        Column("name", "", "name of the line, such as `Omega / 2`"),
+        Column("name", "", "such as `Omega / 2`"),
         FREQUENCY,
-        Column("amplitude", "", "half the longer axis of its ellipse over the clearance, by film",
+        Column("amplitude", "", "larger semi-axis over the clearance, by film",
                lambda line: by_film(films, line.amplitude), flat=False),
     )  # fmt: skip
 
@@ -108,7 +108,7 @@ def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
     return (
         SPEED_COLUMN,
         FREQUENCY,
-        Column("locked", "", "true: the whirl has locked in at half the speed", lambda _: True),
+        Column("locked", "", "true: lock-in at half the speed", lambda _: True),
         _largest(films),
         RINGS,
         *_temperatures(films, heat),
@@ -117,7 +117,7 @@ def whirl_columns(films: Sequence[str], heat: bool = False) -> tuple[Column, ...
 
 
 # Of a MissingWhirl in JSON
-MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl locks in at a stable cycle"))
+MISSING = (SPEED_COLUMN, Column("reason", "", "why no whirl locks in"))
 
 
 def _other_line(whirl: UnbalancedWhirl) -> str:
@@ -157,8 +157,8 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
     value = Column("value", "", "", _value_shown, shown=(Shown(unit or over),), key="", flat=False)
     return (
         Column("kind", "", "`hopf`, `fold`, `flip` or `torus`", shown=(Shown("point"),)),
-        Column("branch", "", "number of the branch, from 0; none where none was followed"),
-        Column("synchronous", "", "whether it is of the synchronous response"),
+        Column("branch", "", "number from 0; none if not followed"),
+        Column("synchronous", "", "of the synchronous response"),
         Column("branch", "", "",
                lambda point: "synchronous" if point.synchronous else None if point.branch is None else point.branch + 1,
                shown=(Shown("branch"),), key="", flat=False),
@@ -176,11 +176,11 @@ def special_columns(films: Sequence[str], over: str = SPEED, unit: str = "Hz") -
         Column("criticality", "", "", _remark, shown=(Shown(""),), key="", flat=False),
         LYAPUNOV,
         Column("lyapunov_uncertainty", "1/s", "its uncertainty"),
-        Column("value_uncertainty", "", "uncertainty of the value of a Hopf point or a fold", flat=False),
-        Column("speed_uncertainty", "Hz", "the same over the speed", own if along_speed else lambda _: math.nan),
+        Column("value_uncertainty", "", "uncertainty of a Hopf point or a fold", flat=False),
+        Column("speed_uncertainty", "Hz", "uncertainty over the speed", own if along_speed else lambda _: math.nan),
         FREQUENCY_UNCERTAINTY,
         _largest_uncertainty(films),
-        Column("certain", "", "of a fold whether films of another mesh have it, too; none where that is not known"),
+        Column("certain", "", "a fold exists on another mesh, too; none if unknown"),
     )  # fmt: skip
 
 
@@ -220,10 +220,10 @@ def map_columns(over: str, over_unit: str, key: str, unit: str) -> tuple[Column,
         Column(key, "", "value of the second number", lambda item: item[2].value),
         Column("unit", "", "its unit", lambda _: unit),
         Column("curve", "", "number of the curve, from 0", itemgetter(0)),
-        Column("kind", "", "`hopf` or `fold`, `bautin` or `cusp` on a curve",
+        Column("kind", "", "`hopf`, `fold`, `bautin` or `cusp`",
                lambda item: item[2].kind or item[1].kind),
         *named((SPEED_COLUMN, FREQUENCY,
-                Column("eccentricity_max", "", "largest eccentricity of all films",
+                Column("eccentricity_max", "", "largest of all films",
                        lambda point: float(point.eccentricity_max.max())),
                 CRITICALITY, LYAPUNOV), "", itemgetter(2)),
     )  # fmt: skip
@@ -238,12 +238,12 @@ def diagram_columns(
     over: the number that is varied; films: their names; rings: their number; lines: names of the spectral lines of
     whirls with unbalance; unbalance: whether there are any; heat: whether films have temperatures; tilts: whether
     journals tilt. """
-    value = Column(over, "", "value of the number that is varied", _number("value"))
-    whirl = Column("unbalance", "", "true of a whirl with unbalance",
+    value = Column(over, "", "value of the varied key", _number("value"))
+    whirl = Column("unbalance", "", "true: whirl with unbalance",
                    lambda point: True if isinstance(point, UnbalancedWhirl) else None)  # fmt: skip
     per_film = [
         ("eccentricity_max", "", "largest eccentricity", "eccentricity"),
-        ("eccentricity_max_uncertainty", "", "its uncertainty, of a cycle at its speed", ""),
+        ("eccentricity_max_uncertainty", "", "uncertainty of a cycle", ""),
         *([("end_eccentricity_max", "", END_MEANING, "end_eccentricity")] if tilts else []),
         *([("temperatures_K", "K", TEMPERATURE, "")] if heat else []),
     ]
@@ -253,12 +253,12 @@ def diagram_columns(
 
     return (
         *of_point(*(() if over == SPEED else (value,))),
-        Column("branch", "", "number of the branch, from 0; -1 of a static equilibrium", itemgetter(0)),
+        Column("branch", "", "number from 0; -1 of a static equilibrium", itemgetter(0)),
         *of_point(
             SPEED_COLUMN,
             replace(FREQUENCY, value=_number("frequency_Hz")),
             STABLE,
-            Column("kind", "", "kind of a special point, or `asked`; `locked` of a whirl with unbalance", _kind),
+            Column("kind", "", "of a special point, or `asked`; `locked` of a whirl with unbalance", _kind),
         ),
         *(column for quantity, unit, meaning, at_rest in per_film for film, name in enumerate(films)
           for column in of_point(Column(quantity.replace("temperatures_K", "temperature"), unit, meaning,
@@ -266,15 +266,15 @@ def diagram_columns(
         *of_point(
             *(Column(f"ring_speed_{ring}", "Hz", "mean speed of a ring", _number("ring_speeds_Hz", ring))
               for ring in range(rings)),
-            Column("torque", "N m", "mean torque of a cycle that turns the rotor against its films",
+            Column("torque", "N m", "mean torque of a cycle against its films",
                    _number("torque_N_m")),
             Column(*(("speed_uncertainty", "Hz") if over == SPEED else ("value_uncertainty", "")),
-                   "uncertainty of the number that is varied, of a fold", _number("value_uncertainty")),
-            Column("frequency_uncertainty", "Hz", "uncertainty of the frequency of a cycle, at its speed",
+                   "uncertainty of a fold", _number("value_uncertainty")),
+            Column("frequency_uncertainty", "Hz", "uncertainty of a cycle",
                    _number("frequency_uncertainty_Hz")),
             *([whirl] if unbalance else []),
-            *(Column(f"amplitude of {line}", "", "amplitude of a line over the clearance, of the film where it is "
-                     "largest", _amplitude(line)) for line in lines),
+            *(Column(f"amplitude of {line}", "", "line amplitude over the clearance, of the film "
+                                                 "where it is largest", _amplitude(line)) for line in lines),
         ),
     )  # fmt: skip
 

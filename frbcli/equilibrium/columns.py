@@ -19,8 +19,8 @@ WARM_FILMS = (
 # Of a RingTemperature
 WARM_RINGS = (
     Column("ring", "", "name of the ring", shown=(Shown("ring"),)),
-    Column("inner", "K", "temperature of its inner surface", shown=(Shown("inner, degC", ".1f", "degC"),)),
-    Column("outer", "K", "temperature of its outer surface", shown=(Shown("outer, degC", ".1f", "degC"),)),
+    Column("inner", "K", "of its inner surface", shown=(Shown("inner, degC", ".1f", "degC"),)),
+    Column("outer", "K", "of its outer surface", shown=(Shown("outer, degC", ".1f", "degC"),)),
     Column("speed_ratio", "", "speed of the ring over the rotor speed", shown=(Shown("speed over rotor's", ".4f"),)),
 )
 
@@ -28,5 +28,5 @@ WARM_RINGS = (
 HEAT_BALANCE = (
     Column("carried_by_oil", "W", "heat that leaves with the oil", attrgetter("carried")),
     Column("into_walls", "W", "heat into shaft and housing", attrgetter("given")),
-    Column("balance_relative", "", "power that is unaccounted for, over the power", attrgetter("balance")),
+    Column("balance_relative", "", "unaccounted power over the power", attrgetter("balance")),
 )

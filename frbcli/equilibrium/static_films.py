@@ -1,6 +1,6 @@
 """The films of static results: static equilibria, coefficients, stability and response all have the same ones.
 
-Gaps made of rectangles, and bearing models, have the film of a run, clipped along more lines: it has no cells, and is
+Gaps made of rectangles have the film of a run, clipped along more lines: it has no cells, and is
 cheap. All others are solved on CELLS, more than in a run, which has to solve them many times, and with the edge of the
 cavity within cells. The same films on other meshes give the error of the coefficients. """
 
@@ -101,11 +101,8 @@ class StaticFilms:
         return StaticFilms(case, warmed(self.own), lambda: tuple(map(warmed, self.others)), self.top_Hz)
 
     @cached_property
-    def fields(self) -> tuple[FieldFilms | None, ...]:
-        """The films on CELLS and on fewer cells, for the fields of pressure and flow; None for bearing models, which
-        have none."""
-        if not self.own.plan.form.solved:
-            return (None,) * len(film_places(self.case))
+    def fields(self) -> tuple[FieldFilms, ...]:
+        """The films on CELLS and on fewer cells, for the fields of pressure and flow."""
         if uneven := self.system.films.fields:
             other = self.others[0]
             both = zip(uneven, other.system.films.fields, strict=True)
@@ -132,8 +129,8 @@ def static_films(case: Case, load: float | None = None, top_Hz: float | None = N
 
 
 def other_plans(plan: Plan) -> tuple[tuple[Plan, float], ...]:
-    """Plans of other meshes, with the share of the difference to each that is the error; none for a bearing model,
-    whose error is not known."""
+    """Plans of other meshes, with the share of the difference to each that is the error; none without
+    films."""
     if not plan.form.solved:
         return ()
     if plan.form.by_cells:

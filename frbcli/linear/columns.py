@@ -23,13 +23,13 @@ SPEED = Column("speed", "Hz", "rotor speed", shown=(
 ))  # fmt: skip
 NAME = Column("film", "", "name of the film, empty of one alone")
 STATUS = Column("status", "", "`resting` or `not-converged`")
-DISPLACEMENT = Column("displacement", "", "displacement of the journal over the clearance", shape=(2,))
+DISPLACEMENT = Column("displacement", "", "journal displacement over clearance", shape=(2,))
 ECCENTRICITY = Column("eccentricity", "", "relative eccentricity of the journal", shown=(
     *(Shown("eps", ".3f", table=table) for table in (FILMS, WARM, MIXED, *MATRICES)),
     Shown("eps", ".4f", table=STABILITY),
 ))  # fmt: skip
 ATTITUDE = Column(
-    "attitude", "deg", "attitude angle", more="from the load line to the displacement, positive counter-clockwise",
+    "attitude", "deg", "attitude angle", more="from load to displacement, counter-clockwise",
     shown=(Shown("att.", ".1f", table=FILMS), Shown("attitude", "{:.1f}°".format, table=STABILITY)),
 )  # fmt: skip
 STIFFNESS = Column("stiffness", "N/m", "stiffness `-dF/dD` of one bearing", shape=(2, 2),
@@ -38,12 +38,12 @@ DAMPING = Column("damping", "N s/m", "damping `-dF/dD'` of one bearing", shape=(
                  shown=(Shown(ENTRIES, ".4g", "N s/mm", "damping"),))  # fmt: skip
 ERROR = Column(
     "coefficient_error", "", "relative error of stiffness and damping", attrgetter("error"),
-    more="over the largest entry of each, at the same load", key="error.coefficients_relative",
+    more="over the largest entry, at the same load", key="error.coefficients_relative",
     shown=tuple(Shown("err.", ".0e", table=table) for table in MATRICES),
 )  # fmt: skip
 
-PLACE_ERROR = Column("displacement_error", "", "expected error of the displacement", attrgetter("place_error"),
-                     more="over the clearance, by the mesh", key="error.displacement")  # fmt: skip
+PLACE_ERROR = Column("displacement_error", "", "expected error", attrgetter("place_error"),
+                     more="over the clearance", key="error.displacement")  # fmt: skip
 
 # Of a RestingFilm
 FILM = (DISPLACEMENT, ECCENTRICITY, ATTITUDE, STIFFNESS, DAMPING, ERROR, PLACE_ERROR)
@@ -55,7 +55,7 @@ def _tilting(name: str) -> Callable[[Any], Any]:
 
 # Of a RestingFilm or FilmState whose journal tilts
 TILTING = (
-    Column("tilt", "rad", "tilt of the journal against its shell", _tilting("tilt"), shape=(2,), more="about x and y"),
+    Column("tilt", "rad", "tilt of the journal in its shell", _tilting("tilt"), shape=(2,), more="about x and y"),
     Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dt`", _tilting("tilt_stiffness"), shape=(2, 2)),
     Column("tilt_damping", "N m s", "damping in tilt `-dM/dt'`", _tilting("tilt_damping"), shape=(2, 2)),
 )
@@ -97,7 +97,7 @@ SHEET = (
            key="error.force_relative"),
     Column("largest_error", "", "largest relative error of force, h, p, loss and flow",
            shown=(Shown("err.", ".0e", table=FILMS),), key="", flat=False),
-    Column("temperature", "K", "temperature of the film, with heat",
+    Column("temperature", "K", "temperature of the film",
            shown=(Shown("temperature, degC", ".2f", "degC", WARM),)),
     Column("viscosity", "Pa s", "viscosity of its oil", shown=(Shown("viscosity, mPa s", ".4g", "mPa s", WARM),)),
     Column("clearance", "m", "clearance", shown=(Shown("clearance, um", ".4g", "um", WARM),)),
@@ -143,25 +143,25 @@ GROWTH = Column("growth", "1/s", "growth of the least damped whirl", more="above
 
 # Of a StabilityPoint; of several films each has its columns, with its name at their end
 POINT = (SPEED, STATUS, GROWTH,
-         Column("frequency", "Hz", "frequency of that whirl", lambda point: point.critical.imag / (2 * math.pi)),
-         Column("growing_modes", "", "number of modes that grow", lambda point: len(point.growing)),
-         Column("growth_error", "1/s", "expected error of the growth", lambda point: point.critical_error,
-                more="by the mesh of the films", key="error.growth_1_s"),
-         Column("frequency_error", "Hz", "expected error of the frequency",
+         Column("frequency", "Hz", "frequency of the least damped whirl",
+                lambda point: point.critical.imag / (2 * math.pi)),
+         Column("growing_modes", "", "growing modes", lambda point: len(point.growing)),
+         Column("growth_error", "1/s", "expected error", lambda point: point.critical_error, key="error.growth_1_s"),
+         Column("frequency_error", "Hz", "expected error",
                 lambda point: point.critical_error / (2 * math.pi), key="error.frequency_Hz"))  # fmt: skip
 
 # Of an Eigenvalue
 MODES = (
     Column("frequency", "Hz", "frequency of a mode", lambda mode: mode.value.imag / (2 * math.pi),
            shown=(Shown("mode Hz", ".1f", table=STABILITY),)),
-    Column("damping_ratio", "", "share of the critical damping, below 0 of a mode that grows",
+    Column("damping_ratio", "", "damping ratio, below 0 of a growing mode",
            lambda mode: 0.0 - mode.value.real / abs(mode.value), shown=(Shown("damping", ".4f", table=STABILITY),),
            key="damping"),
     Column("growth", "1/s", "real part of the eigenvalue", attrgetter("value.real"),
            shown=(Shown("growth 1/s", ".1f", table=STABILITY),)),
-    Column("frequency_error", "Hz", "expected error of the frequency", lambda mode: mode.error / (2 * math.pi),
-           more="by the mesh of the films", key="error.frequency_Hz"),
-    Column("growth_error", "1/s", "expected error of the real part", attrgetter("error"), key="error.growth_1_s"),
+    Column("frequency_error", "Hz", "expected error", lambda mode: mode.error / (2 * math.pi),
+           key="error.frequency_Hz"),
+    Column("growth_error", "1/s", "expected error", attrgetter("error"), key="error.growth_1_s"),
 )  # fmt: skip
 
 
@@ -182,9 +182,9 @@ DAMPED_MODES = (
            shown=(Shown("growth, 1/s"),), key="", flat=False),
     Column("damping_ratio", "", "share of the critical damping", shown=(Shown("damping", ".3g"),)),
     Column("logarithmic_decrement", "", "logarithmic decrement", shown=(Shown("log. decrement", ".3g"),)),
-    Column("frequency_error", "Hz", "expected error of the frequency", lambda mode: mode.error / (2 * math.pi),
-           more="by the mesh of the films, in the last digits in the terminal", key="error.frequency_Hz"),
-    Column("growth_error", "1/s", "expected error of the real part", attrgetter("error"), key="error.growth_1_s"),
+    Column("frequency_error", "Hz", "expected error", lambda mode: mode.error / (2 * math.pi),
+           key="error.frequency_Hz"),
+    Column("growth_error", "1/s", "expected error", attrgetter("error"), key="error.growth_1_s"),
 )  # fmt: skip
 
 # Of a Mode of a rotor on springs
@@ -196,10 +196,10 @@ NATURAL_MODES = (
 
 # Of a Modes; the frequency is None for a free rotor
 REDUCTION = (
-    Column("modes", "", "modes of each plane after the reduction", attrgetter("kept")),
-    Column("frequency_relative", "", "change of the frequencies by the reduction",
+    Column("modes", "", "modes of each plane", attrgetter("kept")),
+    Column("frequency_relative", "", "change of the frequencies",
            lambda modes: None if modes.error is None else modes.error.frequency),
-    Column("missing_flexibility", "m/N", "flexibility that the reduction leaves out",
+    Column("missing_flexibility", "m/N", "neglected flexibility",
            lambda modes: None if modes.error is None else modes.error.missing_flexibility),
 )
 
@@ -208,16 +208,15 @@ _SPEEDS = replace(SPEED, value=lambda sweep: sweep.speeds_Hz[:, None])
 # Of a Response, over speeds and points
 RESPONSE_POINTS = (
     _SPEEDS,
-    Column("point", "", "point of the rotor", attrgetter("points"), key="node"),
+    Column("point", "", "point", attrgetter("points"), key="node"),
     Column("amplitude", "m", "larger semi-axis of the orbit", shown=(Shown("um", ".3g", "um", RESPONSE),)),
-    Column("amplitude_error", "m", "expected error of the amplitude", lambda sweep: sweep.amplitude_error,
-           more="by the mesh of the films", key="error.amplitude_m"),
-    Column("phase", "deg", "phase of the forward motion to the angle of the rotor",
+    Column("amplitude_error", "m", "expected error", lambda sweep: sweep.amplitude_error, key="error.amplitude_m"),
+    Column("phase", "deg", "phase of the forward motion to the rotor",
            shown=(Shown("deg", "{:.0f}°".format, table=RESPONSE),)),
-    Column("x", "m", "amplitude along x", lambda sweep: _size(sweep.motion[:, :, 0])),
-    Column("y", "m", "amplitude along y", lambda sweep: _size(sweep.motion[:, :, 1])),
-    Column("forward", "m", "amplitude of the forward part", lambda sweep: abs(sweep.forward)),
-    Column("backward", "m", "amplitude of the backward part", lambda sweep: abs(sweep.backward)),
+    Column("x", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 0])),
+    Column("y", "m", "amplitude along this axis", lambda sweep: _size(sweep.motion[:, :, 1])),
+    Column("forward", "m", "amplitude of this part", lambda sweep: abs(sweep.forward)),
+    Column("backward", "m", "amplitude of this part", lambda sweep: abs(sweep.backward)),
     replace(GROWTH, value=lambda sweep: sweep.growth[:, None]),
     Column("eccentricity_max", "", "largest eccentricity of a journal on its orbit",
            lambda sweep: sweep.eccentricity_max.max(axis=1, initial=0.0)[:, None],
@@ -229,9 +228,9 @@ RESPONSE_POINTS = (
 PEAKS = (
     Column("speed", "Hz", "speed of a peak of the response", attrgetter("speed_Hz"),
            shown=(speed_shown(".6g", table=RESPONSE),)),
-    Column("speed_uncertainty", "Hz", "expected error of the speed", attrgetter("speed_uncertainty_Hz"),
-           more="by the search and by the mesh of the films"),
-    Column("mode", "", "number of the mode that resonates, by frequency", shown=(Shown("mode", table=RESPONSE),)),
+    Column("speed_uncertainty", "Hz", "expected error", attrgetter("speed_uncertainty_Hz"),
+           more="by search and mesh"),
+    Column("mode", "", "number of the resonant mode", shown=(Shown("mode", table=RESPONSE),)),
     Column("direction", "", "`forward`, `backward` or `mixed`", shown=(Shown("whirl", table=RESPONSE),)),
     Column("node", "", "point with the largest amplitude",
            shown=(Shown("point", lambda name: name.replace("_", " "), table=RESPONSE),)),
@@ -251,14 +250,14 @@ _NAMES = replace(NAME, value=attrgetter("films"))
 RESPONSE_FORCES = (
     _SPEEDS,
     replace(NAME, value=attrgetter("bearings")),
-    Column("force_x", "N", "amplitude of the force on the journal along x", lambda sweep: _size(sweep.forces[:, :, 0])),
-    Column("force_y", "N", "amplitude of the force on the journal along y", lambda sweep: _size(sweep.forces[:, :, 1])),
+    Column("force_x", "N", "amplitude of the force on the journal", lambda sweep: _size(sweep.forces[:, :, 0])),
+    Column("force_y", "N", "amplitude of the force on the journal", lambda sweep: _size(sweep.forces[:, :, 1])),
 )
 RESPONSE_FILMS = (
     _SPEEDS,
     _NAMES,
-    Column("gap_share", "", "larger semi-axis of the orbit over the smallest gap in static equilibrium"),
-    Column("eccentricity_max", "", "largest eccentricity of the journal on its orbit"),
+    Column("gap_share", "", "larger semi-axis over the smallest static gap"),
+    Column("eccentricity_max", "", "largest eccentricity on the orbit"),
 )
 
 # Of a StabilityPoint and one of its films
@@ -381,9 +380,9 @@ AXIAL = (
     Column("axial_load", "N", "load on the rotor along its axis", more="towards larger positions",
            shown=(Shown("load", "{:.4g} N".format, table=STABILITY),)),
     Column("axial_position", "m", "axial position of the collar", attrgetter("position"),
-           more="from the middle of the end play, or from the pads of its only side"),
+           more="from the middle of the end play, or from the pads of the only side"),
     Column("axial_frequency", "Hz", "frequency of the motion along the axis", attrgetter("frequency"),
            more="0 where it does not oscillate"),
-    Column("axial_growth", "1/s", "growth of that motion", attrgetter("eigenvalue.real"), more="below 0 it decays"),
+    Column("axial_growth", "1/s", "growth", attrgetter("eigenvalue.real"), more="below 0 it decays"),
     *named([column for column in THRUST if column.quantity not in ("bearing", "speed")], "", attrgetter("films")),
 )  # fmt: skip

@@ -6,9 +6,9 @@ complex speeds: the real part is where a mode is in resonance, the imaginary par
 say where the response is evaluated, so that no peak falls between two speeds, and which bump of a curve is a peak.
 
 What runs are compared with (linear_critical_speeds) are modes of the rotor in half-Sommerfeld films, full wherever they
-carry: a mass-conserving film has no eight coefficients, and the stiffness of a starved film changes with time. A
-bearing model is linearised itself. Finite-volume films are on the coarsest mesh of static results, whose critical
-speeds differ by less than 1e-4 from those on the finest. """
+carry: a mass-conserving film has no eight coefficients, and the stiffness of a starved film changes with time.
+Finite-volume films are on the coarsest mesh of static results, whose critical speeds differ by less than 1e-4 from the
+finest mesh."""
 
 from __future__ import annotations
 

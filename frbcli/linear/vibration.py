@@ -113,9 +113,9 @@ def _verdict(within: bool | None) -> str:
 
 _POINT = (
     Column("node", "", "point of the shaft", shown=(Shown("point", lambda name: name.replace("_", " ")),)),
-    Column("speed", "Hz", "speed of operation at which it is largest over its limit", attrgetter("speed_Hz"),
+    Column("speed", "Hz", "speed of the largest ratio to its limit", attrgetter("speed_Hz"),
            shown=(speed_shown(),)),
-    Column("peak_to_peak", "m", "vibration, peak to peak", more="twice the larger semi-axis of the orbit",
+    Column("peak_to_peak", "m", "vibration, peak to peak",
            shown=(Shown("um p-p", ".3g", "um"),)),
 )  # fmt: skip
 _MARK = Column("validity", "", "`linear`, `doubtful` or `beyond-gap`", shown=(Shown("", MARKS.__getitem__),))
@@ -148,7 +148,7 @@ MARGINS = (
     Column("separation_margin", "", "distance from the operating range, over its nearer limit",
            attrgetter("peak.separation_margin"), shown=(Shown("margin", ".1%"),)),
     Column("required_margin", "", "what API 617 asks for", attrgetter("required"),
-           more="none where the factor is not known", shown=(Shown("required", ".1%"),)),
+           more="none without the factor", shown=(Shown("required", ".1%"),)),
     Column("within", "", "whether the margin is at least that", shown=(Shown("", _verdict),)),
 )  # fmt: skip
 

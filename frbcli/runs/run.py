@@ -161,7 +161,7 @@ def runup(
     --------
     >>> import frbcli
     >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
-    >>> run = frbcli.runup(case, "run.h5")  # doctest: +SKIP
+    >>> run = frbcli.runup(case, "run-up.h5")  # doctest: +SKIP
     """
     return _run("runup", case, Path(output), Wanted(resume, force, uncertainty), observe)
 

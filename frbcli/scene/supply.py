@@ -17,7 +17,6 @@ from frbcli.film.cavitation.table import law_named
 from frbcli.film.section_faults import is_unfed
 from frbcli.scene.films import film_places
 from frbcli.scene.keys import film_keys
-from frbcli.scene.planning.film_choice import form_of
 from frbcli.scene.section import film_section
 from frbcli.units import display
 
@@ -49,11 +48,8 @@ class UnfedFilm:
 
 
 def unfed_films(case: Case) -> tuple[UnfedFilm, ...]:
-    """The films of a case without a pressurised supply; none for a bearing model, whose oil is not known."""
+    """The films of a case without a pressurised supply."""
     unfed: list[UnfedFilm] = []
-    form = form_of(case)
-    if not form.solved:
-        return ()
     for key, place in zip(film_keys(case), film_places(case), strict=True):
         film, cavitation = place.geometry, case.cavitation(place.geometry)
         section = film_section(case, film, place.feed_holes)

@@ -11,9 +11,8 @@ from collections.abc import Iterator
 
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import Case
-from frbcli.errors import Fault
 from frbcli.film.gap import Section, smallest_gap
-from frbcli.scene.gate.rule import KINEMATIC, ROTATION, SQUEEZE, Faults, Rule
+from frbcli.scene.gate.rule import ROTATION, SQUEEZE
 from frbcli.scene.keys import bearing_key
 
 Pair = tuple[float, float]
@@ -104,14 +103,3 @@ def misaligned(case: Case) -> Iterator[tuple[str, str]]:
 def as_text(given: Pair) -> str:
     """A tilt in rad, or its rate, as a fault shows it."""
     return f"{given[0]:.6g}, {given[1]:.6g}"
-
-
-def tilt_refusal(problem: str, remedy: str) -> Rule:
-    """A rule of films that cannot follow a journal that tilts; problem: without the full stop."""
-
-    def faults(case: Case) -> Faults:
-        if len(case.bearings) == 1 and tilts(case):
-            key, value = tilt_key(case)
-            yield Fault(key, value, None, f"{problem}.", remedy)
-
-    return Rule(faults, KINEMATIC)

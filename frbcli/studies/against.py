@@ -33,8 +33,8 @@ def _size(deviation: tuple[str, float, float], value: float) -> str:
 # Of a deviation: what deviates, root mean square of computed less measured, root mean square of the measured ridge
 DEVIATIONS = (
     Column("what", "", "amplitude or frequency that is compared", itemgetter(0), shown=(Shown("what"),)),
-    Column("rms", "", "root mean square of computed less measured, m or Hz", itemgetter(1)),
-    Column("of", "", "root mean square of the measured one", itemgetter(2)),
+    Column("rms", "", "rms of computed less measured, m or Hz", itemgetter(1)),
+    Column("of", "", "rms of the measured one", itemgetter(2)),
     Column("deviation", "", "", lambda deviation: _size(deviation, deviation[1]), shown=(Shown("deviation, rms"),),
            key="", flat=False),
     Column("measured", "", "", lambda deviation: _size(deviation, deviation[2]), shown=(Shown("measured, rms"),),
@@ -43,8 +43,8 @@ DEVIATIONS = (
 
 # Of the ridges of a run, over its speeds
 RIDGE = (
-    Column("synchronous_x", "m", "amplitude at the rotor speed in x", lambda ridge: ridge.synchronous[:, 0]),
-    Column("synchronous_y", "m", "amplitude at the rotor speed in y", lambda ridge: ridge.synchronous[:, 1]),
+    Column("synchronous_x", "m", "synchronous amplitude", lambda ridge: ridge.synchronous[:, 0]),
+    Column("synchronous_y", "m", "synchronous amplitude", lambda ridge: ridge.synchronous[:, 1]),
     Column("whirl", "Hz", "frequency of the whirl", lambda ridge: np.where(ridge.whirls, ridge.whirl_Hz, np.nan)),
     Column("whirl", "m", "amplitude of the whirl", lambda ridge: np.where(ridge.whirls, ridge.whirl, np.nan)),
 )

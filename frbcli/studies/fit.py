@@ -370,7 +370,7 @@ FITTED = (
     Column("error", "", "standard error"),
     Column("low", "", "lower bound"),
     Column("high", "", "upper bound"),
-    Column("at_bound", "", "whether the value lies at a bound, so that the error means nothing", flat=False),
+    Column("at_bound", "", "the value is at a bound and its error meaningless", flat=False),
     *(Column(head, "", "", value, shown=(Shown(head),), key="", flat=False) for head, value in (
         ("at first", lambda number: _in_units(number, number.start)),
         ("found", lambda number: _in_units(number, number.value)),

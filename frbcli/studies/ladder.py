@@ -124,7 +124,7 @@ def _difference(value: float) -> str:
 RUNG = (
     Column("theory", "", "theory of the films"),
     Column("cavitation", "", "cavitation model"),
-    Column("mesh", "", "elements or cells along and around, none of the short bearing"),
+    Column("mesh", "", "elements or cells along and around; none of the short bearing"),
     Column("tolerance", "", "local error of a step", shown=(Shown("tol.", _tolerance),)),
     Column("coupling", "", "coupling of rotor and films"),
 )
@@ -139,7 +139,7 @@ RESULT = (
            shown=(Shown("max", short_number),), key="error.eccentricity_largest"),
     Column("eccentricity_rms", "", "its root mean square", attrgetter("error.eccentricity_rms"),
            shown=(Shown("rms", short_number),), key="error.eccentricity_rms"),
-    Column("until", "s", "end of both errors, where a whirl begins to grow", attrgetter("error.until_s"), key=""),
+    Column("until", "s", "end of both errors, at the growth of a whirl", attrgetter("error.until_s"), key=""),
     Column("window", "s", "their begin and end", lambda item: [0.0, item.error.until_s],
            key="error.window_s", flat=False),
     Column("onset_speed", "Hz", "error of the rotor speed at the onset of whirl", attrgetter("error.onset_Hz"),
@@ -148,9 +148,9 @@ RESULT = (
            shown=(Shown("thr.", _difference),), key="error.threshold_Hz"),
     Column("film_force_relative", "", "relative error of the film forces", attrgetter("error.force_relative"),
            shown=(Shown("force", short_number),), key="error.film_force_relative"),
-    Column("stated", "", "error of the eccentricity that the run states", lambda item: item.stated.get("eccentricity"),
+    Column("stated", "", "stated error of the eccentricity", lambda item: item.stated.get("eccentricity"),
            key=""),
-    Column("work", "s", "CPU time by the number of film solves, whatever the load of the machine", attrgetter("work_s"),
+    Column("work", "s", "CPU time by the number of film solves", attrgetter("work_s"),
            key=""),
 )  # fmt: skip
 
@@ -159,6 +159,6 @@ LADDER = (
     Column("mark", "", "", lambda item: ("*" if item[0].planned else "") + ("+" if item[1] else ""),
            shown=(Shown(""),), key="", flat=False),
     *named(RESULT, "", itemgetter(0)),
-    Column("planned", "", "whether the plan chooses it", lambda item: item[0].planned),
-    Column("on_front", "", "whether no cheaper one has a smaller error", itemgetter(1), key="pareto"),
+    Column("planned", "", "chosen by the plan", lambda item: item[0].planned),
+    Column("on_front", "", "no cheaper one has a smaller error", itemgetter(1), key="pareto"),
 )  # fmt: skip

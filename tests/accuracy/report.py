@@ -57,8 +57,8 @@ def _finite(found: Ladder) -> list[Rung]:
 
 def _error_table(ladders: dict[str, Ladder], costs: dict[str, Cost]) -> Iterator[str]:
     yield (
-        "| case | until | uncertainty | true | stated | plan: bounded, overstated | all: bounded, overstated "
-        "| run: predicted, real CPU s |"
+        "| case | until, s | uncertainty | true | stated | plan: bounded, over | all: bounded, over "
+        "| predicted, real CPU s |"
     )
     yield "|---" * 8 + "|"
     for name, found in ladders.items():
@@ -66,9 +66,9 @@ def _error_table(ladders: dict[str, Ladder], costs: dict[str, Cost]) -> Iterator
         cost = costs.get(name)
         seconds = f"{cost.predicted_s:.2g}, {cost.real_s:.2g}" if cost else "not measured"
         yield (
-            f"| {name} | {found.until_s:g} s | {found.certain:.1e} | {found.planned.error:.1e} | "
-            f"{found.planned.stated['eccentricity']:.1e} | {plan[0]} of {plan[1]}, {plan[2]:.1f} x | "
-            f"{every[0]} of {every[1]}, {every[2]:.1f} x | {seconds} |"
+            f"| {name} | {found.until_s:g} | {found.certain:.1e} | {found.planned.error:.1e} | "
+            f"{found.planned.stated['eccentricity']:.1e} | {plan[0]}/{plan[1]}, {plan[2]:.1f} | "
+            f"{every[0]}/{every[1]}, {every[2]:.1f} | {seconds} |"
         )
 
 

@@ -1,4 +1,4 @@
-"""docs/command-line.md: its table is run, line after line, and what it says of exit codes and streams holds."""
+"""Exit codes and streams of docs/command-line.md: the table of command_lines.md is run, line after line."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from paths import DOCS
 from frbcli.cli.main import COMMANDS, run
 
 PAGE = DOCS / "command-line.md"
+LINES = Path(__file__).with_name("command_lines.md")
 ROW = re.compile(r"^\| `frb (.+?)` \| (\d+) \| (.*?) \| (.*?) \|$", re.MULTILINE)
 TEXTS = ("--help", "--version", "cases jeffcott", "schema", "export run.h5 -o -")  # no results for people
 # Said on slow machines, and where kernels are not compiled yet
@@ -38,7 +39,7 @@ class Line(NamedTuple):
 
 
 def table() -> list[Line]:
-    rows = ROW.findall(PAGE.read_text(encoding="utf-8"))
+    rows = ROW.findall(LINES.read_text(encoding="utf-8"))
     return [Line(words, int(code), *(re.findall(r"`([^`]+)`", cell) for cell in cells)) for words, code, *cells in rows]
 
 

@@ -12,6 +12,7 @@ from test_docstrings import FUNCTIONS, sections
 import frbcli
 
 OWN = {"add_law", "remove_law", "add_force_law", "remove_force_law"}  # of models that the reader has written
+POWER = ('output.signals=["power"]',)
 QUICK = {"measured_run", "read_run", "find_events", "order_track", "write_report", "against_measured", "damped_modes",
          "draw_eccentricity", "draw_orbit", "draw_waterfall", "draw_spectrum"}  # fmt: skip
 LONG = [name for name in FUNCTIONS if "# doctest: +SKIP" in sections(name)["Examples"] and name not in OWN]
@@ -19,9 +20,9 @@ LONG = [name for name in FUNCTIONS if "# doctest: +SKIP" in sections(name)["Exam
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """run.h5 of a Jeffcott rotor, and measured.csv with its motion in um."""
+    """run.h5 of a Jeffcott rotor with the loss of its film, and measured.csv with its motion in um."""
     place = tmp_path_factory.mktemp("examples")
-    case = frbcli.load_case("jeffcott", ["film.theory=short", "speed.to=60 Hz", "speed.duration=2.5 s"])
+    case = frbcli.load_case("jeffcott", ["film.theory=short", "speed.to=60 Hz", "speed.duration=2.5 s", *POWER])
     run = frbcli.runup(case, place / "run.h5")
     motion = zip(run["time_s"], 1e6 * run["journal_x_m"], 1e6 * run["journal_y_m"], run["speed_Hz"], strict=True)
     rows = [f"{t:.9g},{x:.9g},{y:.9g},{n:.9g}" for t, x, y, n in motion]

@@ -98,7 +98,7 @@ def test_rest_eigenvalues_response_and_run_have_it(tmp_path: Path) -> None:
     own, program = sprung(OWN), sprung(GIVEN)
     one, other = (frbcli.stability(case, [30.0]).points[0].eigenvalues for case in (own, program))
     np.testing.assert_allclose(one, other, rtol=1e-7)
-    one, other = (frbcli.response(case, [30.0]).points[0].amplitude for case in (own, program))
+    one, other = (frbcli.response(case, [30.0]).motion for case in (own, program))
     np.testing.assert_allclose(one, other, rtol=1e-7)
     runs = [frbcli.runup(case, tmp_path / f"{name}.h5") for name, case in (("own", own), ("program", program))]
     one, other = (run["journal_y_m"] for run in runs)

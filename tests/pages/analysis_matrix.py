@@ -198,19 +198,19 @@ PAIRS: dict[str, tuple[str, tuple[str, ...]]] = {
     ),
     "heat and tilting films": ("turbocharger-car", (SINGLE_FILMS, TILTS, OIL, HEAT)),
     "heat and misaligned shells": ("jeffcott", (OIL, HEAT, ASKEW)),
-    "tilting films, and bubbly oil": ("turbocharger-car", (SINGLE_FILMS, TILTS, BUBBLY, *FED)),
-    "tilting films, and a flow-limited supply": (
+    "tilting films and bubbly oil": ("turbocharger-car", (SINGLE_FILMS, TILTS, BUBBLY, *FED)),
+    "tilting films and a flow-limited supply": (
         "turbocharger-car", (SINGLE_FILMS, TILTS, ELROD, *LIMITED)
     ),
-    "tilting films, and rough surfaces": ("turbocharger-car", (SINGLE_FILMS, TILTS, ROUGH)),
-    "tilting films, and an elastic shell": ("turbocharger-car", (SINGLE_FILMS, TILTS, SHELL)),
-    "tilting films, and bearings on supports": (
+    "tilting films and rough surfaces": ("turbocharger-car", (SINGLE_FILMS, TILTS, ROUGH)),
+    "tilting films and an elastic shell": ("turbocharger-car", (SINGLE_FILMS, TILTS, SHELL)),
+    "tilting films and bearings on supports": (
         "turbocharger-car", (SINGLE_FILMS, TILTS, *(f"bearing.{i}.{SUPPORT.split('.', 1)[1]}" for i in range(2)))
     ),
-    "tilting films, and a rigid housing": ("turbocharger-car", (SINGLE_FILMS, TILTS, *BODY)),
-    "misaligned shells, and bubbly oil": ("jeffcott", (ASKEW, BUBBLY)),
-    "misaligned shells, and a flow-limited supply": ("jeffcott", (ASKEW, ELROD, FLOW)),
-    "misaligned shells, and rough surfaces": ("jeffcott", (ASKEW, ROUGH)),
+    "tilting films and a rigid housing": ("turbocharger-car", (SINGLE_FILMS, TILTS, *BODY)),
+    "misaligned shells and bubbly oil": ("jeffcott", (ASKEW, BUBBLY)),
+    "misaligned shells and a flow-limited supply": ("jeffcott", (ASKEW, ELROD, FLOW)),
+    "misaligned shells and rough surfaces": ("jeffcott", (ASKEW, ROUGH)),
     "rough surfaces and mass-conserving films (Elrod)": ("jeffcott", (ROUGH, ELROD)),
     "rough surfaces and bubbly oil": ("jeffcott", (ROUGH, BUBBLY)),
     "rough surfaces and a flow-limited supply": ("jeffcott", (ROUGH, ELROD, FLOW)),
@@ -227,21 +227,22 @@ ANALYSES: dict[str, str] = {
     "squeeze": SQUEEZE,
     "whirl": WHIRL,
     "bearing": BEARING,
-    "stability, response": STABILITY,
-    "limit cycles": SPEED_CYCLES,
-    "whirls with unbalance": WHIRLS,
+    "linear": STABILITY,
+    "cycles": SPEED_CYCLES,
+    "whirls": WHIRLS,
     "accuracy": LADDER,
 }
-TOGETHER = "run", "stability, response", "limit cycles", "whirls with unbalance"  # of two features
+TOGETHER = "run", "linear", "cycles", "whirls"  # of two features
 HEAD = """# What goes with what
 
-Every analysis against every film and feature. The program makes the tables: each cell asks the gate that the analysis
-itself passes. `cd tests && python -m pages.analysis_matrix` writes this page. "run" includes run-up, run-down, sweep,
-fit and compare. Of several films, rotation, squeeze and whirl test the one that `motion.film` names.
+Every analysis against every film and feature, by the program's own checks: `cd tests && python -m
+pages.analysis_matrix` writes this page. "run" includes run-up, run-down, sweep, fit and compare; "linear" is stability
+and response, "cycles" limit cycles, "whirls" whirls with unbalance. Of several films, rotation, squeeze and whirl test
+`motion.film`. Numbers are [reasons](#reasons); the messages of the program say more, with remedies.
 """
 
 
-Reason = tuple[str, str, str]  # key without the number of a bearing, problem and remedy
+Reason = tuple[str, str]  # key without the number of a bearing, and problem
 
 
 def page() -> str:
@@ -250,43 +251,65 @@ def page() -> str:
     rows = _table(reasons, FILMS, tuple(ANALYSES))
     rows += ["", "## Two features together", "", *_table(reasons, PAIRS, TOGETHER)]
     notes = [f"{number}. {_sentence(*each)}" for number, each in enumerate(reasons.items(), start=1)]
-    return "\n".join([HEAD, *rows, "", "## Why not, and what to do", "", *notes, ""])
+    return "\n".join([HEAD, *rows, "", "## Reasons", "", *notes, ""])
 
 
 def _table(
     reasons: dict[Reason, list[str]], cases: Mapping[str, tuple[str, tuple[str, ...]]], names: Sequence[str]
 ) -> list[str]:
-    """What all analyses support, and the table of the other cases, in lines."""
-    everywhere: list[str] = []
-    rows = ["| | " + " | ".join(names) + " |", "|---" * (len(names) + 1) + "|"]
+    """What all analyses support, and the others by the analyses that do not, in lines."""
+    without: dict[str, list[str]] = {}
     for name, (case, settings) in cases.items():
-        asked = [refused(case, settings, ANALYSES[analysis]) for analysis in names]
-        if any(asked):
-            rows.append(f"| {name} | " + " | ".join(_cell(reasons, each) for each in asked) + " |")
-        else:
-            everywhere.append(name)
-    return [f"Supported by all of {'; '.join(names)}:", "", f"{'; '.join(everywhere)}.", "", *rows]
+        numbers = {each: _numbers(reasons, refused(case, settings, ANALYSES[each])) for each in names}
+        without.setdefault(_unsupported(numbers), []).append(name)
+    everywhere = without.pop("", [])
+    rows = [f"| {'; '.join(features)} | {analyses} |" for analyses, features in without.items()]
+    return [
+        f"Supported by {', '.join(names)}:", "", f"{_grouped(everywhere)}.", "",
+        "| feature | not supported by |", "|---|---|", *rows,
+    ]  # fmt: skip
 
 
-def _cell(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:
-    """Yes, or no with the numbers of the reasons, which are added to them."""
-    told = list(dict.fromkeys(map(_reason, faults)))
+def _grouped(names: Sequence[str]) -> str:
+    """Names, of pairs the first part once."""
+    parts: dict[str, list[str]] = {}
+    for name in names:
+        first, both, second = name.partition(" and ")
+        parts.setdefault(first if both else name, []).extend([second] * bool(both))
+    return "; ".join(f"{first} and {', '.join(others)}" if others else first for first, others in parts.items())
+
+
+def _numbers(reasons: dict[Reason, list[str]], faults: Sequence[Fault]) -> str:
+    """The numbers of the reasons, which are added to them."""
     for fault in faults:
         values = reasons.setdefault(_reason(fault), [])
         if fault.value and fault.value not in values:
             values.append(fault.value)
-    return f"no ({', '.join(str(list(reasons).index(each) + 1) for each in told)})" if told else "yes"
+    return ", ".join(str(list(reasons).index(each) + 1) for each in dict.fromkeys(map(_reason, faults)))
+
+
+def _unsupported(numbers: Mapping[str, str]) -> str:
+    """The analyses that have reasons, with these in brackets."""
+    by_reason: dict[str, list[str]] = {}
+    for name, given in numbers.items():
+        if given:
+            by_reason.setdefault(given, []).append(name)
+    if [len(names) for names in by_reason.values()] == [len(numbers)]:
+        return f"all ({next(iter(by_reason))})"
+    return "; ".join(f"{', '.join(names)} ({given})" for given, names in by_reason.items())
 
 
 def _reason(fault: Fault) -> Reason:
-    return re.sub(r"\.\d+", "", fault.key), fault.problem, fault.remedy
+    """Key without the number of a bearing, and the first clause of the problem."""
+    clause = re.split(r": |; |, so that |, which (?=would|do not)", fault.problem)[0]
+    return re.sub(r"\.\d+", "", fault.key), f"{clause.rstrip('.')}."
 
 
 def _sentence(reason: Reason, values: Sequence[str]) -> str:
     """Why, with the values of the key."""
-    key, problem, remedy = reason
+    key, problem = reason
     first = f"`{key} = {values[0]}`" if values else f"`{key}`"
-    return " ".join([", ".join([first, *(f"`{each}`" for each in values[1:])]), problem, remedy])
+    return " ".join([", ".join([first, *(f"`{each}`" for each in values[1:])]), problem])
 
 
 def refused(name: str, settings: Sequence[str], analysis: str) -> tuple[Fault, ...]:

@@ -6,8 +6,11 @@ A list is below its mark on a page, a comment `<!-- columns: NAME -->`.
 from __future__ import annotations
 
 import re
+from collections import Counter
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
+from types import MappingProxyType
 
 from paths import DOCS
 
@@ -132,45 +135,84 @@ TABLES: dict[str, Columns] = {
     "operation": of_json(FILM_OPERATION),
 }
 MARKED = re.compile(r"(<!-- columns: ([a-z ]+) -->\n)((?:- .*\n)*)")
+COMMON = re.compile(r"(<!-- common columns -->\n)((?:- .*\n)*)")
+SMALL = {"a", "at", "in", "its", "number", "of", "on", "the"}  # words that say little
+Row = tuple[str, str, str]  # names, what the terminal shows, and meaning
 
 
-def page_list(columns: Columns) -> str:
+def page_list(columns: Columns, common: Mapping[str, str] = MappingProxyType({})) -> str:
     """The list of columns in Markdown, without what only begins a row of the terminal; neighbours of one meaning share
-    a line."""
+    a line. Those of `common`, meanings by names, and then obvious ones have one line without meanings."""
+    lines: list[tuple[list[str], str]] = []
+    known: list[str] = []
+    for names, shown, meaning in _rows(columns):
+        entry = f"{names} ({shown})" if names and shown else names or f"({shown})"
+        if common and (common.get(names) == meaning or (names not in common and _obvious(names, meaning))):
+            known.append(entry)
+        elif lines and lines[-1][1] == meaning:
+            lines[-1][0].append(entry)
+        else:
+            lines.append(([entry], meaning))
+    first = f"- {', '.join(known)}\n" if known else ""
+    return first + "".join(f"- {_joined(names)}: {meaning}\n" for names, meaning in lines)
+
+
+def _obvious(names: str, meaning: str) -> bool:
+    """Whether the names have all words of the meaning."""
+    words = set(re.findall(r"[a-z0-9.]+", meaning.lower())) - SMALL
+    return bool(names) and all(word[:5] in names.lower() for word in words)
+
+
+def common_rows(page: Path) -> dict[str, str]:
+    """Meanings by names of the rows that several lists of a page have, if it has a list of them."""
+    text = page.read_text(encoding="utf-8")
+    if not COMMON.search(text):
+        return {}
+    counted = Counter((names, meaning) for name in marked(page) for names, _, meaning in _rows(TABLES[name]) if names)
+    common: dict[str, str] = {}
+    for (names, meaning), times in counted.most_common():
+        if times > 1:
+            common.setdefault(names, meaning)
+    return common
+
+
+def _rows(columns: Columns) -> list[Row]:
     shown = [column for column in columns if column.meaning]
     mixed = any(column.flat for column in shown) and any(column.path for column in shown)
-    lines: list[tuple[list[str], str]] = []
-    for column in shown:
-        meaning = ": ".join(filter(None, (column.meaning, column.more)))
-        if lines and lines[-1][1] == meaning:
-            lines[-1][0].append(_names(column, mixed))
-        else:
-            lines.append(([_names(column, mixed)], meaning))
-    return "".join(f"- {_joined(names)}: {meaning}\n" for names, meaning in lines)
+    return [
+        (*_names(column, mixed), ": ".join(filter(None, (column.meaning, column.more)))) for column in shown
+    ]
 
 
 def _joined(names: list[str]) -> str:
-    return f"{names[0]} to {names[-1]}" if len(names) > 2 else ", ".join(names)
+    """Their names, of more than two that are numbered the first and the last one."""
+    numbered = len(names) > 2 and len({re.sub(r"\d+", "", name) for name in names}) == 1
+    return f"{names[0]} to {names[-1]}" if numbered else ", ".join(names)
 
 
-def _names(column: Column, mixed: bool) -> str:
-    """Names in pandas and in JSON, which are marked where they differ and the list has both, and in the terminal. The
-    name of a vector or matrix in JSON is its name without axes, and is left out."""
-    flat, path, told = _flat(column), f"`{column.path}`" if column.path else "", _told(column)
+def _names(column: Column, mixed: bool) -> tuple[str, str]:
+    """Names in pandas and in JSON, which are marked where they differ, the list has both and no dot shows it, and heads
+    of the terminal. The name of a vector or matrix in JSON is its name without axes, and is left out."""
+    flat, path, head = _flat(column), f"`{column.path}`" if column.path else "", _head(column)
     if flat and column.path == re.sub("_xx?(?=_|$)", "", column.names[0], count=1):
         path = flat
-    told = "" if told in ("``", flat, path) else f"terminal {told}" if told else ""
+    head = "" if head in ("``", flat, path) else head
     if mixed and flat != path:
-        flat, path = (f"CSV {flat}" if flat and not path else flat), (f"JSON {path}" if path else "")
-    return ", ".join(dict.fromkeys(filter(None, (flat, path, told))))
+        flat = f"CSV {flat}" if flat and not path else flat
+        path = f"JSON {path}" if path and "." not in path else path
+    return ", ".join(dict.fromkeys(filter(None, (flat, path)))), head
 
 
 def _flat(column: Column) -> str:
-    first_and_last = dict.fromkeys((column.names[0], column.names[-1]))
-    return " to ".join(f"`{name}`" for name in first_and_last) if column.flat else ""
+    """The name, or the first and the last one of a vector or a matrix."""
+    first, last = column.names[0], column.names[-1]
+    if not column.flat or first == last:
+        return f"`{first}`" if column.flat else ""
+    start = next(place for place, letters in enumerate(zip(first, last, strict=True)) if len(set(letters)) > 1)
+    return f"`{first}`{' to' if len(column.names) > 2 else ','} `_{last[start:]}`"
 
 
-def _told(column: Column) -> str:
+def _head(column: Column) -> str:
     heads = ((", ".join(f"`{head}`" for head in shown.heads), *shown.unit_beside()) for shown in column.shown)
     return ", ".join(dict.fromkeys(map(" in ".join, heads)))
 
@@ -182,7 +224,10 @@ def marked(page: Path) -> list[str]:
 
 def with_tables(page: Path) -> str:
     """The page with its lists as they are declared."""
-    return MARKED.sub(lambda found: found[1] + page_list(TABLES[found[2]]), page.read_text(encoding="utf-8"))
+    common = common_rows(page)
+    text = MARKED.sub(lambda found: found[1] + page_list(TABLES[found[2]], common), page.read_text(encoding="utf-8"))
+    listed = "".join(f"- {names}: {meaning}\n" for names, meaning in sorted(common.items()))
+    return COMMON.sub(lambda found: found[1] + listed, text)
 
 
 if __name__ == "__main__":

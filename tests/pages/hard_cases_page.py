@@ -7,7 +7,7 @@ from pathlib import Path
 from textwrap import fill
 
 from paths import DOCS
-from studies.hard_runs.cases import HardResult, HardResults, cause_of, run_hard_cases
+from studies.hard_runs.cases import HardResult, HardResults, run_hard_cases
 
 from frbcli.columns import short_number
 
@@ -16,26 +16,27 @@ SURE = 0.3  # reference uncertainty over error, below which the error is well kn
 INTRODUCTION = """\
 # Hard cases
 
-Shipped cases with settings at the limits of the models and of the numerics, and how each ended. `cd tests && python -m
-pages.hard_cases_page` runs the list `cases/hard/hard-cases.toml` and writes this page.
+Shipped cases at the limits of models and numerics. `cd tests && python -m pages.hard_cases_page` runs the list
+`cases/hard/hard-cases.toml` and writes this page.
 
 ```sh
 frb cases --hard                      # lists them
 frb cases --hard reversed             # prints one as a case file; -o FILE copies it
 ```
 
-A case ended as listed if it has the expected status and events within its time limit. All signals, forces and
-pressures must be finite, less than 0.1 % of its oil unaccounted for, and its error not larger than the stated one.
+Each case reached its expected status and events within its time limit, with finite signals, forces and pressures, less
+than 0.1 % of its oil unaccounted for, and an error below the stated one. All finish unless the last column names
+another end.
 
-- **error**: largest deviation of the eccentricities from a reference until a whirl begins or the run ends; of a
-  kinematic test, relative deviation of the force. The reference has a finer mesh and a smaller tolerance
-  (`cases/hard/references.json`, written by `cd tests && python -m pages.hard_references`).
-- **uncertainty**: estimated error of the reference, from a second one with two thirds of its mesh in each direction
-  and twice its tolerance. A star marks an error that is known to within a factor only.
-- **stated error**: error that the run or the test reports.
+- **error**: largest deviation of the eccentricities from a reference until a whirl or the end; of a kinematic test,
+  relative deviation of the force. The reference has a finer mesh and a smaller tolerance
+  (`cases/hard/references.json`, by `cd tests && python -m pages.hard_references`).
+- **uncertainty**: of the reference, by a second one with two thirds of its mesh and twice its tolerance. *: the error
+  is known to within a factor only.
+- **stated error**: reported by the run or test.
 
 Cases that whirl from the start or end early, squeeze and whirl have no reference. Rings that begin at 200 Hz without
-turning have errors of four to six times the target of `floating-ring`, 4.5e-3, and so much is stated.
+turning have, and state, errors of four to six times the target of `floating-ring`, 4.5e-3.
 """
 
 
@@ -58,18 +59,20 @@ def _list(names: list[str]) -> str:
 def write_page(found: HardResults, page: Path, introduction: str) -> None:
     """The results as a page of the documentation."""
     rows = "".join(f"| {' | '.join(cells)} |\n" for cells in map(_cells, found.results))
-    head = "| case | difficulty | expected | error | uncertainty | stated error | remark |\n"
-    head += "|---" * 7 + "|\n"
+    head = "| case | difficulty | error, uncertainty, stated error |\n"
+    head += "|---" * 3 + "|\n"
     page.write_text(f"{introduction}\n{head}{rows}", encoding="utf-8")
 
 
 def _cells(result: HardResult) -> tuple[str, ...]:
     hard = result.hard
     ended = f"ended as {result.status}" if result.status != hard.end else ""
-    notes = "; ".join(filter(None, (ended, cause_of(result), *result.problems))).replace("|", "\\|")
+    end = f"{hard.end}: {hard.why.rstrip('.')}" if hard.why else hard.end if hard.end != "finished" else ""
     error, certain, reported = map(short_number, (result.error, result.certain, result.reported))
     vague = result.error is not None and result.certain is not None and result.certain > SURE * result.error
-    return f"`{hard.name}`", hard.hard, hard.end, error, f"{certain} *" if vague else certain, reported, notes
+    numbers = f"{error}, {certain}{'*' * vague}, {reported}" if {error, certain, reported} != {"-"} else ""
+    notes = "; ".join(filter(None, (numbers, end, ended, *result.problems))).replace("|", "\\|")
+    return f"`{hard.name}`", hard.hard, notes
 
 
 if __name__ == "__main__":

@@ -23,16 +23,16 @@ Matrix = NDArray[np.float64]
 TURN = np.array([[0.0, -1.0], [1.0, 0.0]])  # to the frame of tables: x along the load
 VISCOSITY = 0.02  # Pa s
 NAMES = ("xx", "xy", "yx", "yy")
-KYX = "stiffness yx, over W/C"
-SOMEYA = "Someya 1989, Journal-Bearing Databook, p. {}"
+KYX = "K_yx C/W"
+SOMEYA = "Someya 1989, p. {}"
 BOOK = (
-    "The stiffness of the book differs the more the smaller the eccentricity, while S, attitude and damping agree to "
-    "1 % at L/D 0.5 and eccentricity 0.2. An independent finite-difference solution has frb's value, and Lund and "
-    "Thomsen's table with grooves of 20 deg agrees with frb to 1.6 %. What the book does differently is not known."
+    "The stiffness of the book differs more at small eccentricities; S, attitude and damping agree to 1 % at L/D 0.5 "
+    "and eccentricity 0.2. An independent finite-difference solution agrees with frb, and Lund and Thomsen's table "
+    "with grooves of 20 deg to 1.6 %. The cause is not known."
 )
 RIGID = (
-    "The shells of the source are elastic, those of frb rigid: at 10 MPa and 150 rpm its least film is 0.7 um thick, "
-    "frb's 0.5 um. Without the mean height of the summits, 0.6 um, frb has 0.46 N m there."
+    "The shells of the source are elastic, in frb rigid: at 10 MPa and 150 rpm its thinnest film has 0.7 um, in frb "
+    "0.5 um. Without the mean height of the summits, 0.6 um, frb has 0.46 N m there."
 )
 SHORT = (
     "The closed form is met to round-off. The stated error is the difference between short theory and finite length."
@@ -93,12 +93,12 @@ def short_thresholds() -> list[Row]:
         found = stability(rigid(gamma, 0.8 * expected, 1.2 * expected)).threshold
         assert found is not None
         error = found.speed_uncertainty_Hz / found.speed_Hz
-        quantity = "threshold over sqrt(g / C)"
-        name = f"rigid rotor in short bearings that rests at {eps:g}"
+        quantity = "threshold sqrt(C/g)"
+        name = f"rigid rotor in short bearings, eccentricity {eps:g}"
         rows.append(
             Row(
                 name,
-                "independent program of short bearings",
+                "independent program",
                 PROGRAM,
                 quantity,
                 expected,
@@ -134,7 +134,7 @@ def squeeze_film_damper() -> list[Row]:
     size = viscosity * radius * (width / clearance) ** 3
     found = -force[0] / e, -force[1] / (e * omega)
     closed = 2 * size * omega * eps / (1 - eps**2) ** 2, 0.5 * math.pi * size / (1 - eps**2) ** 1.5
-    name, rows = "short squeeze film damper on a circle, eccentricity 0.5", []
+    name, rows = "short damper on a circle, eccentricity 0.5", []
     for quantity, value, own, ross in zip(
         ("stiffness, N/m", "damping, N s/m"), found, closed, (1.69362187e8, 118283.8359), strict=True
     ):
@@ -144,14 +144,14 @@ def squeeze_film_damper() -> list[Row]:
         rows.append(
             Row(
                 name,
-                "ROSS, test of its damper",
+                "ROSS, damper test",
                 PROGRAM,
                 quantity,
                 ross,
                 value,
                 result.force_error,
                 2e-4,
-                "The viscosity of that test is known to four digits.",
+                "Its viscosity has four digits.",
             )
         )
     return rows
@@ -206,9 +206,7 @@ def of_table(
         given = {each: row[sort + each] for each in NAMES if sort + each in row}
         largest = max(given, key=lambda each: abs(given[each]))
         value = float(found.ravel()[NAMES.index(largest)])
-        quantity = f"{'stiffness' if sort == 'k' else 'damping'} {largest}, over W/C" + (
-            "" if sort == "k" else " omega"
-        )
+        quantity = f"K_{largest} C/W" if sort == "k" else f"D_{largest} C omega/W"
         rows.append(Row(name, source, PRINTED, quantity, given[largest], value, state.error, share, why))
     return rows
 
@@ -224,7 +222,7 @@ def butenschoen() -> list[Row]:
         )
         state = chart(case, 0.5)
         name = f"plain bearing, B/D {row['width_over_diameter']:g}, eccentricity 0.5"
-        source = "Butenschoen 1976, as in mboct-mbdyn-pkg"
+        source = "Butenschoen 1976"
         flow = state.side_flow / (radius**2 * clearance * OMEGA)
         rows += [
             Row(
@@ -257,7 +255,7 @@ def lund_thomsen() -> list[Row]:
     for row in printed("lund-thomsen.csv")[::3]:
         state = under(row["s"], 0.1 * row["width_over_diameter"], 1e-4, grooves(2, 90, 20))
         name = f"two axial grooves, L/D {row['width_over_diameter']:g}, S {row['s']:g}"
-        source = "Lund, Thomsen 1978, as in ROSS' tests"
+        source = "Lund, Thomsen 1978"
         rows.append(
             Row(
                 name,
@@ -274,7 +272,7 @@ def lund_thomsen() -> list[Row]:
     row = printed("lund-thomsen-lemon.csv")[0]
     state = under(row["s"], 0.1, 2e-4, grooves(2, 90, 20), "lobes = { count = 2, preload = 0.5 }")
     name = f"lemon bore, L/D 1, preload 0.5, S {row['s']:g}"
-    return rows + of_table(name, "Lund, Thomsen 1978, as in ROSS' tests", state, 2e-4, row, 0.016)
+    return rows + of_table(name, "Lund, Thomsen 1978", state, 2e-4, row, 0.016)
 
 
 def nicholas() -> list[Row]:
@@ -291,7 +289,7 @@ def nicholas() -> list[Row]:
         still = (k[0, 0] * b[1, 1] + k[1, 1] * b[0, 0] - k[0, 1] * b[1, 0] - k[1, 0] * b[0, 1]) / np.trace(b)
         whirl = np.linalg.det(k - still * np.eye(2)) / np.linalg.det(b) / (math.tau * speed) ** 2
         found = math.sqrt(still * clearance / load / whirl)
-        name, source = f"bearing A of {mil:g} mil, 8000 rpm", "Nicholas, Barrett, Leader 1980, table 6"
+        name, source = f"bearing A of {mil:g} mil, 8000 rpm", "Nicholas et al. 1980, table 6"
         printed_so = "Printed to one digit."
         rows.append(
             Row(
@@ -306,7 +304,7 @@ def nicholas() -> list[Row]:
                 printed_so,
             )
         )
-        rows.append(Row(name, source, PRINTED, "threshold over sqrt(g / C)", 2.1, found, state.error, 0.025))
+        rows.append(Row(name, source, PRINTED, "threshold sqrt(C/g)", 2.1, found, state.error, 0.025))
     return rows
 
 
@@ -355,7 +353,7 @@ def someya() -> list[Row]:
         )
         if width == 0.05 and row["e"] == 0.2:
             rows.append(
-                Row(name, "independent finite-difference solution", PROGRAM, KYX, -3.07, value, state.error, 5e-3)
+                Row(name, "finite differences", PROGRAM, KYX, -3.07, value, state.error, 5e-3)
             )
     return rows
 
@@ -396,7 +394,7 @@ def sander() -> list[Row]:
         found = abs(test.torque) + 2.0 * abs(support.torque)
         lost = (test.power_error + 2.0 * support.power_error) / (test.power + 2.0 * support.power)
         name = f"three rough bearings, {load / 800:g} MPa at {rpm:g} rpm"
-        source = "Sander, Allmaier, Priebsch, Witt, Skiadas, as in mboct-mbdyn-pkg"
+        source = "Sander et al."
         rows.append(Row(name, source, PRINTED, "friction torque, N m", expected, found, lost, bound, RIGID))
     return rows
 

@@ -21,15 +21,15 @@ from pages.textbook_rows import CLOSED, PRINTED, PROGRAM, Bench, Row
 
 TURN = 2.0 * math.pi
 STEEL: dict[str, Any] = {"density": 7810.0, "youngs_modulus": 211e9, "poisson_ratio": 211.0 / (2 * 81.2) - 1.0}
-FRISWELL = "Friswell et al. 2010, example {}, as in ROSS' tests"
+FRISWELL = "Friswell et al. 2010, example {}"
 EULER = "Euler's beam leaves out shear and rotary inertia."
 COARSE = "Six elements of 0.25 m lie above the exact frequencies."
-PEAKS, AT_REST = "ROSS, peaks of the response", "natural frequency {} at rest, rad/s"
+PEAKS, AT_REST = "ROSS, response peaks", "mode {} at rest, rad/s"
 GRID = (
     "Backward whirls fall with the speed, and the first critical speed lies below 14.610 Hz, the frequency at rest. "
     "Peaks on a grid of speeds would explain the figures."
 )
-RAPPID = "RAPPID, in a discussion of ROSS"
+RAPPID = "RAPPID"
 LUMPED = "A shaft of 7 lumped stations is coarse for the second and third pair of modes."
 STILL = 1e-3  # Hz, for a rotor at rest
 
@@ -107,10 +107,10 @@ def jeffcott() -> list[Row]:
         Row(name, source, CLOSED, "critical speed, Hz", critical, peak.speed_Hz, error, 1e-4),
         Row(name, source, CLOSED, "amplitude, um", 1e6 * height * unbalance / mass, 1e6 * peak.amplitude, 1e-3, 1e-3),
     ]
-    api, found = "API RP 684, definition", peak.amplification_factor
+    api, found = "API RP 684", peak.amplification_factor
     rows.append(Row(name, api, CLOSED, "amplification factor", factor, found, 1e-3, 1e-3))
     margins = [17.0 * (1.0 - 1.0 / (each - 1.5)) for each in (factor, found)]
-    rows.append(Row(name, "API 617, relation", CLOSED, "margin asked for, %", *margins, 1e-3, 1e-3))
+    rows.append(Row(name, "API 617", CLOSED, "required margin, %", *margins, 1e-3, 1e-3))
     actual = 1.0 - critical / low
     rows.append(Row(name, "API 617", CLOSED, "margin to 12000 rpm", actual, peak.separation_margin, error, 1e-3))
     decrement = TURN * ratio / math.sqrt(1.0 - ratio**2)
@@ -128,7 +128,7 @@ def balance_grade() -> list[Row]:
     case = on_springs({"kind": "rigid", "mass": mass, "unbalance": unbalance}, 1e4, 0.0, 1000.0)
     motion = float(frbcli.response(case, [speed]).amplitude[0].max())
     share = 1.0 - 2e4 / mass / (TURN * speed) ** 2
-    name = "rigid rotor of 6 kg, G 2.5 at 900 Hz, far above its critical speed"
+    name = "rigid rotor, G 2.5 at 900 Hz"
     return [
         Row(
             name,
@@ -149,7 +149,7 @@ def internal_damping() -> list[Row]:
     found = stability(on_springs(rotor, 1e13, 0.0, 300.0)).threshold
     assert found is not None
     expected = math.sqrt(1e6 / 10.0) * (1.0 + 40.0 / 20.0) / TURN
-    name, source = "Laval rotor with internal damping, c_e / c_i = 2", "Kimball 1924; Genta 2005"
+    name, source = "Laval rotor, internal damping, c_e/c_i = 2", "Kimball 1924; Genta 2005"
     return [
         Row(
             name,
@@ -167,7 +167,7 @@ def internal_damping() -> list[Row]:
 def orthotropic() -> list[Row]:
     stiffness = [[1e6, 0.0], [0.0, 1.5e6]]
     case = on_springs({"kind": "rigid", "mass": 2.0, "unbalance": 1e-6}, stiffness, 0.0, 300.0)
-    name, source = "rigid rotor in orthotropic bearings", "Genta 2005; square root of k over m"
+    name, source = "rigid rotor in orthotropic bearings", "Genta 2005"
     rows = []
     for n, (k, peak) in enumerate(zip((1e6, 1.5e6), frbcli.response(case).critical_speeds, strict=True), 1):
         quantity, error = f"critical speed {n}, Hz", peak.speed_uncertainty_Hz / peak.speed_Hz
@@ -183,7 +183,7 @@ def cross_coupling() -> list[Row]:
     roots = np.roots([mass, 2.0 * damping, 2.0 * stiffness - 2j * cross])
     expected = max(roots.tolist(), key=lambda root: root.real)
     found = max(stability(case, [100.0]).points[0].eigenvalues.tolist(), key=lambda value: value.real)
-    name, source = "rigid rotor in seals with cross-coupled stiffness", "Childs 1993"
+    name, source = "rigid rotor in cross-coupled seals", "Childs 1993"
     return [
         Row(name, source, CLOSED, "growth, 1/s", expected.real, found.real, math.nan, 1e-9),
         Row(name, source, CLOSED, "whirl, rad/s", abs(expected.imag), abs(found.imag), math.nan, 1e-9),
@@ -202,7 +202,7 @@ def rigid_body() -> list[Row]:
     cones = np.abs(np.roots([diametral, -polar * TURN * speed, -2 * stiffness * half**2]))
     found = whirls(case, speed)
     backward, forward = sorted(cones.tolist())
-    name, source = "rigid rotor on springs at 200 Hz", "Friswell et al. 2010, chapter 3; Genta 2005"
+    name, source = "rigid rotor on springs at 200 Hz", "Friswell et al. 2010; Genta 2005"
     error = reduction_error(case)
     return [
         Row(name, source, CLOSED, f"{quantity}, rad/s", expected, nearest(found, expected), error, 1e-5)
@@ -227,13 +227,13 @@ def beams() -> list[Row]:
         ]
         loose = frbcli.natural_modes(case, speeds_Hz=[0.0]).points[0].modes
         free = next(mode.frequency_Hz for mode in loose if mode.frequency_Hz > 1.0)
-        euler = "Euler and Bernoulli's beam; Timoshenko, Young 1955"
+        euler = "Euler; Timoshenko, Young 1955"
         bends = sorted(each for each in held if each > 1.0)
         for n, found in enumerate(bends[:4:2], 1):
-            quantity = f"simply supported, natural frequency {n}, Hz"
+            quantity = f"supported, mode {n}, Hz"
             rows.append(Row(name, euler, CLOSED, quantity, (n * math.pi) ** 2 * speed, found, math.nan, 2e-3, EULER))
         rows.append(
-            Row(name, euler, CLOSED, "free, natural frequency, Hz", 4.730041**2 * speed, free, math.nan, 2e-3, EULER)
+            Row(name, euler, CLOSED, "free, Hz", 4.730041**2 * speed, free, math.nan, 2e-3, EULER)
         )
     return rows
 
@@ -261,7 +261,7 @@ def timoshenko() -> list[Row]:
                 "thick shaft, 80 mm by 400 mm, simply supported",
                 "Timoshenko 1921",
                 CLOSED,
-                f"natural frequency {n}, Hz",
+                f"mode {n}, Hz",
                 expected,
                 near,
                 math.nan,
@@ -310,7 +310,7 @@ def disk_in_the_middle() -> list[Row]:
     part = {"length": length, "diameter": d, "density": 1.0}
     case = on_shaft([part], [wheel], [(0.0, 1e12), (length, 1e12)], 100.0)
     peak = frbcli.response(case).critical_speeds[0]
-    name, source = "disk in the middle of a massless shaft", "48 E I / L^3 with shear; Timoshenko, Young 1955"
+    name, source = "disk in the middle of a massless shaft", "Timoshenko, Young 1955"
     return [
         Row(
             name,
@@ -344,7 +344,7 @@ def friswell() -> list[Row]:
         for rpm, expected in figures.items():
             found = whirls(case, max(rpm / 60.0, STILL))
             for n, value in enumerate(expected):
-                quantity = f"natural frequency {n + 1} at {rpm:g} rpm, rad/s"
+                quantity = f"mode {n + 1}, {rpm:g} rpm, rad/s"
                 rows.append(
                     Row(
                         "two disks" if len(case.disks) > 1 else "overhung disk",
@@ -413,7 +413,7 @@ def ross_files() -> list[Row]:
     name, error = "shaft with a cone of 60 to 20 mm", reduction_error(cone)
     found = whirls(cone, STILL)[::2]
     rows = [
-        Row(name, "ROSS, many elements", PROGRAM, f"natural frequency {n}, Hz", value, found[n - 1] / TURN, error, 2e-3)
+        Row(name, "ROSS, many elements", PROGRAM, f"mode {n}, Hz", value, found[n - 1] / TURN, error, 2e-3)
         for n, value in ((1, 83.67), (2, 274.5))
     ]
     three = "Its three elements have this mode 0.5 % too fast; damping grows with the square."
@@ -423,7 +423,7 @@ def ross_files() -> list[Row]:
             name,
             "ROSS, three elements",
             PROGRAM,
-            f"growth of mode {n}, 1/s",
+            f"growth {n}, 1/s",
             value,
             slow[n - 1].real,
             error,

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 PRINTED, CLOSED, PROGRAM = "printed", "closed form", "other program"  # where the figure of a source comes from
+MARKS = {PRINTED: "", CLOSED: " (c)", PROGRAM: " (p)"}
 
 
 @dataclass(frozen=True)
@@ -39,17 +40,17 @@ class Row:
     @property
     def given(self) -> tuple[str, ...]:
         """Texts of a row of the page up to the figure of the source; the first one is of all rows of a machine."""
-        return f"{self.name}: {self.source} ({self.kind})", self.quantity, f"{self.expected:.6g}"
+        return f"{self.name}: {self.source}{MARKS[self.kind]}", self.quantity, f"{self.expected:.6g}"
 
     def cells(self) -> tuple[str, ...]:
         """Texts of a row of the page, but for the number of its reason."""
-        error = "" if math.isnan(self.error) else f"{float(f'{100.0 * self.error:.1g}'):g} %"
-        return *self.given, f"{self.found:.6g}", _percent(self.deviation), error
+        error = "" if math.isnan(self.error) else f", {float(f'{100.0 * self.error:.1g}'):g}"
+        return *self.given[:2], f"{self.given[2]}, {self.found:.6g}", _percent(self.deviation) + error
 
 
 def _percent(share: float) -> str:
-    """A deviation; below a millionth it is round-off of one machine or the other."""
-    return "below 1e-6" if abs(share) < 1e-6 else f"{float(f'{100.0 * share:.2g}'):+g} %"
+    """A deviation in %; below a millionth it is round-off of one machine or the other."""
+    return "<1e-4" if abs(share) < 1e-6 else f"{float(f'{100.0 * share:.2g}'):+g}"
 
 
 Bench = Callable[[], list[Row]]

@@ -149,7 +149,7 @@ def test_a_measurement_beside_a_run(folder: Path, measurement: Run) -> None:
     assert {axes.get_title(loc="left") for axes in against_figure(other).axes} >= {"computed", "measured"}
 
 
-@pytest.mark.nightly  # a second fit; the command: docs/command-line.md
+@pytest.mark.nightly  # a second fit; the command: tests/docs/command_lines.md
 def test_the_commands(folder: Path, found: Fit, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
     invoke = CliRunner().invoke

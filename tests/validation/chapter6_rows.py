@@ -65,13 +65,13 @@ def _like_penalty(folder: Path, run: RunUp, axial: list[RunUp]) -> dict[str, Mea
         supply = f"bearing.supply.pressure={bar} bar"
         absolute = eccentricity_at_1s(folder, case, (PENALTY, supply))
         other = eccentricity_at_1s(folder, case, (PENALTY, "film.penalty.pressure=dimensionless", supply))
-        return Measured(f"{absolute:.3f} ({words}; dimensionless reading {other:.3f})", absolute)
+        return Measured(f"{absolute:.3f} ({words}; dimensionless {other:.3f})", absolute)
 
     return {
         "critical-speed-penalty": number(run.critical_s, 2),
-        "rise-penalty": Measured(f"{run.passage_s:.2f} (onset event {run.onset_s:.2f})", run.passage_s),
+        "rise-penalty": Measured(f"{run.passage_s:.2f} (onset {run.onset_s:.2f})", run.passage_s),
         "same-threshold": Measured(
-            f"linear thresholds {half:.1f}, {penalty:.1f} Hz; oil bath, eccentricities at 1 s {halves:.3f}, {bath:.3f}",
+            f"thresholds {half:.1f}, {penalty:.1f} Hz; oil bath, 1 s: {halves:.3f}, {bath:.3f}",
             holds=abs(half / penalty - 1.0) < SAME and halves > bath,
         ),
         "eccentricity-1bar": resting(CIRCUMFERENTIAL, 1, "free to air"),
@@ -90,7 +90,7 @@ def _with(value: float, digits: int, words: str) -> Measured:
 def _held_pressure(eccentricity: float, *settings: str) -> Measured:
     air = largest_pressure_bar(held(CIRCUMFERENTIAL, eccentricity, 30.0, PENALTY, *settings))
     bath = largest_pressure_bar(held(CIRCUMFERENTIAL, eccentricity, 30.0, PENALTY, BATH, *settings))
-    return Measured(f"{bath:.2f} in an oil bath, {air:.2f} free to air", bath)
+    return Measured(f"{bath:.2f} oil bath, {air:.2f} free to air", bath)
 
 
 def _steepness(folder: Path, circumferential: dict[str, list[RunUp]]) -> dict[str, Measured]:
@@ -108,11 +108,11 @@ def _steepness(folder: Path, circumferential: dict[str, list[RunUp]]) -> dict[st
     bath = [eccentricity(at_rest(CIRCUMFERENTIAL, 120.0, BATH, model)) for model in (PUBLISHED, PENALTY)]
     return {
         "steepness-limit": Measured(
-            f"steady, 30 Hz: {listed(published, '.3f')} for x_1 = 0.9, 0.99, 0.999; penalty {resting:.3f}",
+            f"{listed(published, '.3f')} for x_1 = 0.9, 0.99, 0.999; penalty {resting:.3f}",
             holds=abs(published[-1] / resting - 1.0) < CLOSE and rises(published),
         ),
         "steepness-below": Measured(
-            f"published {listed(published[:2], '.3f')} for x_1 = 0.9, 0.99, penalty {resting:.3f}; "
+            f"published {listed(published[:2], '.3f')}, penalty {resting:.3f}; "
             f"conservative at 1 s {listed(conserving, '.3f')}, penalty {penalty.eccentricities[0]:.3f}",
             holds=published[0] > published[1] > resting and conserving[0] > conserving[1],
         ),
@@ -123,12 +123,12 @@ def _steepness(folder: Path, circumferential: dict[str, list[RunUp]]) -> dict[st
             f"onset {listed(onsets[:2], '.2f')} s for x_1 = 0.9, 0.99", holds=onsets[0] < onsets[1]
         ),
         "oil-bath-close-to-penalty": Measured(
-            f"eccentricity at rest, 120 Hz: {listed(bath, '.4f')} with penalty; "
+            f"120 Hz: {listed(bath, '.4f')} with penalty; "
             f"conservative at 4 s {steep_bath.eccentricities[-1]:.3f}, onset {steep_bath.onset_s:.2f} s",
             holds=abs(bath[0] / bath[1] - 1.0) < CLOSE,
         ),
         "oil-bath-higher": Measured(
-            f"onset {listed(onsets[:2], '.2f')} s, in an oil bath {low_bath.onset_s:.2f}, {steep_bath.onset_s:.2f} s",
+            f"onset {listed(onsets[:2], '.2f')} s, oil bath {low_bath.onset_s:.2f}, {steep_bath.onset_s:.2f} s",
             holds=low.onset_s < low_bath.onset_s and steep.onset_s < steep_bath.onset_s,
         ),
     }
@@ -184,8 +184,8 @@ def _stiffness(folder: Path, axial: dict[str, list[RunUp]]) -> dict[str, Measure
     return {
         "stiffness-order-transient": Measured(text, holds=all(rises(each) for each in onsets.values())),
         "stiffness-difference": Measured(
-            f"onsets apart by {gaps[0]:.2f} s with the soft shaft, {gaps[2]:.2f} s rigid; in a ramp of 5 Hz/s from "
-            f"rest at {listed(slow[0], '.1f')} Hz and {listed(slow[1], '.1f')} Hz",
+            f"onsets apart by {gaps[0]:.2f} s, {gaps[2]:.2f} s rigid; in a ramp of 5 Hz/s "
+            f"at {listed(slow[0], '.1f')} Hz, {listed(slow[1], '.1f')} Hz",
             holds=gaps[0] < gaps[2] and apart[0] < apart[1],
         ),
     }

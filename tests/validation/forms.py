@@ -10,21 +10,21 @@ from validation.measured import listed
 
 SPEED_Hz = 30.0
 SUPPLIES: dict[str, tuple[str, tuple[str, ...]]] = {
-    "circumferential groove, 1 bar, free to air": (CIRCUMFERENTIAL, ()),
-    "circumferential groove, 1 bar, oil bath": (CIRCUMFERENTIAL, (BATH,)),
-    "circumferential groove, 2 bar, free to air": (CIRCUMFERENTIAL, (TWO_BAR,)),
+    "groove around, 1 bar, free to air": (CIRCUMFERENTIAL, ()),
+    "groove around, 1 bar, oil bath": (CIRCUMFERENTIAL, (BATH,)),
+    "groove around, 2 bar, free to air": (CIRCUMFERENTIAL, (TWO_BAR,)),
     "axial groove, 1 bar, free to air": (AXIAL, ()),
 }
 HEAD = """## Two forms of the two-phase model
 
-The source uses the form (4.31) with artificial diffusion on 10 x 20 quadratic elements, which does not conserve oil:
-`form = "published"`; the default is `form = "conservative"`. They differ where oil is supplied at ambient pressure
-through a circumferential groove and the film starves. There the published form creates the oil that leaves at the ends.
+The form (4.31) of the source, `form = "published"`, does not conserve oil; the default is `form = "conservative"`. They
+differ where oil is supplied at ambient pressure and the film starves: the published form creates the oil that leaves.
 
-Eccentricity in static equilibrium, 30 Hz, x_1 = 0.99; created: oil that leaves less oil that enters, as a share of it.
+Eccentricity in static equilibrium, 30 Hz, x_1 = 0.99; created: outflow less inflow, as a share of it, in % (published,
+conservative).
 
-| supply | penalty | published | conservative | created, published | created, conservative |
-| --- | --- | --- | --- | --- | --- |"""
+| supply | penalty | published | conservative | created |
+| --- | --- | --- | --- | --- |"""
 
 
 def table() -> list[str]:
@@ -36,6 +36,6 @@ def table() -> list[str]:
             math.nan if result.loads is None else -100.0 * result.loads.oil.defect_relative for result in found[1:]
         ]
         eccentricities = " | ".join(listed([eccentricity(result)], ".3f") for result in found)
-        shares = " | ".join(f"{round(share)} %" if math.isfinite(share) else "-" for share in created)
+        shares = ", ".join(f"{round(share)}" if math.isfinite(share) else "-" for share in created)
         lines.append(f"| {words} | {eccentricities} | {shares} |")
     return lines

@@ -39,11 +39,11 @@ def rises(values: Sequence[float]) -> bool:
 
 
 def with_reasons(rows: Sequence[str], reasons: Sequence[str]) -> list[str]:
-    """Rows of a table with the number of their reason in the verdict, and the reasons as a list below; "": none."""
+    """Rows of a table with the number of their reason in the last cell, and the reasons as a list below; "": none."""
     numbers = {reason: number for number, reason in enumerate(dict.fromkeys(filter(None, reasons)), 1)}
     lines = [
         f"{row.removesuffix(' |')} ({numbers[reason]}) |" if reason else row
         for row, reason in zip(rows, reasons, strict=True)
     ]
     notes = [f"{number}. {reason[0].upper()}{reason[1:]}." for reason, number in numbers.items()]
-    return [*lines, *(["", "Why rows differ:", "", *notes] if notes else [])]
+    return [*lines, *(["", "Reasons:", "", *notes] if notes else [])]

@@ -28,13 +28,11 @@ THRESHOLDS_Hz = {"jeffcott-table-4-1": 167.4, "jeffcott": 177.2}  # by an indepe
 
 HEAD = """# Validation
 
-Measured and printed results. `cd tests && python -m validation.validate` runs everything again and writes this page;
-`tests/docs/test_validation.py` checks the most important rows. Films are of finite length. Half-Sommerfeld films have
-the default accuracy, run-ups with the penalty and the two-phase model a target of 3e-3. [Cases](cases.md) lists the
-commands for every study of chapter 6. An onset belongs to a whirl of about 0.5X, below 0.65X.
+`cd tests && python -m validation.validate` writes this page; `tests/docs/test_validation.py` checks the most important
+rows. Films are of finite length. Half-Sommerfeld films have the default accuracy, run-ups with the penalty and the
+two-phase model a target of 3e-3 ([cases](cases.md)). An onset belongs to a whirl of about 0.5X, below 0.65X.
 
-A row *agrees* if its deviation is within the rounding or the wording of the source, else it *differs*, for the reason
-with the number behind it.
+A row with a number in brackets differs, for this reason; the others agree within the rounding or wording of the source.
 """
 
 
@@ -74,7 +72,7 @@ def half_sommerfeld(folder: Path) -> dict[str, Measured]:
 
     def risen(name: str) -> Measured:
         found = rises[name]
-        return Measured(f"{found.passage_s:.2f} (onset event {found.onset_s:.2f})", found.passage_s)
+        return Measured(f"{found.passage_s:.2f} (onset {found.onset_s:.2f})", found.passage_s)
 
     def critical(name: str) -> Measured:
         return number(measures.first_event(runs[name], "critical-speed", "t_s"), 2)
@@ -86,7 +84,7 @@ def half_sommerfeld(folder: Path) -> dict[str, Measured]:
         "rise-table-4-1": risen("jeffcott-table-4-1"),
         "rise": risen("jeffcott"),
         "axial-groove-supply-order": Measured(
-            f"linear thresholds {speeds(axial)}, eccentricity {', '.join(f'{value:.3f}' for value in resting)}",
+            f"thresholds {speeds(axial)}, eccentricity {', '.join(f'{value:.3f}' for value in resting)}",
             holds=rising(axial) and rising(resting),
         ),
         "soft-shaft-critical": number(measures.first_event(runs["soft-shaft"], "critical-speed", "speed_Hz"), 1),
@@ -94,9 +92,9 @@ def half_sommerfeld(folder: Path) -> dict[str, Measured]:
             f"zero at {zero:.2f} s, jump at {rises['rigid'].passage_s:.2f} s",
             holds=abs(zero - rises["rigid"].passage_s) < 0.1,
         ),
-        "stiffness-order": Measured(f"linear thresholds {speeds(stiff)}", holds=rising(stiff)),
+        "stiffness-order": Measured(f"thresholds {speeds(stiff)}", holds=rising(stiff)),
         "supply-order": Measured(
-            f"linear thresholds {speeds(supply)}, at 4 bar the whirl stays above {whirl:.2f} clearances",
+            f"thresholds {speeds(supply)}, at 4 bar a whirl above {whirl:.2f} clearances",
             holds=rising(supply[::-1]) and whirl > WHIRLING,
         ),
     }
@@ -104,17 +102,16 @@ def half_sommerfeld(folder: Path) -> dict[str, Measured]:
 
 def compared(rows: list[dict[str, Any]], measured: dict[str, Measured]) -> list[str]:
     """The table of what is reached, the reasons, and the table of what is not."""
-    lines = ["| quantity | where | model there | printed | measured | deviation | verdict |", "|" + " --- |" * 7]
+    lines = ["| quantity | where | model there | printed | measured | deviation, % |", "|" + " --- |" * 6]
     found_rows, reasons = [], []
     for row in (row for row in rows if "missing" not in row):
         found = measured[row["id"]]
         printed, deviation, agrees = "order", "", found.holds
         if "printed" in row:
             relative = found.value / row["printed"] - 1.0
-            printed, deviation = f"{row['printed']:g}", f"{100 * relative:+.1f} %"
+            printed, deviation = f"{row['printed']:g}", f"{100 * relative:+.1f}"
             agrees = abs(relative) <= row["tolerance"]
-        verdict = "agrees" if agrees else "differs"
-        cells = (row["quantity"], row["where"], row.get("model", ""), printed, found.text, deviation, verdict)
+        cells = (row["quantity"], row["where"], row.get("model", ""), printed, found.text, deviation)
         found_rows.append(f"| {' | '.join(cells)} |")
         reasons.append("" if agrees else row.get("note", "no reason known"))
     lines += with_reasons(found_rows, reasons)
@@ -133,16 +130,15 @@ def independent() -> list[str]:
         lines.append(f"| linear threshold of `{name}`, Hz | finite | {expected} | {found:.1f} | {off} | 0.5 % |")
         ratio = measures.whirl_ratio(load_case(name))
         off = f"{100 * (ratio / WHIRL_RATIO - 1):+.1f} %"
-        lines.append(f"| whirl ratio there | finite | {WHIRL_RATIO:g} | {ratio:.3f} | {off} | known to two digits |")
+        lines.append(f"| whirl ratio there | finite | {WHIRL_RATIO:g} | {ratio:.3f} | {off} | two digits |")
     for clearance in ("40", "35"):
-        for theory in ("finite", "short"):
-            relative, degrees = measures.worst_resting_position(clearance, theory)
-            what = f"static equilibria, clearance {clearance} um, 10 to 200 Hz: eccentricity, attitude"
-            off = f"{100 * relative:.3f} %, {degrees:.3f} deg"
-            lines.append(f"| {what} | {theory} | 5 positions | | {off} | 0.3 %, 0.3 deg |")
+        worst = [measures.worst_resting_position(clearance, theory) for theory in ("finite", "short")]
+        what = f"static equilibria, {clearance} um, 10 to 200 Hz: eccentricity, attitude"
+        off = "; ".join(f"{100 * relative:.3f} %, {degrees:.3f} deg" for relative, degrees in worst)
+        lines.append(f"| {what} | finite; short | 5 positions | | {off} | 0.3 %, 0.3 deg |")
     for supply in ("none", "circumferential-groove"):
         off = f"{100 * measures.worst_film_force(supply):.3f} %"
-        lines.append(f"| film forces, supply `{supply}`, eccentricity 0.3 to 0.9 | finite | | | {off} | 0.3 % |")
+        lines.append(f"| film forces, `{supply}`, eccentricity 0.3 to 0.9 | finite | | | {off} | 0.3 % |")
     return lines
 
 
@@ -164,7 +160,7 @@ def main(folder: Path) -> None:
         "",
         "## An independent program",
         "",
-        "Results of a separate finite-volume program, with mesh refinement and extrapolation; the largest deviations.",
+        "Largest deviations from a finite-volume program with mesh refinement and extrapolation.",
         "",
         *independent(),
     ]

@@ -22,50 +22,50 @@ class Start(Model):
     """Position of the journal at the start of a run."""
 
     position: Literal["centre", "resting"] = Field(
-        default="centre", description="in the middle of the bearings, or in static equilibrium at the first speed"
+        default="centre", description="middle of the bearings, or static equilibrium at the first speed"
     )
     displacement: tuple[Displacement, Displacement] | None = Field(default=None, description="x, y over clearance")
 
 
 class Accuracy(Model):
-    """Accuracy of the result: one target, or mesh and tolerance."""
+    """One target, or mesh and tolerance."""
 
     target: Annotated[float, Quantity(NUMBER, "1e-3", above=0, most=0.1)] = Field(
-        default=1e-3, description="error of the eccentricities that is aimed at"
+        default=1e-3, description="error of the eccentricities"
     )
     budget: Annotated[float, Quantity("s", "60 s", above=0)] | None = Field(
         default=None, description="CPU time of a run-up, if the target needs more: the most exact plan within it"
     )
     mesh: tuple[Annotated[int, Count(1, 400, 10)], Annotated[int, Count(4, 2000, 20)]] | None = Field(
-        default=None, description="elements along the axis, then around the circumference, where there are no fewer"
+        default=None, description="elements along the axis and, at least, around the circumference"
     )
     tolerance: Annotated[float, Quantity(NUMBER, "1e-6", above=0, most=0.1)] | None = Field(
-        default=None, description="of the time integration, relative to the clearance"
+        default=None, description="of the time integration, over clearance"
     )
     steps_per_revolution: Annotated[int, Count(1, 100_000, 40)] = Field(
         default=STEPS_PER_REVOLUTION, description="at least; finite-volume films take fewer by default"
     )
     macro_step: Annotated[float, Quantity("s", "1e-6 s", above=0)] = Field(
-        default=MACRO_STEP, description="longest macro step of a co-simulation"
+        default=MACRO_STEP, description="longest, of a co-simulation"
     )
 
 
 class FilmFrames(Model):
-    """Oil fractions and free gas of all cells that a run keeps, for pictures of its films."""
+    """Recorded oil fractions and free gas of all cells, for pictures."""
 
-    begin: Hold = Field(alias="from", description="time of the first ones")
-    end: Duration = Field(alias="to", description="time of the last ones")
-    frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="so many, at even times")
+    begin: Hold = Field(alias="from", description="first and last time")
+    end: Duration = Field(alias="to", description="first and last time")
+    frames: Annotated[int, Count(2, MOST_FRAMES, 80)] = Field(default=80, description="number, at even times")
 
 
 class Output(Model):
     """Output of a run."""
 
     step: Annotated[float, Quantity("s", "5e-5 s", above=0)] = Field(
-        default=OUTPUT_STEP, description="between the samples of a run file"
+        default=OUTPUT_STEP, description="between samples"
     )
     signals: tuple[FilmSignal, ...] = Field(
         default=(),
-        description="further signals of each film that a run records",
+        description="further signals of each film",
     )
-    films: FilmFrames | None = Field(default=None, description="keep oil and gas of mass-conserving films")
+    films: FilmFrames | None = Field(default=None, description="record oil and gas of mass-conserving films")

@@ -40,7 +40,7 @@ TURN = 2.0 * math.pi
 class TorquePoints(Model):
     """A torque over the speed of the rotor or over time: linear between its points, constant beyond them."""
 
-    over: Literal["speed", "time"] = Field(description="what it depends on")
+    over: Literal["speed", "time"] = Field(description="independent variable")
     at: tuple[Entry, ...] = Field(description="speeds in Hz, or times in s, ascending")
     torque: tuple[Torque, ...] = Field(description="at each of them")
 
@@ -148,27 +148,27 @@ class _Loads:
 
 
 class Drive(MachineTable):
-    """Free speed: J omega' = torque - load - friction of the films. It replaces [speed]."""
+    """Free speed: J omega' = torque - load - film friction."""
 
     torque: Torque = Field(default=0.0, description="of the drive; below 0 it brakes")
     points: Annotated[TorquePoints, _Points()] | None = Field(
-        default=None, description="replaces torque: speeds or times with torques, linear between them"
+        default=None, description="replaces torque: over speed or time, linear in between"
     )
     load: Annotated[BrakingLoad, _Loads()] = Field(
         default=BrakingLoad(),
-        description="brakes: constant, with the speed or with its square, by the unit; or a table",
+        description="brakes: constant, linear or quadratic in the speed, by the unit; or a table",
     )
-    start: Speed = Field(default=0.0, description="speed at the start of a run")
+    start: Speed = Field(default=0.0, description="speed at the start")
     end: TopSpeed | None = Field(
         default=None,
         alias="to",
-        description="highest speed, held by a governor; by default that of torque and load without friction of films",
+        description="highest speed, by a governor; default: torque equals load without film friction",
     )
     duration: Duration = Field(description="of the torque, and of a run-up")
     down_duration: Duration = Field(
-        default=math.nan, description="of a run-down behind it, without torque; the duration if not given"
+        default=math.nan, description="of a run-down without torque; default: the duration"
     )
-    reaction: bool = Field(default=False, description="whether the whirl of the unbalance acts on the rotation")
+    reaction: bool = Field(default=False, description="unbalance whirl acts on the rotation")
 
     @model_validator(mode="before")
     @classmethod

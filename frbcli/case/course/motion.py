@@ -24,30 +24,30 @@ from frbcli.units import NUMBER
 
 
 class KinematicMotion(Model):
-    """A kinematic test of a bearing: the motion of the journal is given."""
+    """Given motion of the journal in a kinematic test."""
 
     film: Label = Field(
         default="",
-        description="name of the tested film, needed where there are several; all outside of it is fixed",
+        description="tested film, required with several; all else is fixed",
     )
-    eccentricity: Eccentricity | None = Field(default=None, description="displacement over the clearance")
+    eccentricity: Eccentricity | None = Field(default=None, description="displacement over clearance")
     angle: Angle = Field(default=0.0, description="of the displacement, from the x-axis")
-    load: Force | None = Field(default=None, description="replaces the displacement: a static equilibrium")
+    load: Force | None = Field(default=None, description="replaces the displacement: static equilibrium")
     speed: SignedSpeed | None = Field(default=None, description="of the journal; the shell is fixed")
-    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation: rate of the eccentricity")
-    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation: whirl speed of the displacement")
+    eccentricity_rate: Rate = Field(default=0.0, description="of a rotation")
+    whirl_speed: SignedSpeed = Field(default=0.0, description="of a rotation")
     velocity: tuple[Velocity, Velocity] | None = Field(
-        default=None, description="of a rotation: of the journal along x, y; replaces the two before"
+        default=None, description="of a rotation, along x, y; replaces the two before"
     )
     tilt: tuple[Tilt, Tilt] | None = Field(
-        default=None, description="of the journal about x, y through the middle of the bearing"
+        default=None, description="of the journal about x, y, at the middle of the bearing"
     )
     tilt_rate: tuple[TiltRate, TiltRate] | None = Field(
-        default=None, description="of a rotation: how fast the journal tilts about x, y"
+        default=None, description="of a rotation, about x, y"
     )
     frequency: Speed | None = Field(default=None, description="of squeeze or whirl")
     periods: Annotated[float, Quantity(NUMBER, "3", above=0, most=1000)] = Field(
-        default=3.0, description="of squeeze or whirl, that are computed"
+        default=3.0, description="of squeeze or whirl"
     )
 
     @property

@@ -19,23 +19,23 @@ PointTime = Annotated[float, Quantity("s", "1 s", least=0)]
 
 
 class SpeedRamp(Model):
-    """Rotor speed [Hz]: linear from `from` to `to` in `duration`, or through points; a run-down goes back."""
+    """Rotor speed: linear from `from` to `to`, or through points; a run-down goes back."""
 
-    start: FirstSpeed = Field(alias="from", description="at the start of a run; negative: it turns the other way round")
+    start: FirstSpeed = Field(alias="from", description="at the start; negative: reversed rotation")
     end: Speed = Field(alias="to", description="at the end of the run-up")
     duration: Duration = Field(description="of the run-up")
     hold: Hold = Field(default=DEFAULT_HOLD, description="at the end speed, before a run-down")
-    down_duration: Duration = Field(default=math.nan, description="of a run-down; the duration if not given")
+    down_duration: Duration = Field(default=math.nan, description="of a run-down; default: the duration")
     points: tuple[tuple[PointTime, Speed], ...] = Field(
-        default=(), description="replaces from, to and duration: times from 0 on with speeds, linear between them"
+        default=(), description="replaces from, to and duration: times from 0 on with speeds"
     )
     file: Label = Field(
-        default="", description="replaces points: CSV, WAV, MAT or UFF with the columns time and speed",
+        default="", description="replaces points: CSV, WAV, MAT or UFF with columns time and speed",
     )  # fmt: skip
-    tacho: Label = Field(default="", description="column of `file` with pulses, from which the speed follows")
-    pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` in a revolution")
+    tacho: Label = Field(default="", description="column of `file` with pulses, for the speed")
+    pulses: Annotated[int, Count(1, 10_000, 1)] = Field(default=1, description="of `tacho` per revolution")
     times: tuple[PointTime, ...] = Field(default=(), description="contents of points or `file`, written by runs")
-    speeds: tuple[Speed, ...] = Field(default=(), description="at these times")
+    speeds: tuple[Speed, ...] = Field(default=(), description="contents of points or `file`, written by runs")
 
     @property
     def course(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

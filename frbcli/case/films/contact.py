@@ -26,7 +26,7 @@ CONTACT_BEGINS = 0.9999  # a gap of a ten-thousandth of the clearance; limit of 
 
 
 class Contact(Model):
-    """Contact of journal and shell: smooth surfaces on an elastic shell, or rough ones, whose summits touch."""
+    """Contact of journal and shell: smooth surfaces, or rough ones with asperities."""
 
     model: Literal["spring", "asperities"] = Field(
         default="spring", description="smooth surfaces, or mixed friction of rough ones, in all films"
@@ -37,33 +37,33 @@ class Contact(Model):
     eccentricity: Annotated[float, Quantity(NUMBER, "0.999", above=0.5, most=CONTACT_BEGINS)] = Field(
         default=CONTACT_BEGINS, description="at which smooth surfaces touch; films keep a gap beyond it"
     )
-    stiffness: Stiffness | None = Field(default=None, description="of the surfaces, for the elastic policy")
+    stiffness: Stiffness | None = Field(default=None, description="for the elastic policy")
     roughness: Roughness | None = Field(
-        default=None, description="of both surfaces of asperities, the root of the sum of their squares"
+        default=None, description="of asperities, root of the sum of squares of both surfaces"
     )
-    summit_radius: Length | None = Field(default=None, description="of asperities, mean one of curvature")
-    summit_density: SummitDensity | None = Field(default=None, description="of asperities, number over the area")
+    summit_radius: Length | None = Field(default=None, description="of asperities")
+    summit_density: SummitDensity | None = Field(default=None, description="of asperities")
     mean_height: SummitHeight = Field(
-        default=0.0, description="of the asperities' summits over the mean plane, the sum of both surfaces"
+        default=0.0, description="of asperities over the mean plane, sum of both surfaces"
     )
     modulus: Modulus = Field(
         default=COMPOSITE_MODULUS,
         description="composite, of asperities: 1/E = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2; default: steel on steel",
     )
     hardness: Modulus | None = Field(
-        default=None, description="of the softer asperities, which yield there; elastic if not given"
+        default=None, description="of the softer asperities, which yield there; elastic by default"
     )
     wear: WearCoefficient | None = Field(
         default=None,
-        description="Archard's coefficient (volume times hardness over force and path): runs estimate the depth",
+        description="Archard's coefficient, volume times hardness over force and path: runs estimate the depth",
     )
     flow_factors: bool = Field(
-        default=False, description="of asperities: films are finite-volume films with the flow between rough surfaces"
+        default=False, description="of asperities: finite-volume films with flow between rough surfaces"
     )
     journal_roughness: Roughness | None = Field(
-        default=None, description="of the journal alone, for flow factors; by default both surfaces are equal"
+        default=None, description="for flow factors; default: both surfaces are equal"
     )
-    friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient between asperities")
+    friction: BoundaryFriction = Field(default=BOUNDARY_FRICTION, description="coefficient of asperities")
 
     @property
     def rough(self) -> bool:

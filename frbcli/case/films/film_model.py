@@ -17,27 +17,27 @@ class FilmModel(Model):
     """How the films are computed."""
 
     theory: Theory = Field(
-        default="auto", description="of the Reynolds equation; or the name of a bearing model added from Python"
+        default="auto", description="of the Reynolds equation"
     )
-    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of cavitation, for all films")
+    cavitation: Cavitation = Field(default="half-sommerfeld", description="model of all films")
     cavitation_factor: Literal["global", "local", "none"] = Field(
         default="global",
-        description="torque of a cavitated film: reduced by the mean oil fraction (4.46), the local one, or not",
+        description="torque reduced by the mean oil fraction (4.46), the local one, or not",
     )
     torque: Literal["all", "couette", "simple"] = Field(
-        default="all", description="on floating rings: both terms of (3.17), the first term, or formula (4.6)"
+        default="all", description="on floating rings: both terms of (3.17), the first, or formula (4.6)"
     )
-    coupling: Coupling = Field(default="auto", description="coupling of rotor and films in the time integration")
+    coupling: Coupling = Field(default="auto", description="of rotor and films in time")
     grid: Literal["auto", "fixed", "half-speed"] = Field(
         default="auto",
         description="fixed cells, or turning with the mean surface speed; auto: turning for mass-conserving plain gaps",
     )
     solution: Literal["auto", "table", "cells"] = Field(
-        default="auto", description="in runs: tabulated before the run where possible, or solved as finite volumes"
+        default="auto", description="in runs: tabulated where possible, or finite volumes"
     )
     tilt: Literal["none", "follows"] = Field(
         default="none",
-        description="the gap is constant along the axis, or follows the tilt of journals and rings",
+        description="gap constant along the axis, or following the tilt of journals and rings",
     )
 
     if TYPE_CHECKING:  # the tables of the laws, which these declare

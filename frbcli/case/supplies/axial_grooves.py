@@ -15,9 +15,9 @@ class AxialGrooves(SpacedSupply):
     """Axial grooves in the shell, evenly spaced."""
 
     kind: Literal["axial-grooves"] = Field(description="grooves along the axis, in the shell")
-    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="number of grooves")
-    position: Angle = Field(default=0.0, description="phi of the middle of the first groove")
-    opening_angle: OpeningAngle = Field(description="angle of one groove")
+    count: Annotated[int, Count(1, 24, 1)] = Field(default=1, description="of grooves")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first")
+    opening_angle: OpeningAngle = Field(description="of one groove")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

@@ -11,13 +11,13 @@ from frbcli.case.supplies.supply import LargestFlow, Outline, Ramp, SpacedSupply
 
 
 class AxialSlots(SpacedSupply):
-    """Axial slots in the shell, in the middle of the width, evenly spaced; lands at their ends hold the pressure."""
+    """Axial slots in the middle of the shell, evenly spaced, closed at their ends."""
 
     kind: Literal["axial-slots"] = Field(description="slots along the axis over a part of the width, in the shell")
-    count: Annotated[int, Count(1, 24, 2)] = Field(default=1, description="number of slots")
-    position: Angle = Field(default=0.0, description="phi of the middle of the first slot")
-    opening_angle: OpeningAngle = Field(description="angle of one slot")
-    length: Length = Field(description="axial length of a slot")
+    count: Annotated[int, Count(1, 24, 2)] = Field(default=1, description="of slots")
+    position: Angle = Field(default=0.0, description="phi of the middle of the first")
+    opening_angle: OpeningAngle = Field(description="of one slot")
+    length: Length = Field(description="axial")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

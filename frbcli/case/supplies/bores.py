@@ -16,14 +16,14 @@ from frbcli.units import NUMBER, display
 
 
 class Bores(SpacedSupply):
-    """Feed holes of equal diameter in the shell or the journal, evenly spaced around it."""
+    """Equal feed holes in shell or journal, evenly spaced."""
 
     kind: Literal["bores"] = Field(description="round feed holes")
-    count: Annotated[int, Count(1, 100, 6)] = Field(description="number of feed holes")
-    diameter: Length = Field(description="of a feed hole")
-    axial_position: Fraction = Field(default=0.5, description="0 and 1 are the ends of the bearing")
-    position: Angle = Field(default=0.0, description="phi of the first feed hole")
-    on: Literal["shell", "journal"] = Field(default="shell", description="the surface with the feed holes")
+    count: Annotated[int, Count(1, 100, 6)] = Field(description="of feed holes")
+    diameter: Length = Field(description="of a hole")
+    axial_position: Fraction = Field(default=0.5, description="0 and 1: ends")
+    position: Angle = Field(default=0.0, description="phi of the first")
+    on: Literal["shell", "journal"] = Field(default="shell", description="surface with the holes")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

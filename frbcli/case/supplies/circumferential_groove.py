@@ -17,10 +17,10 @@ ONE_LAND = 0.25  # flow of one land of the whole width over the flow of two land
 
 
 class CircumferentialGroove(PressureSupply):
-    """A groove around the bearing: in the middle, between two lands of half the width, or at one end."""
+    """A groove around the bearing, in the middle or at one end."""
 
     kind: Literal["circumferential-groove"] = Field(description="a groove around the bearing")
-    axial_position: Fraction = Field(default=0.5, description="0.5, the middle, or 0 or 1, the ends of the bearing")
+    axial_position: Fraction = Field(default=0.5, description="0.5: middle; 0 or 1: ends")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

@@ -14,9 +14,9 @@ class Pocket(PressureSupply):
     """A pocket in the shell, in the middle of the width."""
 
     kind: Literal["pocket"] = Field(description="one rectangular pocket in the shell")
-    position: Angle = Field(description="phi of the middle of the pocket")
-    opening_angle: OpeningAngle = Field(description="angle of the pocket")
-    width: Length = Field(description="axial width of the pocket")
+    position: Angle = Field(description="phi of its middle")
+    opening_angle: OpeningAngle = Field(description="of the pocket")
+    width: Length = Field(description="axial")
     pressure: SupplyPressure
     ramp: Ramp = 0.0
     flow: LargestFlow = None

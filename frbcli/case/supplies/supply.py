@@ -27,14 +27,14 @@ if TYPE_CHECKING:
 
 MIDDLE = 0.5  # of the width
 TURNED = 1.0 - 1e-9  # share of a turn that counts as all of it: angles in degrees have round-off
-SupplyPressure = Annotated[InputPressure, Field(description="supply pressure, absolute; may change over time")]
+SupplyPressure = Annotated[InputPressure, Field(description="absolute")]
 Ramp = Annotated[
-    RiseTime, Field(description="t_1 of (4.11), rise time of the pressure in squeeze and whirl; 0: at once")
+    RiseTime, Field(description="t_1 of (4.11), rise time in squeeze and whirl")
 ]
 
 LargestFlow = Annotated[
     Flow | None,
-    Field(description="flow limit of the whole bearing; where the film would take more, the pressure falls"),
+    Field(description="flow limit of the whole bearing, at which the pressure falls"),
 ]
 
 

@@ -23,19 +23,18 @@ AccelerationEntry = Annotated[float, Quantity("m/s^2", "2 m/s^2")]
 
 
 class Base(MachineTable):
-    """Motion of the ground: harmonic, or a table over time. Displacements are relative to the ground."""
+    """Motion of the ground, harmonic or tabulated. Displacements are relative to it."""
 
     acceleration: tuple[AccelerationEntry, AccelerationEntry] | None = Field(
         default=None,
-        description="[x, y], amplitude of the ground; factor of the columns of `file`, by default 1 m/s^2",
+        description="[x, y] amplitude; factor of the columns of `file`, default: 1 m/s^2",
     )
-    order: Order | None = Field(default=None, description="times the angle of the source; by default 1")
-    speed: Speed | None = Field(default=None, description="of the source, such as an engine; by default of the rotor")
+    order: Order | None = Field(default=None, description="times the angle of the source; default: 1")
+    speed: Speed | None = Field(default=None, description="of the source, such as an engine; default: of the rotor")
     phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
         default="",
-        description="replaces order, speed and phase: CSV, WAV, MAT or UFF with the "
-        "columns time, x and y, or one for both",
+        description="replaces order, speed and phase: as of a [[force]]",
     )
     over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 

@@ -23,27 +23,27 @@ Order = Annotated[float, Quantity(NUMBER, "2")]
 
 
 class AppliedForce(MachineTable):
-    """A constant, harmonic or tabulated force on a disk, a journal, a ring or a support."""
+    """A constant, harmonic or tabulated force on a disk, journal, ring or support."""
 
     at: Identifier = Field(
-        description="disk or bearing by its name, or a point of a run such as `disk`, `journal_left`, `support`"
+        description="disk or bearing by name, or a point of a run such as `disk`, `journal_left`, `support`"
     )
     force: tuple[ForceEntry, ForceEntry] | None = Field(
         default=None,
-        description="[x, y], of a harmonic force its amplitude; factor of the columns of `file`, by default 1 N",
+        description="[x, y] or amplitude; factor of the columns of `file`, default: 1 N",
     )
     order: Order | None = Field(
-        default=None, description="times the angle of the rotor; a negative order rotates the force clockwise"
+        default=None, description="times the rotor angle; below 0 clockwise"
     )
-    frequency: SignedSpeed | None = Field(default=None, description="replaces `order`: independent of the rotor")
+    frequency: SignedSpeed | None = Field(default=None, description="fixed; replaces `order`")
     rotating: bool = Field(
         default=False,
-        description="the direction turns counter-clockwise, by default with the rotor",
+        description="turns counter-clockwise, default: with the rotor",
     )
-    phase: Angle = Field(default=0.0, description="of a harmonic force at angle and time zero")
+    phase: Angle = Field(default=0.0, description="at angle and time zero")
     file: Label = Field(
         default="",
-        description="replaces the four: CSV, WAV, MAT or UFF with the columns time, x and y, or one for both",
+        description="replaces the four: CSV, WAV, MAT or UFF with columns time, x and y, or one for both",
     )
     over_time: OverTime | None = Field(default=None, description="contents of `file`, written by runs")
 

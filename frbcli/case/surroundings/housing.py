@@ -29,25 +29,25 @@ Inertias = Annotated[tuple[RingInertia, RingInertia], *DIRECTIONS]
 
 
 class Mount(Model):
-    """Springs and dampers between the housing and the ground."""
+    """Springs and dampers between housing and ground."""
 
-    position: Position | None = Field(default=None, description="along the shaft; must be given for a turbocharger")
-    stiffness: Stiffnesses = Field(description="of both directions, or [x, y]")
-    damping: Dampings = Field(default=(0.0, 0.0), description="of both directions, or [x, y]")
+    position: Position | None = Field(default=None, description="along the shaft; required for a turbocharger")
+    stiffness: Stiffnesses = Field(description="to ground")
+    damping: Dampings = Field(default=(0.0, 0.0), description="to ground")
 
 
 class ModeAt(Model):
     """The displacement of a mode at a place."""
 
-    place: Identifier = Field(description="a bearing by its name, `bearing` of a symmetric rotor, or a key of `masses`")
-    displacement: tuple[Entry, Entry] = Field(description="[x, y] in 1/sqrt(kg), of the mode with a modal mass of 1 kg")
+    place: Identifier = Field(description="name of a bearing, `bearing` of a symmetric rotor, or a key of `masses`")
+    displacement: tuple[Entry, Entry] = Field(description="[x, y] in 1/sqrt(kg), for a modal mass of 1 kg")
 
 
 class MassAt(Model):
-    """A mass of the housing at a place."""
+    """A mass of the housing."""
 
     place: Identifier = Field(description="as in `at` of the modes")
-    mass: ShellMass = Field(description="of the housing there")
+    mass: ShellMass = Field(description="at this place")
 
 
 _BY_PLACE = AlsoAs(lambda listed: [{"type": "object"}, listed])  # a table by places
@@ -63,34 +63,34 @@ def _listed(value: str) -> BeforeValidator:
 
 
 class HousingMode(Model):
-    """A mode of the housing with all that is fixed to it, without rotor and bearings."""
+    """A mode of the housing and all fixed to it, without rotor and bearings."""
 
-    frequency: Annotated[float, Quantity(SPEED, "120 Hz", above=0)] = Field(description="undamped natural frequency")
-    damping: Fraction = Field(default=0.0, description="ratio to the critical damping")
+    frequency: Annotated[float, Quantity(SPEED, "120 Hz", above=0)] = Field(description="undamped")
+    damping: Fraction = Field(default=0.0, description="ratio")
     at: Annotated[tuple[ModeAt, ...], _listed("displacement"), _BY_PLACE] = Field(
-        description="displacements at all bearings in 1/sqrt(kg): { left = [0.3, 0], right = [-0.2, 0] }"
+        description="displacements in 1/sqrt(kg): { left = [0.3, 0], right = [-0.2, 0] }"
     )
 
 
 class Housing(MachineTable):
-    """The body that carries all bearings: a rigid one with mass, inertia and mounts, or modes."""
+    """The body that carries all bearings: rigid on mounts, or modes."""
 
-    mass: ShellMass | None = Field(default=None, description="of a rigid housing; above 0")
+    mass: ShellMass | None = Field(default=None, description="of a rigid housing")
     inertia: Inertias | None = Field(
         default=None,
-        description="of a rigid housing about its centre of mass, or [x z, y z]; must be given for a turbocharger",
+        description="of a rigid housing about its centre of mass, or [x z, y z]; required for a turbocharger",
     )
-    position: Position | None = Field(default=None, description="of its centre of mass along the shaft, as `inertia`")
-    mounts: tuple[Mount, ...] = Field(default=(), description="what holds a rigid housing")
-    modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing; replaces all these keys")
+    position: Position | None = Field(default=None, description="of its centre of mass")
+    mounts: tuple[Mount, ...] = Field(default=(), description="of a rigid housing")
+    modes: tuple[HousingMode, ...] = Field(default=(), description="of an elastic housing; replaces the keys above")
     file: Label = Field(
         default="",
-        description="replaces `modes`: CSV with frequency_Hz, damping, left_x, left_y and so on, "
-        "or a rotor file of ROSS with point masses",
+        description="replaces `modes`: CSV with frequency_Hz, damping, left_x, left_y etc., or a rotor file of ROSS "
+        "with point masses",
     )
     masses: Annotated[tuple[MassAt, ...], _listed("mass"), _BY_PLACE] = Field(
         default=(),
-        description="masses of an elastic housing by place; gives its weight and checks that modes are orthonormal",
+        description="of an elastic housing, for its weight and a check of the modes",
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:

@@ -20,12 +20,12 @@ Pull = Annotated[float, Quantity("N/m", "1e5 N/m", above=0)]
 
 
 class MagneticPull(MachineTable):
-    """The unbalanced magnetic pull of an electrical machine: a spring of negative stiffness."""
+    """Unbalanced magnetic pull of an electrical machine: a negative spring."""
 
     at: Identifier = Field(description="place of the rotor, as of a [[force]]")
-    pull: Pull = Field(description="force over displacement; of a symmetric rotor at each of both journals")
+    pull: Pull = Field(description="force over displacement; of a symmetric rotor at each journal")
     stator: Identifier = Field(
-        default="", description="place that the stator is fixed to, such as `housing`; the ground if not given"
+        default="", description="place of the stator, such as `housing`; default: the ground"
     )
 
     def breaches(self, case: Case, path: Path) -> Iterator[Breach]:

@@ -19,12 +19,12 @@ Entry = Annotated[float, Quantity(NUMBER, "0.5")]
 
 
 class OverTime(Model):
-    """Values at several times, as they were read from a file: linear between them. All in SI."""
+    """Values over time in SI, linear in between."""
 
-    source: Label = Field(default="", description="the file that they were read from")
+    source: Label = Field(default="", description="file they were read from")
     time: tuple[Entry, ...] = Field(description="in s, ascending")
-    x: tuple[Entry, ...] = Field(description="value in x, or of the one quantity, at each time")
-    y: tuple[Entry, ...] = Field(default=(), description="value in y; by default as x")
+    x: tuple[Entry, ...] = Field(description="in x, or of the one quantity")
+    y: tuple[Entry, ...] = Field(default=(), description="in y; default: as x")
 
     @property
     def both(self) -> tuple[tuple[float, ...], tuple[float, ...]]:

@@ -26,25 +26,25 @@ Friction = Annotated[float, Quantity(NUMBER, "0.1", least=0)]
 
 
 class Spring(MachineTable):
-    """A spring with a damper, or a stop, between a place and the ground or another place."""
+    """A spring with damper, or a stop, to ground or between two places."""
 
-    at: Identifier = Field(default="", description="place, as of a [[force]], against the ground")
+    at: Identifier = Field(default="", description="place, as of a [[force]]")
     between: tuple[Identifier, Identifier] | None = Field(
         default=None, description="replaces `at`: two places, such as `compressor` and `housing`"
     )
-    stiffness: Stiffness | None = Field(default=None, description="alike in all directions; of a stop, beyond its gap")
-    cubic: Cubic = Field(default=0.0, description="force over the third power of the displacement")
-    gap: Gap = Field(default=0.0, description="of a stop: radial distance before it touches; its damping acts radially")
-    damping: Damping = Field(default=0.0, description="of a stop, while it touches; it does not pull")
-    friction: Friction = Field(default=0.0, description="coefficient of a stop, against the sliding of the first place")
+    stiffness: Stiffness | None = Field(default=None, description="in all directions; of a stop, beyond its gap")
+    cubic: Cubic = Field(default=0.0, description="force over displacement cubed")
+    gap: Gap = Field(default=0.0, description="radial gap of a stop")
+    damping: Damping = Field(default=0.0, description="of a stop, in contact only, without pull")
+    friction: Friction = Field(default=0.0, description="of a stop, against sliding of the first place")
     radius: Length | None = Field(
         default=None,
-        description="at which a turning shaft rubs: it slides with omega times the radius and the motion "
-        "of its centre; without it with the sense of its rotation",
+        description="where a turning shaft rubs: sliding by rotation and centre motion; without it by the sense of "
+        "rotation",
     )
 
     law: Identifier = Field(
-        default="", description="replaces all of these: a force law that was added from Python, by its name"
+        default="", description="replaces these: a force law from Python, by its name"
     )
     numbers: dict[str, float | str] = Field(default={}, description="of the law, by the names of its fields")
 

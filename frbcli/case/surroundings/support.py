@@ -29,12 +29,12 @@ Dampings = Annotated[tuple[Damping, Damping], *DIRECTIONS]
 
 
 class Support(Model):
-    """The shell of a bearing as a body on springs and dampers; it moves in x and y and does not turn."""
+    """A shell on springs and dampers, which moves in x and y without turning."""
 
-    mass: ShellMass = Field(description="of the shell and what moves with it, per bearing; above 0")
-    stiffness: Stiffnesses = Field(description="of its springs to ground or housing: of both directions, or [x, y]")
+    mass: ShellMass = Field(description="of the moving shell, per bearing")
+    stiffness: Stiffnesses = Field(description="to ground or housing")
     damping: Dampings = Field(
-        default=(0.0, 0.0), description="of its dampers to ground or housing: of both directions, or [x, y]"
+        default=(0.0, 0.0), description="to ground or housing"
     )
 
 
@@ -42,14 +42,14 @@ NO_SPRING = (0.0, 0.0)
 
 
 class Damper(RingFilm):
-    """A squeeze film around the shell of a bearing, or around its outer ring; the shell moves and does not turn."""
+    """A squeeze film around a shell or an outer ring, which moves without turning."""
 
-    mass: ShellMass = Field(description="of the shell and what moves with it, per bearing; above 0")
+    mass: ShellMass = Field(description="of the moving shell, per bearing")
     spring: Stiffnesses = Field(
         default=NO_SPRING,
-        description="stiffness of the centring spring, or [x, y]; 0: no spring",
+        description="stiffness of the centring spring",
     )
     centred: bool = Field(
         default=False,
-        description="the spring centres the shell under the static load; else it sinks by load over stiffness",
+        description="the spring centres the shell under static load; else it sinks by load over stiffness",
     )

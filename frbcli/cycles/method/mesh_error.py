@@ -56,8 +56,7 @@ class OtherFilms:
 
 
 def other_films(plan: Plan) -> tuple[OtherFilms, ...]:
-    """Other films of a plan; none of openings that turn, whose tables would cost more than the diagram, and of bearing
-    models."""
+    """Other films of a plan; none of openings that turn, whose tables would cost more than the diagram."""
     if plan.form.table_of_solutions:
         mesh = plan.mesh
         finer = Mesh(round(MORE * mesh.axial), round(MORE * mesh.circumferential))
@@ -72,9 +71,7 @@ def why_no_error(plan: Plan) -> str:
     """Why cycles of a plan have no errors, a sentence; empty if they have some."""
     if other_films(plan):
         return ""
-    if plan.form.solved:
-        return f"{UNKNOWN} means over the angle of openings that turn are tabulated, and others would cost as much."
-    return f"{UNKNOWN} the error of a bearing model added from Python is not known."
+    return f"{UNKNOWN} means over the angle of openings that turn are tabulated, and others would cost as much."
 
 
 Seek = Callable[[Equations, Place], Place | None]

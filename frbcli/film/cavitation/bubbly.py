@@ -51,13 +51,12 @@ class Bubbly(Law):
     meaning = "Bubbles that last: gas is released and absorbed at rates, and goes with the oil."
     cell_words = "free gas goes with the oil, and is released and absorbed in time"
     keys = (
-        Key("bunsen", 0.1, "Bunsen's coefficient, the share of dissolved gas", "0.1", least=0.0),
-        Key("entrained", 0.0, "free gas of the supplied oil over its volume, at saturation_pressure", "0.02",
-            least=0.0),
-        Key("saturation_pressure", None, "absolute, at which the supplied oil is saturated; oil.cavitation_pressure if "
-            "not given", "1 bar", unit="Pa", above=0.0),
-        Key("release_time", 1e-3, "time constant with which gas leaves the solution", "1 ms", unit="s", least=0.0),
-        Key("absorption_time", 1.0, "time constant with which gas is dissolved again", "1 s", unit="s", least=0.0),
+        Key("bunsen", 0.1, "Bunsen's coefficient, share of dissolved gas", "0.1", least=0.0),
+        Key("entrained", 0.0, "free gas over volume of supplied oil, at saturation_pressure", "0.02", least=0.0),
+        Key("saturation_pressure", None, "of the supplied oil, absolute; by default oil.cavitation_pressure",
+            "1 bar", unit="Pa", above=0.0),
+        Key("release_time", 1e-3, "time constant of the gas", "1 ms", unit="s", least=0.0),
+        Key("absorption_time", 1.0, "time constant of the gas", "1 s", unit="s", least=0.0),
     )  # fmt: skip
     carries_gas = True
     cost = 1.7

@@ -26,7 +26,7 @@ class Elrod(Law):
     meaning = "Elrod's model."
     cell_words = "the cell is full and above `p_cav`, or it is at `p_cav` and holds less oil"
     keys = (
-        Key("bulk_modulus", None, "of the full film; incompressible if not given", "210 GPa", unit="Pa", above=0.0),
+        Key("bulk_modulus", None, "of the full film; incompressible by default", "210 GPa", unit="Pa", above=0.0),
     )
     starves = True
     empties = True

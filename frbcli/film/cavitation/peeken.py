@@ -23,7 +23,7 @@ class Peeken(Law):
     equation = "(3.39)"
     meaning = "Peeken's model."
     cell_words = "dissolved air comes out of the oil"
-    keys = (Key("bunsen", 0.1, "Bunsen's coefficient, the share of dissolved gas", "0.1", least=0.0),)
+    keys = (Key("bunsen", 0.1, "Bunsen's coefficient, share of dissolved gas", "0.1", least=0.0),)
     cost = 1.0
     compared = (("bunsen", (0.1, 0.5, 1.0)),)  # air in oil has about 0.1
 

@@ -39,7 +39,7 @@ class Penalty(Law):
     meaning = "Penalty model (3.31): on the absolute pressure of (3.9), or on the dimensionless one of (3.19)."
     cell_words = "a source that grows exponentially below `p_cav`, in two readings"
     keys = (
-        Key("pressure", "absolute", "absolute pressure of (3.9), or dimensionless pressure of (3.19)",
+        Key("pressure", "absolute", "of (3.9), or of (3.19)",
             choices=("absolute", "dimensionless")),
     )  # fmt: skip
     conserves = False

@@ -46,7 +46,7 @@ class TwoPhase(Law):
             "whirl_steepness", None, "x_1 while the journal whirls at about half the speed, in run-ups", "0.99",
             above=0.0, below=1.0,
         ),
-        Key("form", "conservative", "mass-conserving, or as published (4.31), which creates oil",
+        Key("form", "conservative", "mass-conserving, or as published (4.31), creating oil",
             choices=("conservative", "published")),
         Key("diffusion", "consistent", "artificial (4.42), of the published form",
             choices=("consistent", "streamline", "none")),

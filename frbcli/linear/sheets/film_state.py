@@ -22,9 +22,7 @@ from frbcli.film.kinds.fields import FieldFilm
 from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.film.roughness.asperities import rub
-from frbcli.scene.films import film_places
 from frbcli.scene.machine.system import System
-from frbcli.scene.section import film_section
 
 HEAT_CAPACITY = 2000.0  # J/(kg K) of mineral oils within 10 % from 40 to 120 degC
 TURNS, ALIGNED = 40, 1e-7  # iterations of the attitude angle, and the angle in rad that ends them
@@ -216,22 +214,22 @@ def _field_errors(
 
 def film_state(
     static: StaticFilms,
-    volume: FieldFilms | None,
+    volume: FieldFilms,
     i: int,
     bodies: Array,
     at_rest: RestingFilm,
     temperature: float = math.nan,
 ) -> FilmState:
     """The state of film i at rest. volume: the film on finite volumes, which has torque, flow and pressure in this
-    place, None for a bearing model; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises
+    place; bodies: (1 + rings,) speeds of rotor and rings in rad/s; temperature: K. Raises
     NotConverged."""
     case, system = static.case, static.system
-    section = film_section(case, film_places(case)[i].geometry) if volume is None else volume.own.section
+    section = volume.own.section
     total, slip = (float(system.turning[i, row] @ bodies) for row in (0, 1))
     journal, shell = speeds = 0.5 * (total + slip), 0.5 * (total - slip)
     c, d = system.clearances[i], at_rest.displacement
     felt = replace(at_rest, displacement=system.felt(i, c * d) / c)
-    ends = felt.displacement[None] if volume is None else volume.own.ends(felt.seen(felt.displacement))
+    ends = volume.own.ends(felt.seen(felt.displacement))
     phi = np.linspace(0.0, 2.0 * math.pi, SAMPLES, endpoint=False)
     size, width = math.hypot(*at_rest.load), section.bearing_width
     state = FilmState(
@@ -256,7 +254,7 @@ def film_state(
         mixed=MixedFriction.of(system, i, at_rest, slip, shell),
         tilting=at_rest.tilting,
     )
-    return state if volume is None else _with_fields(case, volume, state, felt, speeds)
+    return _with_fields(case, volume, state, felt, speeds)
 
 
 def _with_fields(

@@ -63,9 +63,7 @@ class FilmForm:
     # Cells (around, along) of its own of static results, and coarser ones for their error; empty of films of runs.
     static_cells: ClassVar[tuple[tuple[int, int], ...]] = ()
     error_by_eccentricity: ClassVar[bool] = False  # whether its error is of eccentricities, not of forces
-    solved: ClassVar[bool] = (
-        True  # whether its pressure is solved, on a mesh whose error is known
-    )
+    solved: ClassVar[bool] = True  # whether there is a pressure, on a mesh whose error is known
     table_of_solutions: ClassVar[bool] = False  # whether it is tabulated from solutions on cells before a run
     solved_each_call: ClassVar[bool] = False  # whether each call is expensive, so that fewer steps are worth it
     inclines: ClassVar[bool] = False  # whether its gaps may have a tilt, in machines at rest

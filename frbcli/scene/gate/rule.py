@@ -51,11 +51,6 @@ def run_omega(case: Case) -> float:
     return 2.0 * math.pi * max(abs(case.speed.start), abs(case.speed.end))
 
 
-def sheet_omega(case: Case) -> float:
-    """Highest speed in rad/s that a bearing sheet may be asked for."""
-    return motion_omega(case) if case.given_speed is None else run_omega(case)
-
-
 def motion_omega(case: Case) -> float:
     """Speed in rad/s that a kinematic test refers to: of the journal, else of its motion."""
     motion = case.motion

@@ -70,9 +70,9 @@ FILM_TILTS = (
     Column("weight", "rad", "tilt of the journal at rest, by the weight", shown=(Shown("weight, mrad", _in_mrad),)),
     Column("unbalance", "rad", "tilt by the unbalance at the top speed", shown=(Shown("unbalance", _in_mrad),)),
     Column("cone", "rad", "largest tilt in a conical whirl", shown=(Shown("cone", _in_mrad),)),
-    Column("bent", "", "change of the gap at the ends by weight and unbalance, over the clearance",
+    Column("bent", "", "gap change at the ends by weight and unbalance, over clearance",
            shown=(Shown("bent gap", ".1%"),)),
-    Column("whirling", "", "largest change of the gap at the ends in a conical whirl, over the clearance",
+    Column("whirling", "", "gap change in a conical whirl, over clearance",
            shown=(Shown("cone gap", ".1%"),)),
 )  # fmt: skip
 

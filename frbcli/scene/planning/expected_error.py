@@ -12,8 +12,8 @@ REACH = 0.5  # usual eccentricity of a static equilibrium, the factor of an erro
 
 @dataclass(frozen=True)
 class ExpectedError:
-    """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known: for a
-    bearing model, without films, and for cells, whose eccentricities have the known error."""
+    """eccentricity: of the eccentricities until a whirl grows; film_force: relative, None where it is not known:
+    without films, and for cells, whose eccentricities have the known error."""
 
     eccentricity: float
     film_force: float | None

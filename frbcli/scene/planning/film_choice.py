@@ -42,11 +42,10 @@ LOOSE_TARGET, FINE_TARGET = 2e-3, 2e-4  # of methods of third and of fourth orde
 
 @dataclass(frozen=True)
 class FilmChoice:
-    """theory: "short" | "finite", or the name of a bearing model; form: how the most expensive film is computed;
-    mesh: the finest mesh of elements; cells: (around, along) or None; error: expected relative
-    error of the forces at the eccentricity up to which the film holds the target, 0 for a bearing model, whose error is
-    not known; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements; eccentricity: that
-    the cells are chosen for, None where it is not known or has no influence."""
+    """theory: "short" | "finite"; form: how the most expensive film is computed; mesh: the finest mesh of elements;
+    cells: (around, along) or None; error: expected relative error of the forces at the eccentricity up to which the
+    film holds the target; theory_why, mesh_why: reasons; films: (form, mesh) of each film on quadratic elements;
+    eccentricity: that the cells are chosen for, None where it is not known or has no influence."""
 
     theory: str
     form: FilmForm

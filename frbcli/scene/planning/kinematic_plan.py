@@ -43,8 +43,7 @@ class KinematicPlan:
     """What will be modelled. form: how the film is computed; section: of the film, copied section.copies times;
     rectangle: of the accurate modal film, None where grooves or bores are cut out; cells: (around, along); steps: per
     period; rate: reference speed of the test in rad/s, for the penalty model on the dimensionless pressure; turning:
-    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11); model: the
-    bearing model that gives the forces, cavitation is empty then."""
+    rad/s of the surface that the supply is in, whose frame the film is solved in; ramp: s, t_1 of (4.11)."""
 
     test: str
     cavitation: str

@@ -23,7 +23,7 @@ class Decision:
 
 @dataclass(frozen=True, repr=False)
 class Plan:
-    """What will be modelled. theory: "short" | "finite", or the name of a bearing model; cavitation: of films that name
+    """What will be modelled. theory: "short" | "finite"; cavitation: of films that name
     none of their own; form: how the most expensive film is computed; mesh: the finest mesh of elements; films: form and
     mesh of each film on quadratic elements; cells: (around, along) of finite-volume films, None for other films;
     film_error: expected relative error of the forces; method: name of a time integration method; tolerance: local error

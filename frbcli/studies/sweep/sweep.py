@@ -301,11 +301,11 @@ def _number(value: Any) -> float:
 NUMBER = Column("point", "", "number of the point, from 1", attrgetter("number"), shown=(Shown(""),), key="")
 RESULT = (
     Column("set", "", "values of the keys, as text", attrgetter("settings"), flat=False),
-    Column("status", "", "how the run ended; `input-error`, `error` or `interrupted` without a run"),
-    Column("message", "", "why, where it is not `finished`"),
+    Column("status", "", "how the run ended; without a run `input-error`, `error` or `interrupted`"),
+    Column("message", "", "why it is not `finished`"),
     Column("events", "", "events of the run, or the threshold", flat=False),
     Column("cost", "", "cost of the run", flat=False),
-    Column("run", "", "run file, if it is kept", flat=False),
+    Column("run", "", "run file, if kept", flat=False),
 )
 COST = tuple(
     Column(quantity, "s", f"{words} time", _cost(f"{quantity}_s"), key="")
