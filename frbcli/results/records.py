@@ -25,6 +25,7 @@ from frbcli.arrays import Array
 from frbcli.columns import Column
 from frbcli.results.columns import MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.results.files.container import refuse
+from frbcli.results.growing import GrownSignal
 
 SIZE = 0  # its position in a stamp
 COMMANDS = ("runup", "rundown")
@@ -147,7 +148,7 @@ class Signal:
     RunFileError is raised if the file has changed. A slice gives the values (m,) of some samples.
     """
 
-    source: Array | Stored
+    source: Array | Stored | GrownSignal
     unit: str
 
     @property

@@ -6,7 +6,6 @@ that is killed at any moment leaves a file that opens and holds everything up to
 
 from __future__ import annotations
 
-import io
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +22,8 @@ from frbcli.html import html_table
 from frbcli.nearest import did_you_mean
 from frbcli.results.columns import EVENTS
 from frbcli.results.files import parts
-from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, write_whole
+from frbcli.results.files.container import USER_BLOCK, check_output, open_whole, refuse, replaced
+from frbcli.results.growing import GrowingSignal, keep_small
 from frbcli.results.records import (
     LARGEST,
     MOST_EVENTS,
@@ -33,6 +33,7 @@ from frbcli.results.records import (
     Signal,
     Stored,
     StoredArrays,
+    pieces,
     wrong_event,
     wrong_record,
     wrong_text,
@@ -146,7 +147,7 @@ class Run:
 
 
 class RunWriter:
-    """Collects a run in memory; writes it whole at each checkpoint. The caller decides when.
+    """Collects a run; writes it whole at each checkpoint. The caller decides when.
 
     The file exists as soon as the writer does, and says "interrupted" until `finish`.
     """
@@ -156,7 +157,7 @@ class RunWriter:
         self.path = Path(path)
         check_output(self.path)
         self._header = header
-        self._chunks: dict[str, list[Array]] = {name: [] for name in header.units}
+        self._signals = {name: GrowingSignal() for name in header.units}
         self._state: dict[str, NDArray[Any]] | None = None
         self._state_samples = 0
         self._cost: dict[str, Any] = {}
@@ -185,24 +186,27 @@ class RunWriter:
         writer.path, writer._header = run.path, header
         writer._state = None if run.checkpoint is None else dict(run.checkpoint)
         writer._state_samples = run.checkpoint_samples
-        writer._chunks = {name: [run.read(name, 0, run.checkpoint_samples)] for name in run.signals}
+        writer._signals = {name: GrowingSignal() for name in run.signals}
+        for first, last in pieces(0, run.checkpoint_samples):
+            writer.append({name: run.read(name, first, last) for name in run.signals})
         writer._cost, writer._error, writer._t_end_s = run.cost, run.error, run.t_end_s
         return writer
 
     @property
     def samples(self) -> int:
         """The number of samples taken so far."""
-        return min((sum(map(len, chunks)) for chunks in self._chunks.values()), default=0)
+        return min(map(len, self._signals.values()), default=0)
 
     def append(self, chunk: Mapping[str, Array]) -> None:
         """Take the next samples, one array (m,) for each signal of the header. Raises ValueError if they do not fit."""
-        if set(chunk) != set(self._chunks):
-            raise ValueError(f"signals {sorted(chunk)} given, {sorted(self._chunks)} announced")
+        if set(chunk) != set(self._signals):
+            raise ValueError(f"signals {sorted(chunk)} given, {sorted(self._signals)} announced")
         values = {name: np.array(column, dtype=np.float64) for name, column in chunk.items()}
         if len({column.shape for column in values.values()}) > 1 or any(c.ndim != 1 for c in values.values()):
             raise ValueError("all signals of a chunk need the same shape (m,)")
         for name, column in values.items():
-            self._chunks[name].append(column)
+            self._signals[name].append(column)
+        keep_small(self._signals.values(), self.path.absolute().parent)
 
     def checkpoint(
         self,
@@ -229,11 +233,10 @@ class RunWriter:
     ) -> Run:
         """Write the file for the last time; t (s) is where the run ended, by default its last sample."""
         self._cost, self._error = dict(cost), dict(error)
-        times = self._joined().get(TIME)
         if t is not None:
             self._t_end_s = float(t)
-        elif times is not None and len(times):
-            self._t_end_s = float(times[-1])
+        elif self.samples and TIME in self._signals:
+            self._t_end_s = float(self._signals[TIME][self.samples - 1 : self.samples][0])
         self._write(status, list(events[:MOST_EVENTS]))
         return self.so_far(status, events[:MOST_EVENTS])
 
@@ -247,7 +250,7 @@ class RunWriter:
             case_name=header.case_name,
             case_text=header.case_text,
             versions=dict(header.versions),
-            signals={name: Signal(values, header.units[name]) for name, values in self._joined().items()},
+            signals={name: Signal(each.until(len(each)), header.units[name]) for name, each in self._signals.items()},
             status=status,
             t_end_s=self._t_end_s,
             events=list(events),
@@ -258,32 +261,27 @@ class RunWriter:
             checkpoint_samples=self._state_samples,
         )
 
-    def _joined(self) -> dict[str, Array]:
-        for name, chunks in self._chunks.items():
-            if len(chunks) != 1:
-                self._chunks[name] = [np.concatenate([np.empty(0), *chunks])]
-        return {name: chunks[0] for name, chunks in self._chunks.items()}
-
     def _write(self, status: str, events: list[dict[str, Any]]) -> None:
         header = self._header
         texts = {name: getattr(header, name) for name in TEXTS if name != "status"} | {"status": status}
         records: dict[str, Any] = {"versions": dict(header.versions), "references": dict(header.references)}
         records |= {"cost": self._cost, "error": self._error, "events": events}
         texts |= {name: json.dumps(record, default=_plain) for name, record in records.items()}
-        content = io.BytesIO()
-        with h5py.File(content, "w", userblock_size=USER_BLOCK) as file:
+        with replaced(self.path) as content, h5py.File(content, "w", userblock_size=USER_BLOCK) as file:
             for name, text in texts.items():
                 file.create_dataset(name, data=text)
             file.attrs["t_end_s"] = self._t_end_s
-            signals = file.create_group("signals", track_order=True)
-            for name, values in self._joined().items():
-                signals.create_dataset(name, data=values).attrs["unit"] = header.units[name]
+            group = file.create_group("signals", track_order=True)
+            for name, signal in self._signals.items():
+                column = group.create_dataset(name, shape=(len(signal),), dtype=np.float64)
+                column.attrs["unit"] = header.units[name]
+                for first, last in pieces(0, len(signal)):
+                    column[first:last] = signal[first:last]
             if self._state is not None:
                 group = file.create_group("checkpoint")
                 group.attrs["samples"] = self._state_samples
                 for name, state in self._state.items():
                     group.create_dataset(name, data=state)
-        write_whole(self.path, content.getbuffer())
 
 
 def _plain(value: Any) -> Any:

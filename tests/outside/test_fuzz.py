@@ -25,7 +25,7 @@ from frbcli.case.reading.shipped import find_shipped, shipped_names
 from frbcli.case.schema import json_schema
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.files.container import USER_BLOCK, seal
+from frbcli.results.files.container import seal
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
@@ -244,8 +244,8 @@ def resealed(whole: bytes, path: Path, change: Callable[[h5py.File], None]) -> N
     content = io.BytesIO(whole)
     with h5py.File(content, "r+") as file:
         change(file)
-    view = content.getbuffer()
-    path.write_bytes(seal(view) + bytes(view[USER_BLOCK:]))
+    seal(content)
+    path.write_bytes(content.getvalue())
 
 
 def test_a_run_file_with_wrong_parts_is_read_or_refused(whole_run: bytes, tmp_path: Path) -> None:

@@ -18,7 +18,8 @@ import pytest
 from paths import ROOT
 
 from frbcli.errors import InputError, RunFileError
-from frbcli.results.files.container import USER_BLOCK, write_whole
+from frbcli.results import growing
+from frbcli.results.files.container import USER_BLOCK, seal
 from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 
 HEADER = Header(
@@ -51,7 +52,8 @@ def run_path(tmp_path: Path) -> Path:
 
 def reseal(path: Path, content: io.BytesIO) -> None:
     """Put changed HDF5 content back with a valid checksum, as a faulty program would."""
-    write_whole(path, content.getbuffer())
+    seal(content)
+    path.write_bytes(content.getvalue())
 
 
 def test_a_run_comes_back_as_it_was_written(run_path: Path) -> None:
@@ -299,11 +301,11 @@ def test_a_text_that_cannot_be_found_is_refused_at_once(run_path: Path) -> None:
         broken = bytearray(content)
         for at, byte in change.items():
             broken[heap + at] = byte
-        write_whole(run_path, memoryview(broken))
+        reseal(run_path, io.BytesIO(broken))
         with pytest.raises(RunFileError, match="not a complete run"):
             read_run(run_path)
     crowded = bytes(content) + b"GCOL\x01\0\0\0" * 20_000
-    write_whole(run_path, memoryview(crowded))
+    reseal(run_path, io.BytesIO(crowded))
     with pytest.raises(RunFileError, match="texts"):
         read_run(run_path)
 
@@ -318,3 +320,37 @@ def test_a_file_of_holes_is_refused_for_its_size(run_path: Path) -> None:
     with pytest.raises(RunFileError, match="larger than 8 GiB"):
         read_run(run_path)
     assert time.process_time() - began < 1.0
+
+
+def test_a_run_that_is_too_long_for_memory_is_the_same(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(growing, "IN_MEMORY", 100)
+    path = tmp_path / "run.h5"
+    writer = RunWriter(path, HEADER)
+    for first in range(0, 40, 8):
+        writer.append(chunk(first, first + 8))
+    assert all(signal.bytes == 0 for signal in writer._signals.values())
+    early = writer.so_far()
+    writer.checkpoint({"q": np.ones(2)}, {"cpu_s": 1.0}, {}, t=0.04)
+    writer.append(chunk(40, 43))
+    resumed = RunWriter.resume(path)
+    resumed.append(chunk(40, 80))
+    run = resumed.finish("finished", {"cpu_s": 2.0}, {}, [EVENT])
+    for name, values in chunk(0, 80).items():
+        np.testing.assert_array_equal(run[name], values)
+        np.testing.assert_array_equal(read_run(path)[name], values)
+        np.testing.assert_array_equal(run.read(name, 36, 44), values[36:44])
+        np.testing.assert_array_equal(early[name], values[:40])
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run.h5"]
+
+
+def test_a_signal_for_which_the_disk_has_no_room_stays_in_memory(tmp_path: Path) -> None:
+    signal = growing.GrowingSignal()
+    signal.append(np.arange(3.0))
+    signal.move(tmp_path / "nowhere")
+    signal.append(np.arange(3.0, 5.0))
+    np.testing.assert_array_equal(signal[1:5], np.arange(1.0, 5.0))
+    signal.move(tmp_path)
+    assert signal.bytes == 0
+    signal.append(np.arange(5.0, 7.0))
+    np.testing.assert_array_equal(signal[:], np.arange(7.0))
+    np.testing.assert_array_equal(signal[6:2], np.empty(0))

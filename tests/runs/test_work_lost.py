@@ -22,7 +22,7 @@ from frbcli.bearing_tests import tested_film
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
-from frbcli.results.files.container import USER_BLOCK, seal
+from frbcli.results.files.container import seal
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
 from frbcli.studies import accuracy as ladder
@@ -266,8 +266,8 @@ def forged(path: Path, name: str, change: Any) -> None:
         own = file["checkpoint"][name][...]
         del file["checkpoint"][name]
         file["checkpoint"][name] = change(own)
-    view = content.getbuffer()
-    path.write_bytes(seal(view) + bytes(view[USER_BLOCK:]))
+    seal(content)
+    path.write_bytes(content.getvalue())
 
 
 @pytest.fixture(scope="module")

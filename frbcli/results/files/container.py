@@ -14,9 +14,11 @@ import os
 import re
 import struct
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
 from io import BufferedReader
 from pathlib import Path
+from typing import BinaryIO
 
 from frbcli.errors import Fault, RunFileError
 from frbcli.results.files.write import RUN, RUN_BEGINS, written, wrong_place
@@ -41,22 +43,29 @@ def refuse(path: Path, problem: str, remedy: str = "") -> RunFileError:
     return RunFileError(f"run file {path}", (Fault(key="file", value="", line=None, problem=problem, remedy=remedy),))
 
 
-def seal(content: memoryview) -> bytes:
-    """The user block, (512,) bytes, for `content`: a whole HDF5 file that was made with an empty user block."""
-    body = content[USER_BLOCK:]
-    return _user_block(len(body), zlib.crc32(body))
+def seal(content: BinaryIO) -> None:
+    """Give a whole HDF5 file, open for reading and writing, that was made with an empty user block the user block of a
+    run file."""
+    content.seek(USER_BLOCK)
+    length, checksum = 0, 0
+    while piece := content.read(PIECE):
+        length, checksum = length + len(piece), zlib.crc32(piece, checksum)
+    content.seek(0)
+    content.write(_user_block(length, checksum))
 
 
-def write_whole(path: Path, content: memoryview) -> None:
-    """Replace `path` by `content` in one step: a reader of `path` finds either the complete old or new file.
+@contextmanager
+def replaced(path: Path) -> Iterator[BinaryIO]:
+    """A file for an HDF5 file with an empty user block, which becomes the run file `path` in one step when the block
+    ends: a reader of `path` finds either the complete old or new file.
 
     Raises InputError if the disk or the directory does not take it.
     """
-    if len(content) > LARGEST:
-        raise refuse(path, f"would be larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step.")
-    with written(path, RUN, REMEDY) as part, part.open("wb") as file:
-        file.write(seal(content))
-        file.write(content[USER_BLOCK:])
+    with written(path, RUN, REMEDY) as part, part.open("w+b") as content:
+        yield content
+        if content.seek(0, os.SEEK_END) > LARGEST:
+            raise refuse(path, f"would be larger than {LARGEST // 1024**3} GiB.", "Lengthen output.step.")
+        seal(content)
 
 
 def open_whole(path: Path) -> BufferedReader:
