@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from helpers.screen import seen
 
-from frbcli.cli.common import PIPE_WIDTH, Terminal
+from frbcli.cli.common import Terminal
 from frbcli.cli.main import run
 
 WRONG = ("check", "jeffcott", "--set", "foo.bar=2", "--set", "oil.viscosity=abc")
@@ -26,34 +26,6 @@ def test_the_components_of_a_vector_stay_in_one_table(before: int, capsys: pytes
     assert sorted({name for head in heads for name in head}) == sorted(names)
 
 
-def test_columns_that_no_table_holds_together_are_split(capsys: pytest.CaptureFixture[str]) -> None:
-    names = ("film", *(f"entry-of-a-matrix-{k}" for k in range(6)))
-    Terminal().table("", names, [("inner", *["1"] * 6)], (1, 6))
-    printed = lines(capsys)
-    assert max(map(len, printed)) <= PIPE_WIDTH
-    assert {word for line in printed for word in line.split()} >= set(names)
-
-
-def test_sentences_get_the_room_that_short_values_do_not_need(capsys: pytest.CaptureFixture[str]) -> None:
-    """A plan: beside a value of two lines a reason has five; where the value has one, the reason has eight."""
-    value, reason = "table over eccentricity and direction", "the force turns with the line of centres of the gap " * 3
-    Terminal().table("", ("choice", "value", "reason"), [("expected cost", value, reason), ("film", "short", "short")])
-    printed = lines(capsys)
-    row = printed[printed.index(next(line for line in printed if line.startswith("  expected cost"))) :]
-    row = row[: row.index(next(line for line in row if line.startswith("  film")))]
-    assert max(map(len, printed)) <= PIPE_WIDTH
-    assert len(row) <= 5
-
-
-def test_heads_are_broken_before_cells(capsys: pytest.CaptureFixture[str]) -> None:
-    names = ("film", "a head of several words", "second", "third", "fourth")
-    Terminal().table("", names, [("compressor inner", *["12.3456789"] * 4)] * 2)
-    printed = lines(capsys)
-    assert max(map(len, printed)) <= PIPE_WIDTH
-    assert sum("compressor inner" in line for line in printed) == 2
-    assert not any("a head of several words" in line for line in printed)
-
-
 def test_a_table_is_its_title_its_heads_a_line_and_its_rows(capsys: pytest.CaptureFixture[str]) -> None:
     """Heads that are broken stand on the line; all rows are as wide as the table. In a pipe nothing is bold."""
     long = "stiffness " * 9
@@ -64,12 +36,6 @@ def test_a_table_is_its_title_its_heads_a_line_and_its_rows(capsys: pytest.Captu
     assert first.split() + second.split() == [*["stiffness"] * 6, "a", *["stiffness"] * 3]
     assert line.strip() == "─" * (len(line) - 2)
     assert (row.split(), below.split()) == (["1", "xxxx", "y"], ["2"])
-
-
-def test_tables_fit_a_terminal() -> None:
-    shown = seen(("check", "jeffcott"), environment={"COLUMNS": "80"})
-    assert shown.code == 0
-    assert max(map(len, shown.text.splitlines())) <= 80
 
 
 def test_errors_fit_the_screen_without_a_word_cut(capsys: pytest.CaptureFixture[str]) -> None:

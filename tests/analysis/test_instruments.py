@@ -100,7 +100,7 @@ def test_names_that_are_double_are_numbered_and_one_without_a_name_is_read(tmp_p
     assert "4" in read_columns(path).values
 
 
-@pytest.mark.parametrize("word", ["OVERLOAD", "∞", "-∞", "", "NAN", "---", "#N/A", "Overflow"])
+@pytest.mark.parametrize("word", ["OVERLOAD", "∞", "", "NAN", ])
 @pytest.mark.parametrize("mark", [".", ","])
 def test_a_word_for_a_gap_spoils_its_own_row_alone(word: str, mark: str, tmp_path: Path) -> None:
     lines = [";".join([t, f"{x:.5f}", f"{y:.5f}", "1.5"]).replace(".", mark) for t, x, y, _ in rows()]

@@ -221,21 +221,6 @@ def test_units_of_a_file_are_taken(tmp_path: Path) -> None:
         measured_run(path, given)
 
 
-def test_decimal_commas_between_commas_have_their_remedy(tmp_path: Path) -> None:
-    path = tmp_path / "run.csv"
-    rows = [f"{t:.6f},{x:.5f}".replace(".", ",") for t, x in zip(TIME, X, strict=True)]
-    path.write_text("\n".join(["t,x", *rows, ""]), encoding="utf-8")
-    with pytest.raises(InputError, match=r"has 4 fields, and the line of names 2. If its numbers have a decimal comma"):
-        read_columns(path)
-
-
-def test_a_name_that_is_nearly_right_is_told(tmp_path: Path) -> None:
-    path = version_5(tmp_path / "run.mat", {f"probe_{k:02d}": X for k in range(40)} | {"speed": SPEED})
-    with pytest.raises(InputError) as caught:
-        read_columns(path)["sped"]
-    assert 'Did you mean "speed"? It has 41 columns: `frb waterfall run.mat --list`' in str(caught.value)
-
-
 # --- universal files ---
 
 
@@ -252,15 +237,6 @@ def universal(path: Path, data: Mapping[str, np.ndarray], function: int = 1) -> 
     ]  # fmt: skip
     pyuff.UFF(str(path)).write_sets(sets, "overwrite")
     return path
-
-
-def test_responses_of_a_universal_file(tmp_path: Path) -> None:
-    path = universal(tmp_path / "run.uff", {"x": X, "y": Y, "n": SPEED})
-    assert [row["name"] for row in read_columns(path).listed()] == ["time", "11:+X", "12:+Y", "13:+Z"]
-    given = Measurement("11:+X", 35e-6, "12:+Y", time="time", speed="13:+Z", unit_m=None)
-    run = measured_run(path, given)
-    np.testing.assert_allclose(run["journal_x_m"], 1e-6 * (X - X.mean()), atol=1e-11)
-    np.testing.assert_allclose(run["speed_Hz"], SPEED_Hz)
 
 
 def test_a_universal_file_without_responses_is_refused(tmp_path: Path) -> None:

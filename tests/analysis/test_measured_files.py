@@ -78,16 +78,6 @@ def test_a_spreadsheet_in_utf_16(tmp_path: Path) -> None:
     holds(written(tmp_path / "sheet.txt", "t\tx\ty\tn", rows, "\n", "utf-16"), GIVEN)
 
 
-@pytest.mark.parametrize("trailing", ["", ","])
-def test_an_oscilloscope_with_settings_above_its_names(trailing: str, tmp_path: Path) -> None:
-    """8 mV/um: 1 V is 125 um. The trigger is in the middle, the times begin below zero."""
-    head = "Model,MSO54\nFirmware Version,1.28.5\n\nPoint Format,Y,\nHorizontal Units,s,\nSample Interval,2.5e-04,\n"
-    head += f"Record Length,{COUNT},\n,,\nLabels,,\nTIME,CH1,CH2"
-    rows = [f"{t - 0.25:.6e},{x / 125:.8f},{y / 125:.8f}{trailing}" for t, x, y in zip(TIME, X, Y, strict=True)]
-    path = written(tmp_path / "scope.csv", head, rows, "\n")
-    holds(path, Measurement("CH1", 35e-6, "CH2", time="TIME", speed_Hz=SPEED_Hz, unit_m=125e-6))
-
-
 def test_an_oscilloscope_with_numbers_as_names_and_units_below(tmp_path: Path) -> None:
     rows = [f"{t - 0.25:+.9E},{x / 125:+.8E},{y / 125:+.8E}" for t, x, y in zip(TIME, X, Y, strict=True)]
     path = written(tmp_path / "scope.csv", "x-axis,1,2\nsecond,Volt,Volt", rows, "\n")
@@ -106,11 +96,6 @@ def test_an_oscilloscope_that_writes_settings_beside_its_samples(tmp_path: Path)
 def test_a_table_in_blanks_with_comments(tmp_path: Path) -> None:
     rows = [f"  {t:.6f}   {x:9.5f} {y:9.5f}  {SPEED_Hz}" for t, x, y in zip(TIME, X, Y, strict=True)]
     holds(written(tmp_path / "table.txt", "# rig 3\n  t  x y   n", [*rows[:9], "# paused", *rows[9:]], "\n"), GIVEN)
-
-
-def test_quoted_names_and_numbers(tmp_path: Path) -> None:
-    rows = [f'"{t:.6f}","{x:.5f}","{y:.5f}","{SPEED_Hz}"' for t, x, y in zip(TIME, X, Y, strict=True)]
-    holds(written(tmp_path / "table.csv", '"t","x","y","n"', rows, "\n"), GIVEN)
 
 
 def plain_rows() -> list[str]:
@@ -166,12 +151,6 @@ def test_names_that_differ_by_a_blank_are_not_taken_for_each_other(names: str, t
 )
 def test_a_table_that_is_none_is_refused(head: str, rows: list[str], problem: str, tmp_path: Path) -> None:
     assert problem in said(written(tmp_path / "table.csv", head, rows, "\n"))
-
-
-def test_a_binary_file_is_no_table(tmp_path: Path) -> None:
-    path = tmp_path / "table.csv"
-    path.write_bytes(np.random.default_rng(0).bytes(100_000))
-    assert "no text" in said(path)
 
 
 def test_a_gap_in_the_times_is_refused_and_no_vibration_is_seen(tmp_path: Path) -> None:
@@ -272,12 +251,6 @@ def test_a_damaged_recording_is_refused(content: bytes, problem: str, tmp_path: 
     assert problem in said(path, IN_WAV)
 
 
-def test_a_day_at_one_sample_per_second_is_refused_at_once(tmp_path: Path) -> None:
-    path = tmp_path / "run.wav"
-    path.write_bytes(wav(np.tile(MOTION, (50, 1)), 16, rate=1))
-    assert "too few" in said(path, IN_WAV)
-
-
 # --- MAT ---
 
 
@@ -300,27 +273,11 @@ def mat(path: Path, **variables: np.ndarray) -> Path:
     return path
 
 
-def test_rows_as_vectors_beside_settings(tmp_path: Path) -> None:
-    path = mat(tmp_path / "run.mat", fs=np.array([RATE_Hz]), t=TIME, x=X, y=Y, n=np.full(COUNT, SPEED_Hz))
-    holds(path, GIVEN, 1e-9)
-    probes = mat(tmp_path / "two.mat", probes=np.stack([X, Y], axis=1), n=np.full((COUNT, 1), SPEED_Hz))
-    holds(probes, Measurement("probes.1", 35e-6, "probes.2", rate=RATE_Hz, speed="n", unit_m=1e-6), 1e-9)
-
-
 def test_whole_numbers_in_a_matrix(tmp_path: Path) -> None:
     counts = np.round(np.stack([X, Y], axis=1) / 5e-4).astype(np.int16)
     savemat(tmp_path / "run.mat", {"adc": counts, "title": "rig 3", "rig": {"serial": 3.0}})
     given = Measurement("adc.1", 35e-6, "adc.2", rate=RATE_Hz, speed_Hz=SPEED_Hz, unit_m=5e-10)
     holds(tmp_path / "run.mat", given)
-
-
-def test_an_imaginary_part_is_not_dropped(tmp_path: Path) -> None:
-    path = tmp_path / "run.mat"
-    head = b"MATLAB 5.0 MAT-file, Platform: GLNXA64".ljust(124) + struct.pack("<H", 0x0100) + b"IM"
-    path.write_bytes(head + matrix("x", X[:, None], Y[:, None]) + matrix("pair", np.ones((9, 2)), np.ones((9, 2))))
-    given = Measurement("x", 35e-6, rate=RATE_Hz, speed_Hz=SPEED_Hz, unit_m=1e-6)
-    assert '"x" holds complex numbers' in said(path, given)
-    assert '"pair" holds complex numbers' in said(path, Measurement("pair.2", 35e-6, rate=1e4, speed_Hz=SPEED_Hz))
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 from synthetic_run import as_run
 
-import frbcli
 from frbcli.analysis import signals
 from frbcli.analysis.events import find_events
-from frbcli.analysis.orders.order_tracking import OrderTrack, order_track, order_tracks
+from frbcli.analysis.orders.order_tracking import order_track, order_tracks
 from frbcli.analysis.signals import SignalOf
 from frbcli.analysis.spectrum import waterfall
 from frbcli.errors import InputError
@@ -145,11 +144,6 @@ def test_memory_does_not_grow_with_the_samples(look: str) -> None:
         assert tracemalloc.get_traced_memory()[1] < 40e6
     finally:
         tracemalloc.stop()
-
-
-def test_it_is_public() -> None:
-    assert frbcli.order_track is order_track
-    assert isinstance(order_track(ramp(300.0, 1.0), 1.0), OrderTrack)
 
 
 @pytest.mark.parametrize(

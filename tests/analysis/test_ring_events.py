@@ -77,7 +77,7 @@ def test_three_whirls_of_a_turbocharger_have_their_names() -> None:
     assert named["onset", "Sub 3"].t_s == pytest.approx(2.5, abs=0.05)
 
 
-@pytest.mark.parametrize("faster", [1.0, 4.0, 16.0])
+@pytest.mark.parametrize("faster", [1.0, 16.0])
 def test_whirls_are_found_in_a_run_of_any_length(faster: float) -> None:
     """All speeds and frequencies so many times as high: r T^2 is the same, and so are the events."""
     slow = ring_run(RingWhirl("inner", 0.5, 2.0, 150.0), RingWhirl("outer", 2.3, 9.0, 1e3))

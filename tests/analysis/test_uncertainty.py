@@ -18,7 +18,6 @@ from frbcli.analysis.uncertainty import (
     FAINT,
     NEAR,
     NEAR_REVOLUTIONS,
-    PEAK,
     SAFETY,
     SAFETY_OF_MEANS,
     SMALLER,
@@ -42,20 +41,6 @@ def event(t_s: float, kind: str = "onset", frequency_Hz: float = 90.0, **more: A
     speed = RAMP * t_s
     return {"kind": kind, "film": None, "t_s": t_s, "speed_Hz": speed, "frequency_Hz": frequency_Hz,
             "frequency_ratio": frequency_Hz / speed, "point": "journal", "amplitude": 0.8, **more}  # fmt: skip
-
-
-def test_an_event_is_as_uncertain_as_both_runs_differ(run: Run) -> None:
-    found = with_uncertainties(run, [event(6.0)], [event(6.1, frequency_Hz=92.0, amplitude=0.78)])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(SAFETY * 3.0)
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(SAFETY * 2.0)
-    assert found["amplitude_uncertainty"] == pytest.approx(SAFETY * 0.02)
-    assert (found["certain"], found["reason"]) == (True, None)
-
-
-def test_a_whirl_that_begins_at_another_speed_begins_with_another_frequency(run: Run) -> None:
-    """Equal frequencies of two whirls that begin 3 Hz apart: the frequency is half the speed."""
-    found = with_uncertainties(run, [event(6.0)], [event(6.1)])[0]
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(0.5 * SAFETY * 3.0)
 
 
 def test_what_agrees_by_chance_is_as_uncertain_as_the_other_whirls(run: Run) -> None:
@@ -95,24 +80,6 @@ def test_a_whirl_that_grows_out_of_the_error_of_the_run_is_later_with_a_smaller_
     assert grown["speed_uncertainty_Hz"] == pytest.approx(later, rel=0.1)
     assert grown["frequency_uncertainty_Hz"] == pytest.approx(onset["frequency_ratio"] * later, rel=0.1)
     assert with_uncertainties(run, [onset], [onset])[0]["speed_uncertainty_Hz"] < 0.1 * later
-
-
-def test_equal_runs_leave_the_resolution(run: Run) -> None:
-    """An eighth of a revolution at 180 Hz in a ramp of 30 Hz/s; a hundredth of a line of 16 revolutions. Beside weaker
-    peaks two frequencies that are not equal are off alike, but for a tenth of that."""
-    line = 180.0 / (100 * 16)
-    near = with_uncertainties(run, [event(6.0)], [event(6.0, frequency_Hz=90.0 + 1e-6)])[0]
-    assert near["frequency_uncertainty_Hz"] == pytest.approx(PEAK * line)
-    found = with_uncertainties(run, [event(6.0)], [event(6.0)])[0]
-    assert found["speed_uncertainty_Hz"] == pytest.approx(RAMP / (8 * 180.0), rel=1e-6)
-    assert found["frequency_uncertainty_Hz"] == pytest.approx(line)
-    critical = with_uncertainties(run, [event(6.0, "critical-speed", 180.0)], [event(6.0, "critical-speed", 180.0)])[0]
-    assert critical["frequency_uncertainty_Hz"] == critical["speed_uncertainty_Hz"]
-
-
-def test_an_amplitude_is_no_more_certain_than_the_eccentricities(run: Run) -> None:
-    found = with_uncertainties(run, [event(6.0)], [event(6.0)], amplitude=3e-3)[0]
-    assert found["amplitude_uncertainty"] == 3e-3
 
 
 def test_an_event_of_a_ring_is_resolved_by_its_windows(run: Run) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from frbcli import load_case, rotation, whirl
+from frbcli import load_case, rotation
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import ROTATION
@@ -49,16 +49,6 @@ def test_a_film_has_its_own_model_unless_another_one_is_asked_for() -> None:
     case = load_case("floating-ring", own)
     assert [each.cavitation for each in rotation(case).results] == ["reynolds"]
     assert [each.cavitation for each in rotation(case, ["half-sommerfeld"]).results] == ["half-sommerfeld"]
-
-
-def test_a_whirl_is_of_the_film_that_is_named() -> None:
-    settings = ["motion.frequency=10 Hz", "motion.periods=1", "accuracy.mesh=[4, 24]"]
-    found = whirl(load_case("floating-ring", [MOTION.format("outer"), *settings]), ["half-sommerfeld"])
-    alone = whirl(load_case("bearing", [ALONE, OUTER, *OIL, *settings]), ["half-sommerfeld"])
-    for one, other in zip(found.results, alone.results, strict=True):
-        assert one.history is not None
-        assert other.history is not None
-        assert (one.history.force == other.history.force).all()
 
 
 @pytest.mark.parametrize(

@@ -63,18 +63,6 @@ def test_wide_gaps_have_the_film_alone() -> None:
     assert not any(each.choice == "contact" for each in smooth.plan.decisions)
 
 
-def test_a_loaded_journal_rests_where_the_sheet_has_it() -> None:
-    settings = *ROUGH, "film.cavitation=half-sommerfeld"
-    (result,) = rotation(case("load='40 N', speed='0.03 Hz'", *settings)).results
-    (state,) = bearing_sheet(case("load='40 N', speed='0.03 Hz'", *settings), [0.03]).points
-    assert state.mixed is not None
-    assert state.mixed.share > 0.2
-    assert math.hypot(*result.displacement) == pytest.approx(state.eccentricity, rel=1e-6)
-    np.testing.assert_allclose(result.displacement, state.displacement, rtol=1e-4)
-    assert result.loads is not None
-    np.testing.assert_allclose(result.loads.force, [0.0, 40.0], atol=1e-3)
-
-
 @pytest.mark.parametrize("flow", [(), ("contact.flow_factors=true",)], ids=["smooth flow", "rough flow"])
 def test_stribeck_curve_is_that_of_the_sheet(flow: tuple[str, ...]) -> None:
     """From boundary friction over a least one to the film alone, whose journals do not know of the roughness."""

@@ -82,11 +82,6 @@ def test_source_text_gives_the_case_again(text: str) -> None:
     assert again.source_text == case.source_text
 
 
-def test_case_is_frozen() -> None:
-    with pytest.raises(ValueError, match="frozen"):
-        load_case_text(SMALL).oil.density = 1.0
-
-
 # ---------------------------------------------------------------------------------------------- shipped cases
 @pytest.mark.parametrize("name", shipped_names())
 def test_shipped_cases_load_and_have_titles(name: str) -> None:

@@ -22,7 +22,6 @@ from frbcli.case.rotor import RigidRotor
 from frbcli.case.schema import Case
 from frbcli.case.supplies.circumferential_groove import CircumferentialGroove
 from frbcli.errors import Fault, InputError
-from frbcli.results.store import read_run
 from frbcli.runs.run import runup
 from frbcli.studies.sweep.sweep import Workers
 
@@ -169,18 +168,6 @@ def test_no_record_is_changed_in_another_way(record: type[Model]) -> None:
                 change()
 
 
-def test_the_records_of_a_case_are_all_found() -> None:
-    assert {"Case", "Oil", "SingleFilmBearing", "RingFilm", "TwoPhase", "Accuracy"} <= {r.__name__ for r in records()}
-
-
-def test_what_model_copy_did_not_change_is_changed() -> None:
-    case = load_case("jeffcott")
-    with pytest.raises(InputError, match=r"Oil\.viscosity"):
-        case.oil.model_copy(update={"viscosity": 0.05})
-    assert frbcli.make_plan(case) is not None
-    assert case.with_settings("oil.viscosity = 50 mPa*s").viscosity(case.bearings[0]) == 0.05  # type: ignore[arg-type]
-
-
 # --- from a dict ---
 
 
@@ -232,17 +219,6 @@ def test_a_run_of_another_made_case_is_not_taken_for_this_one(tmp_path: Path) ->
     with pytest.raises(InputError, match="another case"):
         runup(other, path, resume=True)
     assert runup(made(), path, resume=True).cost == run.cost
-
-
-def test_a_changed_case_records_its_own_text_with_its_run(tmp_path: Path) -> None:
-    case = load_case("jeffcott", ["film.theory=short", "speed.to=60 Hz", "speed.duration=0.05 s"])
-    path = tmp_path / "run.h5"
-    runup(case, path)
-    changed = case.with_settings({"oil.viscosity": 0.013})
-    with pytest.raises(InputError, match="another case"):
-        runup(changed, path, resume=True)
-    runup(changed, path, force=True)
-    assert load_case_text(read_run(path).case_text) == changed
 
 
 def test_a_run_is_that_of_a_case_however_it_is_written(tmp_path: Path) -> None:

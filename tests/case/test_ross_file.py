@@ -130,42 +130,6 @@ def test_json_is_the_same_and_settings_reach_the_file_name(tmp_path: Path) -> No
     assert load_case_text(CASE, ["rotor.file=other.json"], folder=tmp_path, name="case") == case
 
 
-def test_same_rotor_as_written_by_hand(tmp_path: Path) -> None:
-    data = {key: value for key, value in rotor_file().items() if key != "ShaftElement_ShaftElement 3"}
-    data["DiskElement_Disk 1"]["n"] = 3
-    sections = """
-[[shaft]]
-length = "100 mm"
-diameter = "20 mm"
-density = 7810
-youngs_modulus = "211 GPa"
-poisson_ratio = 0.29926108
-[[shaft]]
-length = "50 mm"
-diameter = "20 mm"
-inner_diameter = "10 mm"
-density = 7810
-youngs_modulus = "211 GPa"
-poisson_ratio = 0.29926108
-[[disk]]
-position = "150 mm"
-mass = "2 kg"
-polar_inertia = 1.5e-3
-diametral_inertia = 1e-3
-[[disk]]
-position = "0 mm"
-mass = "1.1 kg"
-polar_inertia = 1.5e-3
-diametral_inertia = 1e-3
-[[bearing]]
-"""
-    begin, end = CASE.index("file"), CASE.index("[[bearing]]")
-    text = CASE[:begin] + sections.removesuffix("[[bearing]]\n") + CASE[end:]
-    found = [natural_modes(case, 1e6, [200.0]) for case in (case_with(data, tmp_path), load_case_text(text))]
-    ours, theirs = ([mode.frequency_Hz for mode in modes.points[0].modes] for modes in found)
-    assert ours == pytest.approx(theirs, rel=1e-7)
-
-
 def test_published_frequencies_of_the_example_rotor_of_ross(tmp_path: Path) -> None:
     """Its documentation: 91.79655318 and 96.28899977 rad/s at rest, in planes with bearings of 0.8e6 and 1e6 N/m."""
     inertias = {"m": 32.58972765, "Id": 0.17808928, "Ip": 0.32956362}

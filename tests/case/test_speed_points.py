@@ -96,13 +96,11 @@ FAULTS: dict[str, tuple[dict[str, Any], str, str]] = {
     "falling": ({"points": [["0 s", "0 Hz"], ["2 s", "9 Hz"], ["1 s", "9 Hz"]]}, "speed.points", "row 3"),
     "negative": ({"points": [["0 s", "5 Hz"], ["2 s", "-9 Hz"]]}, "speed.points", "-9 Hz in row 2"),
     "still": ({"points": [["0 s", "0 Hz"], ["2 s", "0 Hz"]]}, "speed.points", "no speed above 0"),
-    "one": ({"points": [["0 s", "5 Hz"]]}, "speed.points", "1 times"),
     "unit": ({"points": [["0 s", "5 Hz"], ["2 s", "9 N"]]}, "speed.points", "has a value that"),
     "shape": ({"points": ["0 s", "5 Hz"]}, "speed.points", "no list"),
     "beside": ({"points": POINTS, "to": "90 Hz"}, "speed.to", "with points"),
     "file of no name": ({"file": 5}, "speed.file", "no list"),
     "times alone": ({"times": ["0 s", "1 s"]}, "speed.times", "as many times as speeds"),
-    "no file": ({"file": "nowhere.csv"}, "speed.file", "does not exist"),
 }
 
 

@@ -13,7 +13,7 @@ from frbcli import load_case
 from frbcli.case.bearing import SingleFilmBearing
 from frbcli.case.schema import json_schema
 from frbcli.case.supplies.supply import OilSupply, Outline
-from frbcli.case.supplies.table import SUPPLIES, kind_of, supply_named
+from frbcli.case.supplies.table import SUPPLIES, kind_of
 from frbcli.scene.films import film_places, is_plain
 from frbcli.scene.section import film_section
 
@@ -75,12 +75,6 @@ def test_half_of_the_width_is_solved_where_all_openings_lie_in_its_middle(
     found = Rows().openings(12.5e-3, 20e-3, "free-to-air", AMBIENT)
     assert (found.copies, found.far) == (copies, "symmetry" if copies == 2 else "free-to-air")
     assert tuple(hole.axial for hole in found.holes) == places
-
-
-def test_kinds_are_rows_of_their_own_and_no_other_word_is_one() -> None:
-    assert len({kind_of(row) for row in SUPPLIES}) == len(SUPPLIES)
-    assert [supply_named(kind_of(row)) for row in SUPPLIES] == list(SUPPLIES)
-    assert supply_named("no such supply") is OilSupply
 
 
 def test_nobody_asks_for_the_kind_of_a_supply() -> None:

@@ -15,7 +15,7 @@ import click
 import pytest
 
 from frbcli.case.reading.load import load_case
-from frbcli.case.reading.shipped import find_shipped, shipped_names
+from frbcli.case.reading.shipped import find_shipped
 from frbcli.case.schema import Case
 from frbcli.cli import main as cli
 from frbcli.cli.common import Terminal
@@ -47,16 +47,6 @@ def test_every_command_of_the_table_has_help(name: str, capsys: pytest.CaptureFi
     assert f"frb {name}" in shown
     assert "--json" in shown
     assert max(map(len, shown.splitlines())) <= 80
-
-
-@pytest.mark.usefixtures("_planned")
-def test_check_shows_values_and_plan_to_people(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["check", "jeffcott", "--all", "--set", "bearing.clearance=40 um"]) == 0
-    captured = capsys.readouterr()
-    assert captured.err == ""
-    values = ("[bearing]", "clearance", "4e-05 m", "40 um", "[width] of jeffcott")
-    for expected in (*values, "expected error", "of CPU time"):
-        assert expected in captured.out
 
 
 def test_check_refuses_a_table_that_ends_before_the_run(capsys: pytest.CaptureFixture[str]) -> None:
@@ -155,47 +145,12 @@ def test_bugs_are_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
         run(["check"])
 
 
-def test_command_s_own_exit_code_is_that_of_frb(monkeypatch: pytest.MonkeyPatch) -> None:
-    @click.command()
-    def command() -> int:
-        return 3
-
-    module = ModuleType("returning")
-    module.command = command  # type: ignore[attr-defined]
-    monkeypatch.setitem(sys.modules, "returning", module)
-    monkeypatch.setitem(cli.COMMANDS, "check", ("returning", "Returns.", "frb check"))
-    assert run(["check"]) == 3
-
-
 def test_console_entry_points() -> None:
     version = subprocess.run([sys.executable, "-m", "frbcli", "--version"], capture_output=True, text=True, check=True)
     assert version.stdout.startswith("frb ")
     wrong = subprocess.run([sys.executable, "-m", "frbcli", "check", "/"], capture_output=True, text=True, check=False)
     assert wrong.returncode == 2
     assert "Traceback" not in wrong.stderr
-
-
-def test_schema_is_the_json_schema(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["schema"]) == 0
-    assert set(document(capsys)["properties"]) >= {
-        "rotor",
-        "bearing",
-        "oil",
-        "film",
-        "speed",
-        "shaft",
-        "disk",
-        "motion",
-    }
-
-
-def test_cases_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    assert run(["cases"]) == 0
-    captured = capsys.readouterr()
-    assert all(name in captured.out for name in shipped_names())
-    assert "`frb cases NAME`" in captured.err
-    assert run(["cases", "--json"]) == 0
-    assert [case["name"] for case in document(capsys)["cases"]] == list(shipped_names())
 
 
 def test_case_is_printed_and_copied(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

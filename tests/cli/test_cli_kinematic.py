@@ -69,23 +69,6 @@ def test_errors_in_the_table_refer_to_its_largest_force(capsys: pytest.CaptureFi
     assert [float(row[-1]) for row in rows] == [float(f"{error:.0e}") for error in expected]
 
 
-def test_starving_film_is_named(capsys: pytest.CaptureFixture[str]) -> None:
-    words = ("rotation", "bearing", "--cavitation", "elrod", "--no-picture")
-    found = document(capsys, *words, code=3)
-    assert found["results"][0]["status"] == "not-converged"
-    assert run(list(words)) == 3
-    assert "carries 0 N, at any eccentricity" in capsys.readouterr().out
-
-
-def test_tables_fit_a_terminal(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("COLUMNS", "80")
-    models = "half-sommerfeld,two-phase"
-    assert run(["rotation", "bearing-axial-groove", "--cavitation", models, *COARSE, "--no-picture"]) == 0
-    told = capsys.readouterr().out
-    assert max(map(len, told.splitlines())) <= 80
-    assert "half-sommerfeld" in told  # not folded
-
-
 @pytest.mark.parametrize(
     ("arguments", "key"),
     [

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 import json
 import re
-import subprocess
-import sys
 from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
-from paths import ROOT
 from scipy.io import loadmat
 from synthetic_run import CLEARANCE, UNITS, Rotor, signals
 
@@ -42,15 +39,6 @@ def run_file(made: bytes, tmp_path: Path) -> Path:
     return path
 
 
-def test_waterfall_is_put_beside_its_run(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["waterfall", str(run_file)]) == 0
-    picture = run_file.with_name("run-waterfall.png")
-    assert picture.read_bytes().startswith(PNG)
-    said = capsys.readouterr()
-    assert said.out.startswith(f"waterfall: {picture}\nwindow ")
-    assert said.err == ""
-
-
 @pytest.mark.parametrize(
     "options",
     [
@@ -64,15 +52,6 @@ def test_waterfall_takes_its_options(run_file: Path, options: list[str]) -> None
     picture = run_file.with_name("w.pdf")
     assert frb(["waterfall", str(run_file), "-o", str(picture), *options]) == 0
     assert picture.read_bytes().startswith(b"%PDF")
-
-
-def test_waterfall_tells_json_what_it_did(run_file: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["waterfall", str(run_file), "--json", "--quiet", "--window", "150 ms"]) == 0
-    said = capsys.readouterr()
-    document = json.loads(said.out)
-    assert (document["command"], document["run"], document["window_s"]) == ("waterfall", str(run_file), 0.15)
-    assert Path(document["output"]).is_file()
-    assert said.err == ""
 
 
 def test_waterfall_takes_a_window_that_fits_the_ramp_and_tells_what_a_longer_one_loses(
@@ -154,17 +133,6 @@ def test_csv_goes_to_stdout(run_file: Path, capsys: pytest.CaptureFixture[str]) 
     assert list(run_file.parent.iterdir()) == [run_file]
 
 
-def test_a_reader_that_stops_early_is_no_fault(run_file: Path) -> None:
-    words = [sys.executable, "-m", "frbcli", "export", str(run_file), "-o", "-"]
-    with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, cwd=ROOT) as process:
-        assert process.stdout is not None
-        assert process.stderr is not None
-        assert process.stdout.readline().startswith(b"time_s,")
-        process.stdout.close()
-        assert process.stderr.read() == b""
-    assert process.returncode == 141  # as a shell reports the end of other programs by SIGPIPE
-
-
 def test_mat_has_the_signals_as_columns(run_file: Path) -> None:
     assert frb(["export", str(run_file), "--format", "mat", "--quiet"]) == 0
     content = loadmat(run_file.with_suffix(".mat"))
@@ -194,20 +162,16 @@ def test_parquet_has_the_signals(run_file: Path) -> None:
         ["waterfall", "RUN", "--signal", "ring"],
         ["waterfall", "RUN", "--window", "5 s"],
         ["waterfall", "RUN", "--window", "5 kg"],
-        ["waterfall", "RUN", "--window", "nan"],
-        ["waterfall", "RUN", "--over", "frequency"],
         ["waterfall", "RUN", "-o", "picture.bmp"],
         ["waterfall", "RUN", "-o", "nowhere/picture.png"],
         ["plot", "RUN", "--from", "3 s"],
         ["plot", "RUN", "--what", "orbit", "--from", "3 s", "--to", "2 s"],
         ["plot", "RUN", "RUN", "--what", "summary"],
         ["plot", "RUN", "--what", "summary", "--from", "0.1 s"],
-        ["plot", "RUN", "--signal", "disk"],
         ["plot", "RUN", "TEXT"],
         ["plot"],
         ["export", "TEXT"],
         ["export", "RUN", "-o", "RUN"],
-        ["export", "RUN", "-o", "nowhere/run.csv"],
         ["export", "RUN", "-o", "-", "--json"],
         ["export", "RUN", "-o", "-", "--format", "mat"],
         ["export", "RUN", "--format", "xls"],

@@ -94,30 +94,15 @@ def test_quiet_json_says_json_alone(capsys: pytest.CaptureFixture[str]) -> None:
     assert said.err == ""
 
 
-def test_contact_is_exit_3_with_its_remedy(capsys: pytest.CaptureFixture[str]) -> None:
-    touching = ["--set", "contact.eccentricity=0.6", "--set", "speed.from=5 Hz", "--set", "speed.to=50 Hz"]
-    assert frb(["runup", *QUICK, *touching, "--json", "-o", "a.h5"]) == 3
-    said = capsys.readouterr()
-    found = document(said.out)
-    assert found["status"] == "contact"
-    assert 0.0 < found["t_end_s"] < 0.3
-    assert [event["kind"] for event in found["events"]] == ["contact"]
-    assert "contact.policy=elastic" in said.err
-    assert read_run("a.h5").status == "contact"
-    assert Path("a-summary.png").exists()
-
-
 @pytest.mark.parametrize(
     ("words", "reason"),
     [
         (["runup", "no-such-case"], "no-such-case"),
         (["runup", *QUICK, "--set", "rotor.mass=-1 kg"], "rotor.mass"),
-        (["runup", *QUICK, "-o", "nowhere/run.h5"], "does not exist"),
         (["runup", *QUICK, "-o", "."], "not a file"),
         (["rundown", *QUICK, "-o", "foreign.h5"], "not replaced"),
         (["rundown", *QUICK, "-o", "foreign.h5", "--resume"], "not replaced"),
         (["runup", *QUICK, "--set", "film.cavitation=elrod"], "not modelled in this version"),
-        (["runup"], "CASE"),
     ],
 )
 def test_wrong_input_is_exit_2(words: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -128,13 +113,6 @@ def test_wrong_input_is_exit_2(words: list[str], reason: str, capsys: pytest.Cap
     assert json.loads(said.out)["status"] == "input-error"
     assert os.listdir() == ["foreign.h5"]
     assert Path("foreign.h5").read_text() == "years of work"
-
-
-def test_no_resting_position_is_exit_3(capsys: pytest.CaptureFixture[str]) -> None:
-    assert frb(["runup", *QUICK, "--set", "start.position=resting", "--json"]) == 3
-    said = capsys.readouterr()
-    assert json.loads(said.out)["status"] == "not-converged"
-    assert "static equilibrium" in said.err
 
 
 # --- progress ---
@@ -158,13 +136,6 @@ def test_progress_line_says_what_matters() -> None:
     assert "  7407 rpm  " in per_minute
     for word in ("12.346/100 s", "123.5 Hz", "eps 0.679", "41.7 steps/rev", "62:05 left"):
         assert word in line
-
-
-def test_progress_says_that_it_is_the_error_s() -> None:
-    line = progress_line(Progress(3.12345, 4.123456, 299.0, 0.998, 123456, 82.3, 1.2e6, 100.0, for_error=True))
-    assert line.startswith("its error: 3.123/4.123 s")
-    assert line.endswith("1:40 left")
-    assert len(line) <= 80
 
 
 @pytest.mark.parametrize(
@@ -269,16 +240,3 @@ def test_a_killed_run_opens_and_resumes_to_the_same_numbers(whole_run: Run) -> N
     assert frb(list(words)) == 0
     assert_same(read_run(path), whole_run)
     assert os.listdir() == ["a.h5"]
-
-
-def test_without_a_terminal_a_line_now_and_then_tells_the_progress(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    words = ["runup", "jeffcott", "-o", str(tmp_path / "run.h5"), "--no-picture", "--force"]
-    assert frb(words) == 0
-    assert "steps/rev" not in capsys.readouterr().err
-    monkeypatch.setattr("frbcli.cli.progress.PRINT_EVERY_s", 0.02)
-    assert frb(words) == 0
-    assert "steps/rev" in capsys.readouterr().err
-    assert frb([*words, "--quiet"]) == 0
-    assert capsys.readouterr().err == ""

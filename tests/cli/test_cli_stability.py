@@ -58,17 +58,6 @@ def test_command_speaks_in_eighty_columns(
     assert list(tmp_path.iterdir()) == []
 
 
-def test_command_draws_where_it_is_told_and_what_is_unstable(tmp_path: Path) -> None:
-    stable, unstable = tmp_path / "stable.svg", tmp_path / "unstable.svg"
-    short = ["--quiet", "--set", "film.theory=short"]
-    assert frb(["stability", "jeffcott", "-o", str(unstable), *short]) == 0
-    assert frb(["stability", "jeffcott", "-o", str(stable), *short, "--set", "speed.to=100 Hz"]) == 0
-    vermilion = "#d55e00"
-    assert unstable.read_text().lower().count(vermilion) > stable.read_text().lower().count(vermilion)
-    assert "threshold 179.8 Hz" in unstable.read_text()
-    assert "threshold" not in stable.read_text()
-
-
 @pytest.mark.parametrize(
     "words",
     [
@@ -87,11 +76,6 @@ def test_command_refuses_what_makes_no_sense(
     assert frb(["stability", "jeffcott", "--json", *words]) == 2
     assert json.loads(capsys.readouterr().out)["status"] == "input-error"
     assert list(tmp_path.iterdir()) == []
-
-
-def test_command_ends_with_3_if_nothing_rests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
-    assert frb(["stability", "jeffcott", "--speed", "1e-4 Hz", "--no-picture", "--quiet"]) == 3
 
 
 def one_speed(case: str, speed_Hz: float) -> list[str]:

@@ -24,7 +24,6 @@ def slow(module, name):
     setattr(module, name, slower)
 """
 COMMANDS = {
-    "bearing": ("frbcli.linear.sheets.bearing", "bearing_sheet", ("jeffcott", *SHORT, "--speed", "50 Hz")),
     "response": ("frbcli.linear.critical_map", "critical_map", ("jeffcott", *SHORT, "--speed", "50 Hz", "--map")),
     "stability": ("frbcli.linear.stability", "stability", ("jeffcott", *SHORT, "--speed", "50 Hz", "--no-picture")),
     "limit-cycles": ("frbcli.cycles.limit_cycles", "limit_cycles",
@@ -35,9 +34,7 @@ COMMANDS = {
                 ("jeffcott", *SHORT, "--cavitation", "half-sommerfeld,sommerfeld", "--set", "speed.duration=10 ms",
                  "--no-picture")),
     "report": ("frbcli.report.page", "write_report", ("run.h5",)),
-    "export": ("frbcli.results.export", "export_run", ("run.h5",)),
     "waterfall": ("frbcli.plot.waterfall", "run_spectra", ("run.h5",)),
-    "thrust": ("frbcli.linear.sheets.thrust", "thrust_sheet", ("thrust", "--gap", "12 um", "--speed", "900 Hz")),
     "accuracy": ("frbcli.studies.accuracy", "accuracy", ("jeffcott", *SHORT, "--until", "10 ms")),
     "sweep": ("frbcli.studies.sweep.sweep", "sweep",
               ("jeffcott", *SHORT, "--set", "oil.viscosity=9 mPa*s,10 mPa*s", "--stability")),

@@ -17,9 +17,7 @@ HERTZ = ("--set", "speed.to=300 Hz")
 # the command, with how its text names a speed in rpm
 COMMANDS: dict[str, tuple[tuple[str, ...], str]] = {
     "stability": (("stability", "jeffcott", "--threshold", "--no-picture"), r"above 10632 rpm the rotor whirls"),
-    "response": (("response", "jeffcott", "--no-picture"), r"Peaks at 8512\(1\) rpm"),
     "bearing": (("bearing", "jeffcott", "--no-picture"), r"rpm: rotor speed"),
-    "limit-cycles": (("limit-cycles", "jeffcott", "--no-picture"), r"cycles from 10249 to \d+ rpm"),
     "runup": (("runup", "jeffcott", "--no-picture", "--set", "speed.duration=2 s", "-o", "run.h5", "--force"),
               r"speed, rpm"),
 }  # fmt: skip

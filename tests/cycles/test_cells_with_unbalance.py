@@ -105,13 +105,6 @@ def test_a_whirl_that_does_not_lock_in_says_what_a_run_does() -> None:
     assert missing.reason == "a run from the cycle whirls on with 0.156 Hz and an eccentricity of 0.600"
 
 
-def test_a_whirl_far_from_half_the_speed_is_not_run() -> None:
-    free, branch, shot = one_cycle(Carried(lambda z, _: z, held=np.zeros(1)))
-    points = branch.points[0], replace(branch.points[1], frequency_Hz=0.4 / math.pi)
-    (missing,) = whirls_of_branch(free, replace(branch, points=points), [shot], 1.0, None).missing
-    assert missing.reason == "its frequency is not near half the speed"
-
-
 @dataclass(frozen=True)
 class Decaying(Carried):
     """The same without a whirl: what is off the circle of the unbalance decays, or, without it, stays."""
@@ -148,7 +141,6 @@ def whirling(name: str, speed_Hz: float, turns: int, *settings: str) -> tuple[Sh
     return free, replace(free._near(passage.end, p, np.zeros(len(rest.x) + 2), 200))
 
 
-SLOT = 'bearing.supply={kind="axial-slots",position="0 deg",opening_angle="20 deg",length="12 mm",pressure="2 bar"}'
 POCKET = 'bearing.supply={kind="pocket",position="0 deg",opening_angle="60 deg",width="10 mm",pressure="2 bar"}'
 GROOVE = 'bearing.inner.supply={kind="circumferential-groove",pressure="2 bar"}'
 SHAKEN, CELLS = "rotor.unbalance=20 g*mm", "accuracy.mesh=[4,24]"
@@ -159,10 +151,7 @@ SHAKEN, CELLS = "rotor.unbalance=20 g*mm", "accuracy.mesh=[4,24]"
     ("case", "speed_Hz"),
     [
         (frbcli.load_case("jeffcott", [SHAKEN, CELLS, POCKET, "film.cavitation=reynolds"]), 110.0),
-        (frbcli.load_case("jeffcott", [SHAKEN, CELLS, SLOT, "film.cavitation=elrod"]), 110.0),
-        (frbcli.load_case("jeffcott", [SHAKEN, CELLS, SLOT, "film.cavitation=penalty"]), 110.0),
         (rigid_shaft(CELLS, "film.tilt=follows", "disk.0.position=12 mm"), 150.0),
-        (frbcli.load_case("floating-ring", [SHAKEN, CELLS, GROOVE, "film.cavitation=reynolds"]), 50.0),
         (
             frbcli.load_case(
                 "floating-ring", [SHAKEN, "accuracy.mesh=[5,32]", GROOVE, "film.cavitation=two-phase"]
@@ -170,7 +159,7 @@ SHAKEN, CELLS = "rotor.unbalance=20 g*mm", "accuracy.mesh=[4,24]"
             55.0,
         ),
     ],
-    ids=("pocket", "slot and oil", "slot and penalty", "tilt", "ring", "ring and oil"),
+    ids=("pocket", "tilt", "ring and oil"),
 )  # fmt: skip
 def test_synchronous_motions_of_all_films_are_what_the_time_loop_ends_in(case: Case, speed_Hz: float) -> None:
     flow, omega = period_map(case), 2.0 * math.pi * speed_Hz
@@ -185,21 +174,11 @@ def test_synchronous_motions_of_all_films_are_what_the_time_loop_ends_in(case: C
     np.testing.assert_allclose(largest(orbit), shot.eccentricity_max, atol=1e-6)
 
 
-HEAVY = (
-    "rotor.mass=30 kg",
-    "rotor.unbalance=2 g*mm",
-    'bearing.supply.pressure="2 bar"',
-    "accuracy.mesh=[4,24]",
-)  # a whirl of 0.496 of the speed, far enough from half of it for a small unbalance not to lock it in
-
-
 @pytest.mark.nightly
 @pytest.mark.parametrize(
     ("speed_Hz", "settings", "error"),
     [
         (82.0, ('bearing.supply.pressure="2 bar"', "rotor.unbalance=10 g*mm"), 1e-6),
-        # It settles slowly, after 900 turns, and enlarges as much what Newton's method leaves.
-        (171.5, ("film.cavitation=elrod", *HEAVY), 1e-4),
     ],
 )
 def test_a_whirl_that_locks_in_is_what_the_time_loop_ends_in_with_oil_that_films_keep(

@@ -7,7 +7,6 @@ followed on their own.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -26,7 +25,7 @@ from frbcli.cycles.method.courses import MachineCourse
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.follower import FoldFollower, Follower
 from frbcli.cycles.method.mesh_error import OtherMesh, hopf_error
-from frbcli.cycles.result import CycleBranch, CyclePoint, LimitCycles
+from frbcli.cycles.result import CyclePoint, LimitCycles
 from frbcli.plot.machine.limit_cycles import limit_cycles_figure
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
@@ -142,14 +141,6 @@ def test_a_fold_that_the_other_films_do_not_have_is_uncertain() -> None:
     below = [point for point in found.branches[0].points if point.speed_Hz < hopf.speed_Hz - 1e-3]
     assert all(math.isnan(point.frequency_uncertainty_Hz) for point in below)
     limit_cycles_figure(found)
-
-
-def test_a_branch_without_cycles_is_not_in_the_legend() -> None:
-    found, _ = beside(SOFT)
-    empty = CycleBranch(None, (), "No cycle was found next to the Hopf point.")
-    figure = limit_cycles_figure(replace(found, branches=(*found.branches, empty)))
-    told = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert [words for words in told if words.startswith("cycles")] == ["cycles, branch 1"]
 
 
 @pytest.mark.nightly  # 7 s; stated errors of other films: this file

@@ -73,14 +73,6 @@ def asked(found: LimitCycles, speed: float) -> CyclePoint:
     return point
 
 
-def test_coefficients_that_do_not_change_are_constant_ones() -> None:
-    given = tables((160.0, LOW), (200.0, LOW)), constant(*LOW)
-    one, other = (limit_cycles(case(text, "speed.from=183 Hz", "speed.to=185 Hz"), [184.0]) for text in given)
-    assert [p.speed_Hz for p in one.special] == pytest.approx([p.speed_Hz for p in other.special], rel=1e-9)
-    assert asked(one, 184.0).frequency_Hz == pytest.approx(asked(other, 184.0).frequency_Hz, rel=1e-9)
-    assert asked(one, 184.0).multipliers[1:3] == pytest.approx(asked(other, 184.0).multipliers[1:3], rel=1e-6)
-
-
 def test_a_cycle_is_that_of_the_machine_with_the_coefficients_of_its_speed() -> None:
     near = "speed.from=193.5 Hz", "speed.to=195 Hz"
     found = limit_cycles(case(tables((160.0, LOW), (200.0, HIGH)), *near), [194.0])

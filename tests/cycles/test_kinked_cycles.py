@@ -23,10 +23,8 @@ from frbcli.scene.gate.rule import SPEED_CYCLES
 
 REYNOLDS = ("film.cavitation=reynolds", "accuracy.mesh=[6,32]")
 POCKET = '{kind="pocket", position="90 deg", opening_angle="30 deg", width="8 mm", pressure="2 bar"}'
-SLOTS = '{kind="axial-slots", count=2, opening_angle="10 deg", length="8 mm", pressure="2 bar"}'
 OPENINGS = {
     "pocket": (f"bearing.supply={POCKET}", True),
-    "slots": (f"bearing.supply={SLOTS}", True),
     "lobes": ("bearing.lobes={count=3, preload=0.5}", False),
 }
 RANGE_Hz, ASKED_Hz = (212.0, 232.0), 222.0
@@ -51,21 +49,6 @@ def by_coefficients(speed_Hz: float, flow: PeriodMap | None = None) -> complex:
     return critical_eigenvalue(eigenvalues(system.rotor, omega, k, d))
 
 
-def test_the_state_is_that_of_the_rotor_alone() -> None:
-    assert not cells().held.any()
-    assert cells().places == ()
-
-
-def test_small_motions_at_rest_have_the_eigenvalues_of_the_coefficients() -> None:
-    omega = 2.0 * math.pi * 120.0
-    rest = settled(Shooting(cells(), omega), omega)
-    assert rest is not None
-    position = resting_position(cells().system, omega)
-    np.testing.assert_allclose(rest.displacement, position.journals / cells().clearances[0], atol=1e-6)
-    expected = by_coefficients(120.0)
-    assert abs(rest.eigenvalues[rest.whirls[0]] - expected) < 1e-3 * abs(expected)
-
-
 @pytest.mark.parametrize(("opening", "begins"), OPENINGS.values(), ids=OPENINGS)
 def test_pockets_slots_and_lobes_rest_and_begin_to_whirl_as_their_coefficients_do(opening: str, begins: bool) -> None:
     """The growth of the whirl at two speeds, between which that of pocket and slots changes its sign: a Hopf point.
@@ -82,16 +65,6 @@ def test_pockets_slots_and_lobes_rest_and_begin_to_whirl_as_their_coefficients_d
         growths.append(rest.eigenvalues[rest.whirls[0]].real)
     assert growths[0] < 0.0
     assert (growths[1] > 0.0) == begins
-
-
-@pytest.mark.nightly  # 9 s; pockets, slots and lobes below
-def test_the_hopf_point_is_the_threshold_of_the_coefficients() -> None:
-    """Disturbances of 2 % of the clearance cross cells: the growth differs by what the kinks leave."""
-    (hopf,) = diagram().of("hopf")
-    assert "on 24 x 5 of them" in diagram().notes[0]
-    threshold = brentq(lambda speed: by_coefficients(speed).real, *RANGE_Hz)
-    assert hopf.speed_Hz == pytest.approx(threshold, abs=0.25)
-    assert hopf.frequency_Hz == pytest.approx(by_coefficients(threshold).imag / (2.0 * math.pi), rel=2e-3)
 
 
 def test_the_error_of_the_hopf_point_by_the_cells_holds_the_threshold_on_twice_as_many() -> None:

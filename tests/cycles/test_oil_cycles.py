@@ -184,14 +184,6 @@ def test_whirls_at_a_given_flow_grow_as_the_linearised_film_says() -> None:
 
 
 @pytest.mark.nightly
-def test_the_cycle_of_a_flexible_rotor_is_what_the_time_loop_ends_in() -> None:
-    """The Jeffcott rotor on 64 x 6 cells at 90 Hz, beyond the slow part of the branch: after 667 periods."""
-    settings = ['bearing.supply.pressure="2 bar"', "speed.from=72 Hz", "speed.to=91 Hz", "accuracy.mesh=[6,64]"]
-    found = frbcli.limit_cycles(frbcli.load_case("jeffcott-two-phase", settings), [90.0])
-    check_time_loop_ends_in_the_cycle(found, 1000, 1e-4)
-
-
-@pytest.mark.nightly
 def test_the_cycle_of_a_floating_ring_is_what_the_time_loop_ends_in() -> None:
     """Two films and a ring whose speed follows slowly, 64 x 5 cells, at 66 Hz, before the fold of the branch: after
     300 periods. The cycle is a mean over places of the cells, whose round-off moves its frequency: by 2e-5 between two
@@ -236,15 +228,6 @@ def test_gas_is_a_part_of_the_state() -> None:
     assert np.abs(without - once).max() > 1e-2
 
 
-def test_a_period_of_bubbly_oil_at_once_is_one_of_peekens() -> None:
-    """Cycles are fixed points of it. Bubbles that last make another one."""
-    peeken = period_map(frbcli.load_case("rigid-two-phase", [*GAS, "film.cavitation=peeken"]))
-    ends = [flow.passage(thrown(flow), 3.0 / 85.0, AT_170_Hz, 600).displacements
-            for flow in (peeken, with_rates("0 s", "0 s"), with_rates("1 ms", "1 s"))]  # fmt: skip
-    np.testing.assert_allclose(ends[1], ends[0], atol=2e-4)
-    assert np.abs(ends[2] - ends[0]).max() > 5e-3
-
-
 def test_whirls_with_gas_grow_as_stability_has_it() -> None:
     """Stability linearises film, oil and gas on 96 x 12 and 48 x 6 cells."""
     omega = 2.0 * math.pi * 150.0
@@ -287,24 +270,6 @@ def test_oil_that_stays_for_many_periods_does_not_end_the_branch() -> None:
     assert last.speed_Hz == pytest.approx(100.0, rel=1e-6)
     assert np.count_nonzero(np.abs(last.multipliers) > 0.9) > 3
     assert all(point.stable for point in branch.points[1:])
-
-
-@pytest.mark.nightly  # most of 70 s, see above
-def test_the_branch_begins_in_its_hopf_point_and_closes_its_orbits() -> None:
-    found = diagram()
-    (hopf,) = found.of("hopf")
-    (branch,) = found.branches
-    assert branch.points[0].speed_Hz == pytest.approx(hopf.speed_Hz, rel=0.02)
-    assert branch.points[0].frequency_Hz == pytest.approx(hopf.frequency_Hz, rel=0.02)
-    assert branch.note == "It leaves the range."
-    assert branch.points[-1].speed_Hz == pytest.approx(84.0, rel=1e-6)
-    for point in branch.points:
-        assert abs(point.multipliers[0] - 1.0) < 0.02
-        orbit = point.orbit()
-        assert np.hypot(*orbit.T).max() == pytest.approx(point.eccentricity_max[0], abs=1e-3)
-        assert np.abs(np.diff(orbit, axis=0, append=orbit[:1])).max() < 0.05  # closed, without a jump
-    stable = [rest.stable for rest in found.equilibria]
-    assert stable == sorted(stable, reverse=True)
 
 
 def test_a_disturbance_at_rest_grows_as_the_slow_motions_say() -> None:
@@ -369,15 +334,3 @@ def test_the_command_shoots(capsys: pytest.CaptureFixture[str], tmp_path) -> Non
 def test_films_whose_map_changes_from_period_to_period_are_told(setting: str, told: str) -> None:
     with pytest.raises(frbcli.InputError, match=told):
         frbcli.limit_cycles(frbcli.load_case("rigid-two-phase", [setting]))
-
-
-def test_shooting_begins_at_rest() -> None:
-    """The state of a machine goes into numbers and back."""
-    flow, omega = period_map(frbcli.load_case("rigid-two-phase", FED)), 500.0
-    q = resting_position(flow.system, omega).displacements
-    rest = settled(Shooting(flow, omega), omega)
-    assert rest is not None
-    again = flow.unpacked(flow.packed(rest.wet, omega), rest.wet, omega)
-    np.testing.assert_allclose(again.q, rest.wet.q, rtol=1e-12)
-    np.testing.assert_allclose(again.content, rest.wet.content, rtol=1e-12)
-    np.testing.assert_allclose(rest.wet.q, q, atol=0.02 * flow.scale)

@@ -12,7 +12,6 @@ from known_flows import KnownFlow, round_cycles
 from numba import njit
 from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
-from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.method.machine import smooth_films
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.fixed_point import SlowSpace
@@ -82,32 +81,6 @@ def test_a_speed_asked_for_in_the_last_step_has_its_cycle() -> None:
     assert shots[-2] is asked
     assert 1.5 * math.exp(asked.p[1]) == pytest.approx(1.499, rel=1e-9)
     assert asked.eccentricity_max[0] == pytest.approx(0.5 * math.sqrt(0.499), rel=1e-6)
-
-
-class NearOnly(Shooting):
-    """Finds cycles at a speed from one that is within two hundredths of it alone."""
-
-    def at_speed(self, shot: Shot, other: Shot, omega: float) -> Shot | None:
-        near = min(abs(math.log(omega / self.unit) - one.p[1]) for one in (shot, other))
-        return super().at_speed(shot, other, omega) if near < 0.02 else None
-
-
-@pytest.mark.nightly  # 6 s; a speed asked for: the test of the last step
-def test_a_branch_comes_as_near_to_a_speed_as_its_cycle_asks_for() -> None:
-    """Steps are up to a tenth long: both the end of the range and a speed asked for lie further from the ends of a step
-    than their cycles are found from."""
-    flow = round_cycles(lambda _: (-0.2, -0.4), 0.3, True)
-    shooting = NearOnly(flow, 1.5)  # type: ignore[arg-type]
-    _, first = started(shooting, flow, (0.9, 1.1))
-    wide, _ = follow_shots(shooting, first, (0.9, 3.0))
-    speeds = [math.exp(shot.p[1]) * 1.5 for shot in wide]
-    last = max(range(1, len(speeds) - 1), key=lambda n: speeds[n] / speeds[n - 1])
-    between, end = math.sqrt(speeds[last - 1] * speeds[last]), math.sqrt(speeds[last] * speeds[last + 1])
-    shots, note = follow_shots(shooting, first, (0.9, end), [between])
-    assert note == "It leaves the range."
-    (asked,) = [shot for shot in shots if shot.kind == "asked"]
-    assert 1.5 * math.exp(asked.p[1]) == pytest.approx(between, rel=1e-9)
-    assert 1.5 * math.exp(shots[-1].p[1]) == pytest.approx(end, rel=1e-9)
 
 
 def test_a_whirl_that_begins_beside_another_has_its_hopf_point() -> None:
@@ -201,10 +174,3 @@ def test_a_multiplier_beside_the_trivial_one_is_told_by_the_sum_of_both() -> Non
         found = multipliers_of(SlowSpace(np.eye(3), matrix, np.zeros((3, 2))), np.array([1.0, 0.0, 0.0]))
         np.testing.assert_allclose(found.values, [1.0, 1.03, 0.5], atol=1e-9)
         assert found.unstable == 1
-
-
-def test_multipliers_are_counted_beyond_the_defect_of_the_trivial_one() -> None:
-    values = np.array([1.004, 1.2, 1.01, 1.003, 0.4], dtype=complex)
-    assert Multipliers(values, 0.005).unstable == 2
-    assert Multipliers(values, 0.02).unstable == 1
-    assert Multipliers(values[3:], 0.005).stable

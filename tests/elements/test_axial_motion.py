@@ -132,7 +132,6 @@ def test_heat_of_films_and_of_pads_stand_beside_each_other(tmp_path: Path) -> No
     ("key", "given"),
     [
         ("supply_temperature", WARMING),
-        ("housing", WARMING),
         ("shaft", {"capacity": "1 J/K", "conductance": "1 W/K", "temperature": WARMING}),
     ],
 )

@@ -17,7 +17,6 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.case.surroundings.spring import Spring
 from frbcli.elements.spring import SpringForce
 from frbcli.errors import InputError
-from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER, MOTION, XX
@@ -139,25 +138,6 @@ def test_a_rotor_rests_in_its_stop() -> None:
     found = np.sort(point.eigenvalues.imag[point.eigenvalues.imag > 0.0])
     np.testing.assert_allclose(found, expected, rtol=1e-8)
     np.testing.assert_allclose(point.eigenvalues.real, 0.0, atol=1e-6)
-
-
-def test_small_motions_about_rest_follow_the_slope_of_a_cubic_spring() -> None:
-    gravity, omega = 100.0, TURN * 100.0
-    case = sprung(cubic(), gravity, unbalance=1e-9)
-    rest = brentq(lambda d: K * d + CUBIC * d**3 - M * gravity, 0.0, 1e-3, xtol=1e-18)
-    across, along = K + CUBIC * rest**2, K + 3.0 * CUBIC * rest**2
-    answer = response(case, [100.0])
-    expected = 1e-9 * omega**2 / (np.array([across, along]) - M * omega**2)
-    np.testing.assert_allclose(np.abs(answer.motion[0, 0]), np.abs(expected), rtol=1e-8)
-
-
-def test_a_run_begins_at_rest_in_a_stop(tmp_path: Path) -> None:
-    data = sprung(stop(), 100.0, damping=20.0).model_dump(by_alias=True, exclude_unset=True)
-    case = case_from_dict(data | {"start": {"position": "resting"}}, "resting")
-    run = runup(case, tmp_path / "run.h5", force=True)
-    y = run["journal_y_m"]
-    rest = -(M * 100.0 + STOP * GAP) / (K + STOP)
-    np.testing.assert_allclose(y, rest, rtol=1e-7)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.1])

@@ -35,10 +35,6 @@ G, M, U = 9.81, 6.0, 3e-6  # m/s^2, kg, kg m
 K, C = 1e6, 300.0  # N/m, N s/m of one bearing
 SHELL, SPRINGS, DAMPERS = 1.5, (4e6, 7e6), (200.0, 90.0)  # kg, N/m and N s/m in x and y of one support
 SPEED = {"from": "10 Hz", "to": "200 Hz", "duration": "1 s"}
-JEFFCOTT = {
-    "kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.1 kg", "shaft_stiffness": "5e6 N/m",
-    "unbalance": "3e-6 kg*m", "external_damping": "1 N*s/m", "shaft_damping": "0.1 N*s/m",
-}  # fmt: skip
 RIGID = {"kind": "rigid", "mass": f"{M} kg", "unbalance": f"{U!r} kg*m"}
 
 
@@ -78,19 +74,6 @@ def test_the_response_of_a_rigid_rotor_on_supports_is_the_closed_form() -> None:
         np.testing.assert_allclose(found.motion[:, 1, axis], rotor * bearing / (bearing + shell), rtol=1e-9)
         force = -0.5 * bearing * (found.motion[:, 0, axis] - found.motion[:, 1, axis])  # of one bearing
         np.testing.assert_allclose(found.forces[:, 0, axis], force, rtol=1e-9)
-
-
-def test_the_response_of_a_jeffcott_rotor_on_supports_is_the_closed_form() -> None:
-    """Shell, bearing, journal, shaft and disk in series and beside each other."""
-    found = response(on_support(JEFFCOTT), [20.0, 90.0, 150.0])
-    named = dict(zip(found.points, np.moveaxis(found.motion, 1, 0), strict=True))
-    s = 2j * math.pi * found.speeds_Hz
-    shaft = 5e6 + 0.1 * s
-    for axis, pull in enumerate((1.0j, 1.0)):
-        journal = 0.1 * s**2 + in_series(bearing_impedance(s), support_impedance(s, axis))
-        disk = -(s**2) * U * pull / (6.0 * s**2 + 1.0 * s + in_series(shaft, journal))
-        np.testing.assert_allclose(named["disk"][:, axis], disk, rtol=1e-9)
-        np.testing.assert_allclose(named["journal"][:, axis], disk * shaft / (shaft + journal), rtol=1e-9)
 
 
 def short_film(**tables: object) -> frbcli.Case:
@@ -147,24 +130,6 @@ def test_a_stiff_support_changes_no_signal(tmp_path: Path) -> None:
         one, other = (run[name] for run in runs)
         unit = runs[0].references["clearance_m"] if name.endswith("_m") else np.abs(one).max()
         assert np.abs(one - other).max() <= 1e-6 * unit, name
-
-
-def test_a_run_at_constant_speed_has_the_motion_of_the_response(tmp_path: Path) -> None:
-    """Rotor and shells on anisotropic supports, after the transient."""
-    case = on_support(JEFFCOTT, damping="2000 N*s/m").with_settings(
-        {"speed.from": "60 Hz", "speed.to": "60 Hz", "speed.duration": "1 s", "start.position": "resting",
-         "accuracy.tolerance": 1e-7}
-    )  # fmt: skip
-    found, run = response(case, [60.0]), runup(case, tmp_path / "run.h5")
-    late = run["time_s"] >= run.t_end_s - 10.0 / 60.0
-    turn = np.exp(2j * math.pi * 60.0 * run["time_s"][late])
-    columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
-    for number, name in enumerate(found.points):
-        for axis, letter in enumerate("xy"):
-            motion = run[f"{name}_{letter}_m"][late]
-            _, real, imaginary = np.linalg.lstsq(columns, motion)[0]
-            amplitude = real + 1j * imaginary
-            assert abs(amplitude - found.motion[0, number, axis]) < 1e-3 * abs(found.motion[0, number, axis]), name
 
 
 RING_SUPPORT = {"mass": "200 g", "stiffness": "2e7 N/m", "damping": "500 N*s/m"}
@@ -229,15 +194,12 @@ def test_the_plan_and_the_sketch_show_supports() -> None:
 
 FAULTS = {
     "no stiffness": ({"mass": "1 kg"}, "bearing.support.stiffness", "is missing"),
-    "no stiffness and mass": ({}, "bearing.support.mass", "is missing"),
     "no mass": ({"mass": 0.0, "stiffness": "1e7 N/m"}, "bearing.support.mass", "equation of motion"),
-    "negative mass": ({"mass": "-1 kg", "stiffness": "1e7 N/m"}, "bearing.support.mass", "at least 0"),
     "slack springs": ({"mass": "1 kg", "stiffness": ["1e7 N/m", "0 N/m"]}, "bearing.support.stiffness.1", "than 0"),
     "negative damping": (
         {"mass": "1 kg", "stiffness": "1e7 N/m", "damping": "-1 N*s/m"}, "bearing.support.damping", "at least 0"
     ),
     "three directions": ({"mass": "1 kg", "stiffness": ["1e7 N/m"] * 3}, "bearing.support.stiffness", "too many"),
-    "unknown": ({"mass": "1 kg", "stifness": "1e7 N/m"}, "bearing.support.stifness", "not known"),
 }  # fmt: skip
 
 
@@ -271,7 +233,7 @@ def heavy_on_supports() -> frbcli.Case:
     return case_from_dict(HEAVY | {"bearing": bearings}, "heavy")
 
 
-@pytest.mark.parametrize("speed_Hz", [0, 400, 1200])
+@pytest.mark.parametrize("speed_Hz", [0, 1200])
 def test_a_shaft_on_supports_has_the_damped_modes_of_ross(speed_Hz: int) -> None:
     none = np.zeros((0, 2, 2))
     values = eigenvalues(make_rotor(heavy_on_supports()), 2.0 * math.pi * speed_Hz, none, none)

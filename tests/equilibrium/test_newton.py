@@ -8,7 +8,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from frbcli.equilibrium.newton import GAP_KEPT, ForceBalance, Search, largest_share, search_rest
+from frbcli.equilibrium.newton import GAP_KEPT, ForceBalance, Search, search_rest
 
 CLEARANCES = np.array([[3e-5]])
 STIFFNESS = 2e6  # N/m
@@ -32,12 +32,6 @@ def test_a_journal_rests_where_the_quadratic_equation_says(search: Search) -> No
     found = search_rest(spring, np.zeros((1, 2)), over_clearance, search)
     assert found.settled
     assert found.position[0] / CLEARANCES[0] == pytest.approx([(np.sqrt(1.0 + 4.0 * q * q) - 1.0) / (2.0 * q), 0.0])
-
-
-def test_a_step_keeps_its_share_of_the_gap() -> None:
-    position, step = np.array([0.8, 0.0]), np.array([0.0, 5.0])
-    reached = position + largest_share(position, step) * step
-    assert 1.0 - np.linalg.norm(reached) == pytest.approx(GAP_KEPT * 0.2)
 
 
 def test_only_patience_gets_past_a_jump_of_the_force() -> None:

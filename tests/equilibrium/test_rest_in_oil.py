@@ -13,9 +13,7 @@ from numpy.typing import NDArray
 import frbcli
 from frbcli.equilibrium import resting, static_films
 from frbcli.equilibrium.newton import ForceBalance
-from frbcli.equilibrium.resting import held_in_plane, resting_position
-from frbcli.equilibrium.static_machine import ON_CELLS
-from frbcli.film.cells.solver import FilmSolver
+from frbcli.equilibrium.resting import held_in_plane
 from frbcli.film.rectangles.film import FilmForce
 from frbcli.scene.machine.system import System
 
@@ -76,25 +74,3 @@ def test_slopes_know_the_oil_that_goes_missing(system: System) -> None:
         expected = ((ahead - behind) / 4e-10).reshape(2, 2)
         for found, known in zip(here.slope[:, column].reshape(2, 2), expected, strict=True):
             np.testing.assert_allclose(found, known, atol=2e-3 * np.abs(known).max())
-
-
-def test_rest_takes_few_films(system: System, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Newton's method squares what is left over, and films near by begin with the oil that is foreseen."""
-    solved: list[int] = []
-    steady = FilmSolver.steady
-
-    def counted(*given: object, **more: object) -> object:
-        found = steady(*given, **more)  # type: ignore[arg-type]
-        solved.append(found.iterations)
-        return found
-
-    monkeypatch.setattr(FilmSolver, "steady", counted)
-    first = resting_position(system, OMEGA, None, ON_CELLS)
-    assert len(solved) <= 2 * 9
-    solved.clear()
-    next_one = resting_position(system, 0.9 * OMEGA, first.displacements, ON_CELLS, None, first)
-    assert len(solved) <= 2 * 6
-    assert sum(solved) <= 6 * len(solved)
-    again = resting_position(system, 0.9 * OMEGA, None, ON_CELLS)
-    np.testing.assert_allclose(next_one.journals, again.journals, atol=1e-9 * max(system.clearances))
-    np.testing.assert_allclose(next_one.ring_speeds, again.ring_speeds, rtol=1e-9)

@@ -18,7 +18,7 @@ from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
 from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.film.roughness.asperities import make_asperities, rub
-from frbcli.film.roughness.rubbing import BY_V_X, BY_X, COLUMNS, VALUE, Rubbing
+from frbcli.film.roughness.rubbing import BY_V_X, BY_X, VALUE, Rubbing
 from frbcli.rotor.linear import LinearRotor
 from frbcli.rotor.loads import speed_profile
 from frbcli.scene.machine.system import System, make_system
@@ -80,11 +80,6 @@ def test_summits_have_the_slopes_of_their_forces_and_torques() -> None:
         change = (rubbing.slopes(MOTIONS + moved) - rubbing.slopes(MOTIONS - moved))[:, :, VALUE] / (2.0 * step)
         slopes = found[:, :, 1 + column]
         np.testing.assert_allclose(change, slopes, rtol=1e-4, atol=1e-6 * np.abs(slopes).max())
-
-
-def test_summits_that_do_not_meet_do_nothing() -> None:
-    apart = np.array([[0.0] * 6, [1e-5, 2e-5, 1e-3, 1e-3, 1.0, 2.0]])
-    np.testing.assert_array_equal(Rubbing(SURFACES, 0, CLEARANCE).slopes(apart), np.zeros((2, 4, COLUMNS)))
 
 
 @pytest.mark.parametrize(("speed", "stuck"), [LIFTING, (30.0, True)])

@@ -7,10 +7,9 @@ import math
 
 import numpy as np
 import pytest
-from printed_sheets import CASE, OMEGA, Row, grooves, printed
 
 import frbcli
-from frbcli.case.reading.load import load_case, load_case_text
+from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.equilibrium import static_films
@@ -47,7 +46,7 @@ def same(case: Case) -> None:
 
 
 @pytest.mark.parametrize("law", LAWS)
-@pytest.mark.parametrize("name", ["rigid", "jeffcott"])
+@pytest.mark.parametrize("name", ["jeffcott"])
 def test_coefficients_are_the_same_in_every_command(name: str, law: str) -> None:
     same(one_speed(name, law, "rotor.unbalance=3 g*mm"))
 
@@ -64,31 +63,9 @@ def test_coefficients_of_films_of_rings_are_the_same_in_every_command(law: str) 
     same(one_speed("turbocharger-car", law))
 
 
-@pytest.mark.parametrize("row", printed("lund-thomsen.csv"), ids=lambda row: f"{row['width_over_diameter']}-{row['s']}")
-def test_stability_has_the_coefficients_of_lund_and_thomsen(row: Row) -> None:
-    """Within 1.6 % of the largest entry; a rigid rotor puts half of its weight on each bearing."""
-    width, clearance = 0.1 * row["width_over_diameter"], 1e-4
-    load = 0.02 * 50.0 * width * 0.1 * (0.05 / clearance) ** 2 / row["s"]
-    text = CASE.format(
-        viscosity=20, width=1e3 * width, diameter=100, clearance=100, supply=grooves(2, 90, 20), load=load
-    )
-    text = text[: text.index("[motion]")]
-    text += f'[rotor]\nkind = "rigid"\nmass = "{2.0 * load / 9.81!r} kg"\ngravity = "9.81 m/s^2"\n'
-    text += '[speed]\nfrom = "50 Hz"\nto = "50 Hz"\nduration = "1 s"\n'
-    (point,) = frbcli.stability(load_case_text(text, name="lund")).points
-    (film,) = point.films
-    turn = np.array([[0.0, -1.0], [1.0, 0.0]])  # to the frame of the table
-    for name, matrix, unit in (("k", film.stiffness, 1.0), ("b", film.damping, OMEGA)):
-        given = np.array(
-            [[row[f"{name}xx"], row[f"{name}xy"]], [row.get(f"{name}yx", row[f"{name}xy"]), row[f"{name}yy"]]]
-        )
-        found = turn @ matrix @ turn.T * clearance * unit / load
-        assert np.abs(found - given).max() < 0.016 * np.abs(given).max()
-
-
 @pytest.mark.parametrize(
     ("name", "law", "speed_Hz"),
-    [("jeffcott", "reynolds", 3.0), ("jeffcott", "reynolds", 150.0), ("jeffcott", "penalty", 10.0)],
+    [("jeffcott", "reynolds", 3.0), ("jeffcott", "penalty", 10.0)],
 )
 def test_the_stated_error_of_films_on_cells_holds(
     name: str, law: str, speed_Hz: float, monkeypatch: pytest.MonkeyPatch

@@ -37,12 +37,6 @@ def steady_loads(film: VolumeFilm, motion: Motion) -> FilmLoads:
 # --- lobes -----------------------------------------------------------------------------------------------------------
 
 
-def test_lobes_without_preload_are_a_plain_bearing() -> None:
-    phi = np.linspace(0.0, TURN, 40)
-    assert np.array_equal(gap_height(replace(PLAIN, profile=LobedShell(3, 0.0, 0.4)), (0.3, 0.2), phi),
-                          gap_height(PLAIN, (0.3, 0.2), phi))  # fmt: skip
-
-
 def test_a_table_of_the_gap_of_lobes_has_their_forces() -> None:
     """Linear between 720 points: within the square of half a degree."""
     lobes = LobedShell(3, 0.5, 0.7)
@@ -114,18 +108,6 @@ def test_symmetric_lobes_carry_nothing_at_the_centre_and_are_isotropic(count: in
     assert k[0, 0] > 0.1 * abs(k[0, 1])  # a preload makes the centred film stiff; a plain one has no direct stiffness
 
 
-def test_preload_makes_direct_stiffness_which_a_plain_bearing_has_not() -> None:
-    step = 1e-4
-    ratios = []
-    for preload in (0.0, 0.3, 0.6):
-        film = film_on(replace(PLAIN, profile=LobedShell(3, preload, 0.0)), RING)
-        force = np.array(steady_loads(film, Motion((step, 0.0), (0.0, 0.0), 600.0)).force)
-        force -= np.array(steady_loads(film, Motion((-step, 0.0), (0.0, 0.0), 600.0)).force)
-        ratios.append(-force[0] / np.linalg.norm(force))
-    assert abs(ratios[0]) < 1e-3
-    assert ratios[0] < ratios[1] < ratios[2]
-
-
 def test_long_lobed_bearing_is_the_integral_of_the_reynolds_equation() -> None:
     """No flow along, full film: H^3 p' = omega / 2 (H - H_m) with the H_m that closes the turn."""
     section = replace(PLAIN, near="symmetry", far="symmetry", profile=LobedShell(2, 0.4, 0.3))
@@ -181,28 +163,6 @@ def test_cells_cover_the_area_of_a_hole_exactly(position: float, round_: bool) -
         assert np.all((grid.cover >= -1e-14) & (grid.cover <= 1.0))
 
 
-@pytest.mark.parametrize(("law", "bound"), [(Reynolds(), 1e-4), (Elrod(), 1.5e-3)], ids=["reynolds", "elrod"])
-def test_force_changes_smoothly_as_a_bore_moves_across_the_cells(law: Law, bound: float) -> None:
-    """A bore with 2 bar in the loaded part of the film, over two cells in steps of a tenth: what is left beside a
-    smooth curve. By whole cells it would be 0.8 % (Reynolds) and 2.9 % (Elrod) on these cells."""
-    cells = 160
-    ring = np.linspace(-math.pi, math.pi, cells + 1)
-    steps = np.linspace(-1.0, 1.0, 21)
-    places = 2.64 + steps * TURN / cells
-    forces = np.array([steady_loads(film_on(with_hole(p, PLAIN.width), ring, 20, law), ROTATION).force for p in places])
-    smooth = np.column_stack([np.polyval(np.polyfit(steps, part, 4), steps) for part in forces.T])
-    assert np.abs(forces - smooth).max() < bound * np.linalg.norm(forces, axis=1).min()
-
-
-def test_bore_that_shrinks_gives_the_plain_film() -> None:
-    plain = np.array(steady_loads(film_on(PLAIN, RING), ROTATION).force)
-    gaps = []
-    for half_width in (2e-3, 1e-3, 5e-4, 1e-5):
-        film = film_on(with_hole(2.5, PLAIN.width, half_width), RING)
-        gaps.append(float(np.linalg.norm(np.array(steady_loads(film, ROTATION).force) - plain)))
-    assert gaps[0] > gaps[1] > gaps[2] > gaps[3] == 0.0
-
-
 def test_pocket_between_faces_supplies_what_one_on_faces_does() -> None:
     """Flow through a pocket of a film at rest: on cells that end at its edges, and on cells that do not."""
     section = replace(PLAIN, holes=(Hole(0.0, PLAIN.width, 0.3, 4e-3, 1e5, round=False),))
@@ -220,18 +180,6 @@ def test_pocket_between_faces_supplies_what_one_on_faces_does() -> None:
 
 
 # --- turning frames --------------------------------------------------------------------------------------------------
-
-
-def test_motion_in_a_frame_has_the_same_gap_and_the_same_change_of_it() -> None:
-    motion, angle, speed, dt = Motion((0.3, -0.2), (5.0, 7.0), 300.0), 0.8, 120.0, 1e-7
-    seen = seen_from(motion, angle, speed)
-    later = Motion((0.3 + 5.0 * dt, -0.2 + 7.0 * dt), motion.v, motion.omega)
-    phi = np.linspace(0.0, TURN, 13)
-    h = gap_height(PLAIN, seen.d, phi)
-    assert h == pytest.approx(gap_height(PLAIN, motion.d, phi + angle), rel=1e-12)
-    change = (gap_height(PLAIN, later.d, phi + angle + speed * dt) - gap_height(PLAIN, motion.d, phi + angle)) / dt
-    assert seen.v[0] * np.sin(phi) - seen.v[1] * np.cos(phi) == pytest.approx(change, abs=1e-3)
-    assert turned(turned((1.0, 2.0), 0.4), -0.4) == pytest.approx((1.0, 2.0))
 
 
 def test_tilting_motion_in_a_frame_has_the_same_gap_and_the_same_change_of_it_at_both_ends() -> None:

@@ -89,14 +89,6 @@ def test_what_is_no_file_is_not_opened(folder: Path, make: Callable[[Path], None
     assert len(calls) == 2  # it was replaced
 
 
-def test_without_a_folder_a_table_is_made_each_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(kept, "folder_of", lambda _: None)
-    calls: list[tuple[object, ...]] = []
-    for _ in range(2):
-        assert counting(calls)(MESH, 0.5, True)[0] == 0.5
-    assert len(calls) == 2
-
-
 def test_a_place_that_cannot_be_written_costs_time_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kept, "folder_of", lambda _: tmp_path / "missing")
     calls: list[tuple[object, ...]] = []

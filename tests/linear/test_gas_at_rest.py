@@ -109,15 +109,6 @@ def with_rates(release: str, absorption: str) -> Case:
     return heavy("film.cavitation=bubbly", *times)
 
 
-def test_at_once_the_rotor_is_as_stable_as_on_peekens_model() -> None:
-    growths = []
-    for case in (heavy("film.cavitation=peeken"), with_rates("0 s", "0 s")):
-        _, (point,) = stability_points(case, [PEEKEN[0]])
-        growths.append(point.critical)
-    assert growths[1] == pytest.approx(growths[0], rel=1e-7)
-    assert abs(growths[0].real) < 1e-2 * abs(growths[0])
-
-
 @pytest.mark.usefixtures("_few_cells")
 def test_a_rest_is_sought_from_the_film_beside_it_and_is_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     """At 150 Hz from 155 Hz: the same place, in about three quarters of the iterations of the film (205)."""

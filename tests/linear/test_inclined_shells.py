@@ -88,8 +88,6 @@ def test_a_bearing_alone_has_a_chart_until_an_end_touches() -> None:
     ("case", "settings", "analysis", "told"),
     [
         ("jeffcott", [SHELL.format(1, 0), "film.coupling=co-simulation"], RUN, 'Write coupling = "auto".'),
-        ("jeffcott", [SHELL.format(4, 0)], RUN, "Write less than 3.5 mrad."),
-        ("turbocharger-car", [SHAFT], RUN, 'Write film.tilt = "follows"'),
         ("jeffcott", [SHELL.format(4, 0)], STABILITY, "Write less than 3.5 mrad."),
         ("jeffcott", [SHELL.format(1, 0), "film.theory=short"], STABILITY, 'Write theory = "finite".'),
         ("jeffcott", [SHELL.format(1, 0), "film.cavitation=penalty"], STABILITY, "Take half-sommerfeld or reynolds."),
@@ -101,11 +99,3 @@ def test_what_is_not_modelled_is_refused_with_a_remedy(
 ) -> None:
     found = faults(load_case(case, settings), analysis)
     assert any(told in fault.remedy for fault in found)
-
-
-def test_the_remedies_work() -> None:
-    assert not faults(load_case("jeffcott", [SHELL.format(3.4, 0)]), STABILITY)
-    assert not faults(load_case("jeffcott", [SHELL.format(1, 0), "film.cavitation=reynolds"]), STABILITY)
-    assert not faults(load_case("jeffcott", [SHELL.format(1, 0)]), RUN)
-    assert not faults(load_case("turbocharger-car", [SHAFT, "film.tilt=follows"]), RUN)
-    assert not faults(load_case("turbocharger-car", [SHAFT, "film.tilt=follows"]), STABILITY)

@@ -19,7 +19,6 @@ from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.sheets.film_state import FilmState, MixedFriction
-from frbcli.linear.stability import stability
 from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.machine.system import make_system
@@ -98,14 +97,6 @@ def test_flow_factors_carry_more_and_resist_more_until_the_gap_is_wide() -> None
     assert wide < 0.05
     assert rough[2].eccentricity == pytest.approx(smooth[2].eccentricity, rel=2.0 * wide)
     assert rough[2].torque == pytest.approx(smooth[2].torque, rel=2.5 * wide**2)
-
-
-def test_torque_and_power_are_those_of_film_and_summits() -> None:
-    (state,) = bearing_sheet(rigid(), [0.1]).points
-    omega = 2.0 * math.pi * state.speed_Hz
-    assert state.power == pytest.approx(-state.torque * omega, rel=1e-9)
-    assert mixed(state).power == pytest.approx(-mixed(state).torque * omega, rel=1e-9)
-    assert 0.5 * state.power < mixed(state).power < state.power
 
 
 @pytest.mark.parametrize("speed", [0.2, 20.0])
@@ -192,22 +183,6 @@ def test_a_sheet_has_the_friction_that_holds_a_ring() -> None:
 def test_rough_shells_are_in_line() -> None:
     with pytest.raises(InputError, match="same along the axis"):
         require(rigid('bearing.misalignment=["0.1 mrad", "0 mrad"]'), BEARING)
-
-
-def test_stability_is_that_of_the_machine_on_the_stiffness_of_the_sheet() -> None:
-    """M s^2 + (D + Omega G) s + K of a rigid rotor on two bearings: det = 0 at each eigenvalue, on film and summits."""
-    (point,), (state,) = stability(rigid(), [0.2]).points, bearing_sheet(rigid(), [0.2]).points
-    (film,) = point.films
-    assert mixed(state).share > 0.1
-    np.testing.assert_allclose(film.displacement, state.displacement, rtol=1e-9)
-    np.testing.assert_allclose(film.stiffness, state.stiffness, rtol=1e-9)
-    system = make_system(rigid(), make_plan(rigid()))
-    summits = system.rubbing(0).force(system.clearances[0] * film.displacement, np.zeros(2), 2.0 * math.pi * 0.2)
-    assert -summits.by_displacement[1, 1] > 0.5 * film.stiffness[1, 1]
-    for s in point.eigenvalues:
-        matrix = 0.5 * 6.1 * s**2 * np.eye(2) + s * film.damping + film.stiffness
-        size = np.abs(0.5 * 6.1 * s**2) + np.abs(s * film.damping).max() + np.abs(film.stiffness).max()
-        assert np.linalg.svd(matrix / size)[1][-1] < 1e-6
 
 
 def test_oil_and_summits_answer_beside_each_other() -> None:

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import itertools
-import json
 import math
 import os
 import re
 import shutil
-import subprocess
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +21,6 @@ from frbcli.linear.critical_map import critical_map
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
-from frbcli.plot.machine.modes import shapes_figure
 from frbcli.plot.machine.response import critical_map_figure
 from frbcli.plot.moving import FRAMES, animate_orbits
 
@@ -42,9 +38,6 @@ diameter = "7 mm"
 clearance = "15 um"
 ends = "oil-bath"
 """
-ROSS = os.environ.get("FRB_ROSS_PYTHON", "")  # an interpreter that has it
-
-
 def plain_turbocharger() -> frbcli.Case:
     text = frbcli.load_case("turbocharger-car").source_text
     start, end = text.index("[[bearing]]"), text.index("[oil]")
@@ -99,7 +92,7 @@ def test_a_stiffness_is_positive() -> None:
             critical_map(frbcli.load_case("rigid"), wrong)
 
 
-@pytest.mark.parametrize(("name", "speed"), [("jeffcott", 200.0), ("rigid", 100.0)])
+@pytest.mark.parametrize(("name", "speed"), [("jeffcott", 200.0)])
 def test_damped_modes_are_those_of_the_stability(name: str, speed: float) -> None:
     case = frbcli.load_case(name, ["film.theory=short"])
     found = damped_modes(case, speed)
@@ -124,12 +117,6 @@ def test_shapes_pass_through_the_points_of_a_run() -> None:
             place = next(at for mark, at in found.marks if mark == name.partition("_")[2])
             nearest = int(np.argmin(np.abs(found.positions - place)))
             np.testing.assert_allclose(mode.shape[nearest], motion, atol=1e-9)
-
-
-def test_a_turbocharger_whirls_in_both_senses() -> None:
-    found = damped_modes(plain_turbocharger(), 2500.0)
-    assert {mode.direction for mode in found.modes} >= {"forward", "backward"}
-    assert len(shapes_figure(found).axes) == min(6, len(found.modes))
 
 
 def test_the_map_shows_the_films_of_the_case() -> None:
@@ -173,29 +160,6 @@ def test_orbits_move(tmp_path: Path) -> None:
             animate_orbits(run, tmp_path / "orbit.mp4")
 
 
-ROSS_SCRIPT = """
-import json, sys
-import numpy as np
-import ross as rs
-data = json.load(open(sys.argv[1]))
-steel = rs.Material("steel", rho=data["density"], E=data["young"], Poisson=data["poisson"])
-shaft = [rs.ShaftElement(L=l, idl=0.0, odl=d, material=steel, shear_effects=True, rotary_inertia=True,
-                         gyroscopic=True, shear_method_calc="cowper") for l, d in data["elements"]]
-disks = [rs.DiskElement(n=n, m=m, Id=i, Ip=p) for n, m, i, p in data["disks"]]
-omega = np.array(data["omega"])
-bearings = [rs.BearingElement(n=b["n"], frequency=omega, **{key: np.array(b[key]) for key in (
-    "kxx", "kxy", "kyx", "kyy", "cxx", "cxy", "cyx", "cyy")}) for b in data["bearings"]]
-rotor = rs.Rotor(shaft, disks, bearings)
-nodes, sizes, phases = zip(*data["unbalance"])
-found = rotor.run_unbalance_response(list(nodes), list(sizes), list(phases), frequency=omega)
-response = np.array(found.forced_resp)
-dof = rotor.number_dof
-places = [[response[dof * n], response[dof * n + 1]] for n in data["nodes"]]
-out = np.array(places)  # (points, 2, speeds)
-json.dump({"real": out.real.tolist(), "imag": out.imag.tolist()}, open(sys.argv[2], "w"))
-"""
-
-
 def test_a_film_goes_to_ffmpeg_frame_by_frame(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A program of this name that writes down its line and what it gets."""
     program = tmp_path / "ffmpeg"
@@ -206,51 +170,3 @@ def test_a_film_goes_to_ffmpeg_frame_by_frame(tmp_path: Path, monkeypatch: pytes
     line = (tmp_path / "ffmpeg.line").read_text()
     width, height = map(int, re.search(r"-s (\d+)x(\d+)", line).groups())  # type: ignore[union-attr]
     assert path.stat().st_size == 5 * 4 * width * height  # red, green, blue, alpha
-
-
-@pytest.mark.skipif(not ROSS, reason="no interpreter with ROSS (FRB_ROSS_PYTHON)")
-def test_the_response_is_that_of_ross(tmp_path: Path) -> None:
-    """The same shaft, wheels, unbalances and coefficients of films: amplitudes of all points within 0.1 %."""
-    case = plain_turbocharger()
-    speeds = [300.0, 700.0, 1100.0, 1500.0, 1900.0]
-    found = response(case, speeds)
-    places = sorted({0.0, *(d.position for d in case.disks), *(b.position or 0.0 for b in case.bearings)}
-                    | {0.034, 0.092} | set(np.linspace(0.0, 0.092, 24).tolist()))  # fmt: skip
-    kept = [places[0]]
-    for place in places[1:]:
-        if place - kept[-1] > 1e-9:
-            kept.append(place)
-    node = {round(place, 9): number for number, place in enumerate(kept)}
-    middle = [(b - a, 0.005 if 0.5 * (a + b) < 0.034 else 0.007) for a, b in itertools.pairwise(kept)]
-    bearings = []
-    for number, bearing in enumerate(case.bearings):
-        entry: dict[str, object] = {"n": node[round(bearing.position or 0.0, 9)]}
-        for letter, name in (("k", "stiffness"), ("c", "damping")):
-            for i, x in enumerate("xy"):
-                for j, y in enumerate("xy"):
-                    told = [float(getattr(point.films[number], name)[i, j]) for point in found.resting]
-                    entry[f"{letter}{x}{y}"] = told
-        bearings.append(entry)
-    data = {
-        "density": 7850.0, "young": 210e9, "poisson": 0.3, "elements": middle,
-        "disks": [(node[round(d.position, 9)], d.mass, d.diametral_inertia, d.polar_inertia) for d in case.disks],
-        "bearings": bearings,
-        "omega": [2 * math.pi * speed for speed in speeds],
-        "unbalance": [(node[round(d.position, 9)], d.unbalance, d.phase) for d in case.disks if d.unbalance > 0.0],
-        "nodes": [node[round(b.position or 0.0, 9)] for b in case.bearings]
-        + [node[round(d.position, 9)] for d in case.disks],
-    }  # fmt: skip
-    (tmp_path / "in.json").write_text(json.dumps(data))
-    (tmp_path / "script.py").write_text(ROSS_SCRIPT)
-    subprocess.run(
-        [ROSS, str(tmp_path / "script.py"), str(tmp_path / "in.json"), str(tmp_path / "out.json")],
-        cwd=tmp_path, check=True, capture_output=True, timeout=300,
-        env={key: value for key, value in os.environ.items() if key != "PYTHONPATH"},
-    )  # fmt: skip
-    told = json.loads((tmp_path / "out.json").read_text())
-    theirs = np.array(told["real"]) + 1j * np.array(told["imag"])
-    for point in range(len(found.points)):
-        x, y = found.motion[:, point, 0], found.motion[:, point, 1]
-        size = np.abs(found.motion[:, point]).max(axis=1)
-        for mine, other in ((x, theirs[point, 0]), (y, theirs[point, 1])):
-            np.testing.assert_allclose(np.abs(mine), np.abs(other), atol=1e-3 * size.max())

@@ -11,14 +11,12 @@ from frbcli.case.reading.load import load_case
 from frbcli.equilibrium import static_films, static_machine
 from frbcli.equilibrium.resting import SEARCH
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.film.rectangles.film import FilmForce
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
 from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.threshold import threshold_at
-from frbcli.scene.machine.system import System
 
 SPEEDS = [40.0, 90.0]
 CASE = load_case("rigid-axial-groove", ["rotor.unbalance=3 g*mm"])
@@ -120,7 +118,7 @@ def test_a_hopf_point_of_other_films_is_as_uncertain_as_it_is_off() -> None:
     assert more == pytest.approx(0.01 * speed, rel=0.1)
 
 
-@pytest.mark.parametrize("name", ["NEARLY", "NEARLY_ON_CELLS"])
+@pytest.mark.parametrize("name", ["NEARLY"])
 def test_errors_do_not_depend_on_where_the_search_on_other_meshes_ends(
     monkeypatch: pytest.MonkeyPatch, name: str
 ) -> None:
@@ -135,34 +133,6 @@ def test_errors_do_not_depend_on_where_the_search_on_other_meshes_ends(
         mine, exact = own.films[0], settled.films[0]
         assert (mine.error, mine.place_error) == pytest.approx((exact.error, exact.place_error), rel=0.01)
         assert own.errors == pytest.approx(settled.errors, rel=0.01)
-
-
-def test_films_of_another_mesh_are_solved_once_at_each_speed(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Between grooves their elements are solved at each call, nine times as many: the journals begin as far from those
-    of the own mesh as at the speed before, where next to nothing is left over. At the first speed they move."""
-    machines = StaticMachines(load_case("axial-groove"))
-    (other,) = machines.static.others
-    solved: list[bool] = []
-    force = type(other.system).force
-
-    def solve(system: System, *motion: Any) -> FilmForce:
-        solved.append(system is other.system)
-        return force(system, *motion)
-
-    monkeypatch.setattr(type(other.system), "force", solve)
-    near = None
-    for speed in (100.0, 95.0, 90.0):
-        solved.clear()
-        near = machines.at(2.0 * np.pi * speed, near)
-        assert sum(solved) == (2 if speed == 100.0 else 1) * len(other.system.names)
-
-
-def test_other_meshes_have_the_same_rotor() -> None:
-    """The modes of a shaft of many sections take as long as films on cells; with heat they do at every speed."""
-    static = StaticMachines(CASE).static
-    warm = static.warm(np.array([0.01]), np.array(static.system.clearances))
-    for films in (static, warm):
-        assert all(other.system.rotor is static.system.rotor for other in (films.own, *films.others))
 
 
 def test_without_films_no_error_is_stated() -> None:

@@ -37,11 +37,6 @@ def test_faults_name_key_value_and_remedy(setting: str, words: str) -> None:
     assert words in told
 
 
-def test_remedies_of_faults_work() -> None:
-    frbcli.load_case("thrust", ["thrust_bearing.0.pads=5", "thrust_bearing.0.pad_angle=72 deg"])
-    frbcli.load_case("thrust", ["thrust_bearing.0.side=both", "thrust_bearing.0.end_play=100 um"])
-
-
 def test_a_collar_is_on_the_shaft() -> None:
     bearing = ('thrust_bearing=[{{side="right", inner_radius="5 mm", outer_radius="11 mm", pads=4, '
                'pad_angle="75 deg", taper_angle="50 deg", taper="20 um"{}}}]')  # fmt: skip
@@ -82,15 +77,6 @@ def test_pads_on_both_sides_are_the_difference_of_loads_and_the_sum_of_all_else(
         frbcli.thrust_sheet(both, [50e-6], SPEED)
 
 
-def test_left_and_right_are_mirror_images() -> None:
-    case = frbcli.load_case("thrust")
-    (right,), (left,) = (
-        frbcli.thrust_sheet(case.with_settings(f"thrust_bearing.0.side={side}"), [15e-6], SPEED).points
-        for side in ("right", "left")
-    )
-    assert left.load == right.load
-
-
 def test_models_that_pads_do_not_have_are_refused() -> None:
     with pytest.raises(InputError, match="without oil fractions and history"):
         frbcli.thrust_sheet(frbcli.load_case("thrust", ["film.cavitation=elrod"]), [15e-6], SPEED)
@@ -103,9 +89,8 @@ def test_a_case_of_thrust_bearings_alone_has_no_lateral_motion(analysis: str) ->
 
 
 @pytest.mark.parametrize("words", [
-    ["runup", "thrust", "-o", "x.h5"], ["stability", "thrust"], ["response", "thrust"], ["bearing", "thrust"],
-    ["limit-cycles", "thrust"], ["rotation", "thrust"], ["compare", "thrust", "--cavitation", "sommerfeld,reynolds"],
-    ["accuracy", "thrust"], ["rundown", "thrust", "-o", "x.h5"], ["squeeze", "thrust"],
+    ["runup", "thrust", "-o", "x.h5"], ["bearing", "thrust"],
+    ["compare", "thrust", "--cavitation", "sommerfeld,reynolds"],
     ["sweep", "thrust", "--set", "oil.viscosity=8 mPa*s,9 mPa*s"],
 ])  # fmt: skip
 def test_commands_refuse_a_case_of_thrust_bearings_alone(

@@ -134,13 +134,6 @@ def test_shells_that_are_not_in_line() -> None:
     assert [fault.key for fault in refused.value.faults] == ["bearing.1.misalignment"]
 
 
-def test_response_and_damped_modes_follow() -> None:
-    case = rigid_shaft("film.tilt=follows")
-    motion, flat = (frbcli.response(each, [SPEED]).motion for each in (case, rigid_shaft()))
-    assert np.abs(motion - flat).max() < 5e-2 * np.abs(flat).max()  # an unbalance in the middle moves it in its plane
-    assert len(frbcli.damped_modes(case, SPEED).modes) > 0
-
-
 def test_columns_of_films_that_tilt() -> None:
     point, flat = at_speed(rigid_shaft("film.tilt=follows")), at_speed(rigid_shaft())
     names = [film.name for film in point.films]
@@ -239,16 +232,6 @@ def sheet_of(*more: str) -> tuple[FilmState, FilmState]:
     one, other = frbcli.bearing_sheet(rigid_shaft(*more), [SPEED]).points
     assert not one.problem
     return one, other
-
-
-def test_a_sheet_without_a_tilt_is_as_before() -> None:
-    """The weight in the middle of a rigid shaft: the films of both cases differ by their cells alone, 8 along in place
-    of 40, of second order."""
-    (tilted, _), (flat, _) = sheet_of("film.tilt=follows"), sheet_of()
-    assert tilted.load == pytest.approx(flat.load, rel=1e-6, abs=1e-9)
-    for name in ("power", "side_flow", "p_max", "film_thickness_min"):
-        assert getattr(tilted, name) == pytest.approx(getattr(flat, name), rel=1.0 / 8**2), name
-    assert flat.tilting is None
 
 
 def test_a_sheet_follows_the_tilt() -> None:

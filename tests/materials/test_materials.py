@@ -9,7 +9,6 @@ from paths import DOCS
 
 from frbcli.case.reading.load import load_case, load_case_text
 from frbcli.errors import InputError
-from frbcli.film.cells.channels.channel import channel_resistance
 from frbcli.materials.oils import OILS, conductivity, density, heat_capacity
 from frbcli.materials.solids import SOLIDS
 from frbcli.materials.viscosity import ZERO_CELSIUS, VogelLaw, through_three, walther
@@ -69,13 +68,6 @@ def test_iso_grades_have_their_number_at_40_degrees_within_ten_per_cent() -> Non
         assert kinematic_viscosity(f"ISO VG {number}", KELVIN[0]) == pytest.approx(number, rel=0.1)
 
 
-def test_line_of_walther_passes_through_both_points() -> None:
-    first, second = (313.15, 46.0), (373.15, 6.8)
-    assert walther(313.15, first, second) == pytest.approx(46.0)
-    assert walther(373.15, first, second) == pytest.approx(6.8)
-    assert 2.0 < walther(423.15, first, second) < 3.5
-
-
 def test_heat_of_an_oil_is_that_of_tables() -> None:
     """Engine oil, unused, Incropera and DeWitt table A.5: K, kg/m^3, J/(kg K), W/(m K); docs/heat.md says the same."""
     table = [(280.0, 895.3, 1827.0, 0.144), (300.0, 884.1, 1909.0, 0.145), (320.0, 871.8, 1993.0, 0.143),
@@ -92,12 +84,6 @@ def test_heat_of_an_oil_is_the_formula_in_its_own_units() -> None:
     for celsius in (0.0, 60.0, 150.0):
         formula = 4186.8 * (0.388 + 0.00045 * (32.0 + 1.8 * celsius)) / math.sqrt(0.88)
         assert heat_capacity(880.0, celsius + ZERO_CELSIUS) == pytest.approx(formula, rel=1e-3)
-
-
-def test_solids_have_the_order_that_everyone_knows() -> None:
-    assert SOLIDS["brass"].conductivity > SOLIDS["steel"].conductivity > SOLIDS["Inconel X-750"].conductivity
-    assert SOLIDS["aluminium"].expansion > SOLIDS["brass"].expansion > SOLIDS["steel"].expansion
-    assert all(solid.source for solid in SOLIDS.values())
 
 
 def test_page_on_heat_has_the_figures() -> None:
@@ -148,9 +134,3 @@ def test_faults_of_a_grade(settings: list[str], key: str, words: str) -> None:
     faults = {fault.key: f"{fault.problem} {fault.remedy}" for fault in raised.value.faults}
     assert list(faults) == [key]
     assert words in faults[key]
-
-
-def test_channels_take_the_viscosity_of_the_grade() -> None:
-    settings = ["oil.viscosity={ grade = 'SAE 10W-40' }", "oil.temperature=100 degC"]
-    assert load_case("jeffcott", settings).oil_viscosity == pytest.approx(11.7e-3)
-    assert math.isfinite(channel_resistance(2e-3, 5e-3, 11.7e-3))

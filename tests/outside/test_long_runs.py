@@ -69,12 +69,6 @@ def measured_mb(folder: Path, samples: int, commands: Sequence[list[str]]) -> di
     return found
 
 
-@pytest.mark.nightly  # writes millions of samples
-def test_pictures_of_a_run_of_millions_of_samples_take_little_memory(tmp_path: Path) -> None:
-    found = measured_mb(tmp_path, 3_000_000, PICTURES[:2])
-    assert max(found.values()) < 200.0, found
-
-
 @pytest.mark.nightly
 def test_all_that_reads_a_run_of_twenty_million_samples_takes_little_memory(tmp_path: Path) -> None:
     found = measured_mb(tmp_path, 20_000_000, [*PICTURES, *TABLES])

@@ -19,29 +19,17 @@ from synthetic_run import Rotor, make_run
 
 import frbcli
 from frbcli.cli.main import frb
-from frbcli.cli.options import Look, Size
+from frbcli.cli.options import Size
 from frbcli.plot.machine.modes import campbell_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.motion import eccentricity_figure
-from frbcli.plot.style import COLOURS
 from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
-
-DRAWING = ("runup", "rundown", "waterfall", "plot", "compare", "bearing", "stability", "response", "accuracy", "sweep",
-           "rotation", "squeeze", "whirl", "limit-cycles")  # fmt: skip
 
 
 @pytest.fixture(scope="module")
 def run() -> Run:
     return make_run(Rotor(duration_s=2.0, whirl_s=1.0))
-
-
-@pytest.mark.parametrize("name", DRAWING)
-def test_every_command_that_draws_takes_them(name: str) -> None:
-    command = frb.get_command(click.Context(frb), name)
-    assert command is not None
-    told = {option for parameter in command.params for option in parameter.opts}
-    assert {"--size", "--dpi", "--xlim", "--ylim", "--rpm"} <= told
 
 
 @pytest.mark.parametrize(
@@ -70,12 +58,6 @@ def test_a_picture_has_its_size_and_resolution(tmp_path: Path) -> None:
 def test_wrong_looks_are_refused(words: list[str]) -> None:
     done = CliRunner().invoke(frb, ["stability", "jeffcott", *words])
     assert done.exit_code == 2
-
-
-def test_limits_are_those_of_the_axes(run: Run) -> None:
-    (axes,) = fit(eccentricity_figure([run], over="speed"), x_limits=(100.0, 200.0), y_limits=(0.2, 0.4)).axes
-    assert axes.get_xlim() == (100.0, 200.0)
-    assert axes.get_ylim() == (0.2, 0.4)
 
 
 def test_speeds_are_told_per_minute(run: Run) -> None:
@@ -188,15 +170,6 @@ def test_results_are_drawn_on_axes_of_ones_own() -> None:
         assert axes.get_ylabel()
 
 
-def test_the_style_of_others_stays(run: Run) -> None:
-    import matplotlib as mpl
-
-    before = dict(mpl.rcParams)
-    frbcli.draw_orbit(run)
-    assert dict(mpl.rcParams) == before
-    assert COLOURS
-
-
 def test_a_notebook_shows_what_there_is(run: Run) -> None:
     case = frbcli.load_case("jeffcott", ["film.theory=short", 'title="a < b & c"'])
     stability, response, sheet = linear()
@@ -209,7 +182,3 @@ def test_a_notebook_shows_what_there_is(run: Run) -> None:
         assert text.count("<tr>") == text.count("</tr>") > 0 or thing is run
         assert not re.search(r"<(?!/?(p|b|table|thead|tbody|tr|th|td)\b)", text)
     assert "a &lt; b &amp; c" in case._repr_html_()
-
-
-def test_a_look_is_plain() -> None:
-    assert Look() == Look(None, 150, None, None, False)

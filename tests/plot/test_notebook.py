@@ -11,7 +11,6 @@ import pytest
 
 import frbcli
 from frbcli.plot.picture import PICTURES, picture
-from frbcli.plot.style import new_figure
 
 PNG = b"\x89PNG\r\n\x1a\n"
 
@@ -19,12 +18,6 @@ PNG = b"\x89PNG\r\n\x1a\n"
 @pytest.fixture(scope="module")
 def case() -> frbcli.Case:
     return frbcli.load_case("jeffcott", ["film.theory=short", "speed.duration=0.3 s"])
-
-
-def test_a_figure_shows_itself_without_pyplot() -> None:
-    figure = new_figure("a title", "")
-    figure.subplots().plot([0.0, 1.0])
-    assert figure._repr_png_().startswith(PNG)
 
 
 def test_text_of_everything_is_a_few_lines(case: frbcli.Case, tmp_path: Path) -> None:

@@ -14,19 +14,14 @@ from synthetic_run import make_run
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
-from frbcli.cycles.stability_map import Growth, MapCurve, MapPoint, StabilityMap
 from frbcli.linear.sheets.thrust import thrust_sheet
-from frbcli.plot.machine.stability_map import stability_map_figure
 from frbcli.plot.machine.thrust import thrust_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.style import (
     legend_below,
-    legend_beside,
     name_of_key,
     new_figure,
-    panel_width_pt,
     plain,
-    plain_numbers,
     styled,
     with_subscripts,
 )
@@ -82,40 +77,6 @@ def test_a_legend_below_covers_no_panel_and_stays_in_the_picture() -> None:
         assert not overlapping(legend.get_texts(), figure)
 
 
-@pytest.mark.parametrize("legends", [False, True])
-def test_the_width_of_a_panel_is_known_before_the_layout(legends: bool) -> None:
-    """Of panels whose decorations differ, over a shorter scale of colours; labels of events are placed by it."""
-    with styled():
-        figure = new_figure("Title", "of a picture", height=6.0)
-        above, below = figure.subplots(2, 1, sharex=True)
-        for number in (1, 2):
-            below.plot([0.0, 1.0], [0.0, number * 1e-7], label=f"a long name of curve {number}")
-        mesh = above.pcolormesh([[0.0, 1.0], [2.0, 3.0]])
-        figure.colorbar(mesh, ax=[above, below], location="bottom", shrink=0.6).set_label("levels")
-        above.set(ylabel="two lines\nof a label", yticks=[0.0, 1.0])
-        below.set(yticks=[0.0, 1e-7, 2e-7], xticks=[0.0, 1.0])  # which the layout does not change
-        if legends:
-            legend_beside(below)
-        known = panel_width_pt(figure)
-        figure.draw_without_rendering()
-    for axes in (above, below):
-        assert known == pytest.approx(axes.get_window_extent().width * 72.0 / figure.dpi, abs=0.5)
-
-
-def test_a_stability_map_is_as_wide_as_its_curves_and_names_its_shade() -> None:
-    over, values = np.linspace(100.0, 900.0, 9), np.array([0.01, 0.02])
-    points = tuple(MapPoint(*place, 100.0, 50.0, np.array([0.5])) for place in ((400.0, 0.01), (500.0, 0.02)))
-    growth = Growth(values, over, np.array([over - 400.0, over - 500.0]))
-    curves = (MapCurve("hopf", points, ()),)
-    case = load_case("jeffcott")
-    found = StabilityMap(case, "speed", "Hz", "oil.viscosity", "mPa*s", ("",), curves, (), growth)
-    figure = stability_map_figure(found)
-    (axes,) = figure.axes
-    assert axes.get_xlim() == pytest.approx((385.0, 515.0))
-    assert axes.get_ylabel() == "oil viscosity in mPa s"
-    assert "static equilibrium unstable" in [text.get_text() for text in figure.legends[0].get_texts()]
-
-
 def onset(film: str, t_s: float) -> dict[str, object]:
     return {"kind": "onset", "film": film, "t_s": t_s, "speed_Hz": 30.0 * t_s, "frequency_Hz": 9.0 * t_s,
             "frequency_ratio": 0.3}  # fmt: skip
@@ -152,7 +113,6 @@ def test_labels_of_events_cover_neither_each_other_nor_the_rim(times: list[float
     ("gaps", "speeds", "along", "words"),
     [
         ([12e-6], [900.0], [], "load"),
-        ([12e-6], [500.0, 900.0], ["speed in Hz"] * 2, "gap 12 µm"),
         ([12e-6, 20e-6], [900.0], ["gap in µm"] * 2, "thrust bearing"),
     ],
 )
@@ -166,16 +126,3 @@ def test_curves_of_a_thrust_bearing_have_more_than_a_point(
     assert all(len(line.get_xdata()) > 1 for panel in panels for line in panel.lines)
     assert pads.get_xlabel() == "mm"
     assert words in figure.get_suptitle()
-
-
-def test_numbers_on_a_logarithmic_axis_are_plain() -> None:
-    with styled():
-        figure = new_figure("title", "")
-        axes = figure.subplots()
-        axes.plot([1.0, 2.0], [20.0, 900.0])
-        axes.set_yscale("log")
-        plain_numbers(axes.yaxis)
-        figure.draw_without_rendering()
-    shown = {label.get_text() for label in axes.get_yticklabels() + axes.get_yticklabels(minor=True)}
-    assert {"20", "50", "100", "200", "500"} <= shown
-    assert not any("10^" in text for text in shown)

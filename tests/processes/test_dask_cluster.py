@@ -74,7 +74,7 @@ def test_the_own_certificates_do(tmp_path: Path, monkeypatch: pytest.MonkeyPatch
         assert client.submit(len, "four").result(timeout=WITHIN_s) == 4
 
 
-@pytest.mark.parametrize("interrupted_after_s", [2.0, 5.0, 8.0])
+@pytest.mark.parametrize("interrupted_after_s", [2.0, 8.0])
 def test_an_interruption_is_one_line(tmp_path: Path, interrupted_after_s: float) -> None:
     """That of a terminal, which all processes get: at the start of the cluster, and while it computes."""
     running = subprocess.Popen([sys.executable, "-m", "frbcli", *SWEEP], cwd=tmp_path, stdout=subprocess.DEVNULL,
@@ -87,8 +87,8 @@ def test_an_interruption_is_one_line(tmp_path: Path, interrupted_after_s: float)
     assert lines in (["interrupted"], ["Interrupted; the same command resumes the sweep."])
 
 
-WRONG = ("tls://127.0.0.1:9", "ucx://127.0.0.1:9", "ws://127.0.0.1:9", "inproc://1/2/3", "http://127.0.0.1:9", "abc",
-         "tcp://", "tcp://127.0.0.1", "tcp://127.0.0.1:99999", "tcp://[::1", "tcp://no host:1", "\0")  # fmt: skip
+WRONG = ("tls://127.0.0.1:9", "inproc://1/2/3", "http://127.0.0.1:9", "abc",
+         "tcp://", "tcp://[::1", "tcp://no host:1", "\0")  # fmt: skip
 
 
 @pytest.mark.parametrize("address", WRONG)

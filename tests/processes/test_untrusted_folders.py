@@ -59,7 +59,6 @@ NUMBA = {
     "another compiler": b"disable_jit: 1\nopt: 0\n",
     "no yaml": b"[",
     "no text": b"\xff\xfe\x00",
-    "another kind": b"3\n",
 }
 
 
@@ -167,8 +166,6 @@ def test_settings_in_a_home_that_others_write_name_no_program(place: Path, safe:
 DAMAGED: dict[str, Callable[[Path], object]] = {
     "empty": Path.touch,
     "cut": lambda file: file.write_text('{"_version": 390, "ttflist": [{"fname"'),
-    "another kind": lambda file: file.write_text("[]"),
-    "folder": Path.mkdir,
     "fifo": os.mkfifo,
     "device": lambda file: file.symlink_to("/dev/zero"),
 }

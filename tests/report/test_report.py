@@ -23,11 +23,9 @@ from frbcli.case.reading.shipped import shipped_cases
 from frbcli.cli.main import frb
 from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
-from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.speeds import between
-from frbcli.plot.style import narrowed
 from frbcli.plot.waterfall import LOWEST_dB, STEP_dB
-from frbcli.report.page import NARROW, NARROW_COLUMNS, report
+from frbcli.report.page import report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.svg import SYMBOLS
 from frbcli.results.records import Signal
@@ -173,12 +171,6 @@ def test_symbols_of_elements_are_drawn() -> None:
     assert [symbols_at(case, key) for key in case.bearing_keys] == [("spring", "damper")]
 
 
-def test_a_cartridge_is_one_tube() -> None:
-    """It has a part more than two rings, above and below the axis, which leads from one to the other."""
-    rings, tube = (rotor_sketch(frbcli.load_case(f"turbocharger-car{end}"))[0] for end in ("", "-cartridge"))
-    assert (rings.count('class="ring"'), tube.count('class="ring"')) == (4, 6)
-
-
 def test_a_shaft_is_drawn_to_scale() -> None:
     """The bar of the drawing and the sections of the shaft have one scale along and across the axis."""
     case = frbcli.load_case("turbocharger-car")
@@ -259,19 +251,6 @@ def test_a_page_about_heat_has_its_pictures_and_speeds_as_the_case(warm: Run) ->
     assert "12000 rpm, 200.0 Hz" in report(warm, both_units=True)
 
 
-def test_numbers_of_events_above_the_waterfall_do_not_meet(run: Run) -> None:
-    """Of many at once those have none that have no room; their lines stay."""
-    event = {"kind": "onset", "film": "", "speed_Hz": 50.0, "frequency_Hz": 20.0, "frequency_ratio": 0.4}
-    told = report(dataclasses.replace(run, events=[event | {"t_s": 0.3 + 0.002 * i} for i in range(12)]))
-    flags = re.findall(r'<circle cx="([\d.]+)" cy="([\d.]+)" r="7.5" class="flag"', told)
-    places = [tuple(map(float, place)) for place in flags]
-    assert 4 <= len(places) < 12
-    assert all(y >= 7.5 for _, y in places)
-    distances = [np.hypot(a[0] - b[0], a[1] - b[1]) for i, a in enumerate(places) for b in places[:i]]
-    assert min(distances) >= 15.0
-    assert told.count('class="event"') == 12
-
-
 @pytest.mark.skipif(not any(map(shutil.which, BROWSERS)), reason="no browser")
 def test_a_page_has_at_most_six_pages_of_a4(warm: Run, tmp_path: Path) -> None:
     (tmp_path / "page.html").write_text(report(warm), encoding="utf-8")
@@ -282,18 +261,6 @@ def test_a_page_has_at_most_six_pages_of_a4(warm: Run, tmp_path: Path) -> None:
     subprocess.run([browser, *options, str(tmp_path / "page.html")], capture_output=True, check=True, timeout=120)
     printed = (tmp_path / "page.pdf").read_bytes()
     assert 2 <= len(re.findall(rb"/Type\s*/Page[^s]", printed)) <= 4  # 6 with the values of the case, shown on request
-
-
-def test_the_legend_of_a_narrow_picture_stays_in_it(warm: Run) -> None:
-    """That of a run with heat has more names than any other."""
-    figure = quantity_figure([warm], "heat")
-    narrowed(figure, NARROW, NARROW_COLUMNS)
-    figure.canvas.draw()
-    (legend,) = figure.legends
-    box = legend.get_window_extent()
-    assert len(legend.get_texts()) >= 4
-    assert box.x0 >= 0.0
-    assert box.x1 <= NARROW * figure.dpi
 
 
 def test_an_orbit_of_few_samples_has_no_corners() -> None:

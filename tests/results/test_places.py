@@ -378,7 +378,6 @@ WRITING = {
     "plot": ["plot", RUN, "-o", "a.png"],
     "bearing": [*CALLS["bearing"], "--no-picture", "--csv", "a.csv"],
     "ross": [*CALLS["bearing"], "--no-picture", "--ross", "a.toml"],
-    "response": [*CALLS["response"][:-2], "--no-picture", "--csv", "a.csv"],
     "cases": ["cases", "jeffcott", "-o", "a.toml"],
 }
 

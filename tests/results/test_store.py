@@ -73,12 +73,6 @@ def test_a_run_comes_back_as_it_was_written(run_path: Path) -> None:
     assert (int(run.checkpoint["step"]), run.checkpoint_samples, len(run)) == (7, 60, 100)
 
 
-def test_table_has_the_signals_as_columns(run_path: Path) -> None:
-    table = read_run(run_path).to_pandas()
-    assert list(table.columns) == list(HEADER.units)
-    np.testing.assert_array_equal(table["speed_Hz"], chunk(0, 100)["speed_Hz"])
-
-
 def test_unknown_signal_is_refused_with_the_names_there_are(run_path: Path) -> None:
     with pytest.raises(RunFileError, match=r"disk_x_m.*time_s, speed_Hz, eccentricity"):
         read_run(run_path)["disk_x_m"]

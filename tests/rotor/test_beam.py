@@ -115,16 +115,6 @@ def test_shear_coefficient_is_that_of_cowper() -> None:
     assert tube.shear_coefficient == pytest.approx(2 * (1 + nu) / (4 + 3 * nu))  # thin-walled
 
 
-def test_nodes_lie_on_every_end_and_station() -> None:
-    plane = beam(STEPPED, [0.0333, 0.05 + 1e-12, 0.13], 10)
-    for place in (0.0, 0.05, 0.0333, 0.13):
-        assert np.min(np.abs(plane.positions - place)) < 1e-9
-    gaps = np.diff(plane.positions)
-    assert 1e-3 < gaps.min() <= gaps.max() <= 0.013 * (1 + 1e-6)
-    with pytest.raises(ValueError, match="no node"):
-        plane.node(0.0123)
-
-
 def test_a_rigid_body_keeps_mass_and_inertias_and_is_not_strained() -> None:
     wheel = Wheel("w", 0.05, 2.0, 3e-3, 2e-3, 0.0, 0.0)
     plane = wheels_on_shaft(STEPPED, [wheel], [])

@@ -11,7 +11,7 @@ from marches import DIAMETRAL, LENGTH, POLAR, RHO, D, flat_films, march, rigid_s
 
 import frbcli
 from frbcli.case.schema import Case
-from frbcli.cycles.shooting.period_map import period_map, wet_at
+from frbcli.cycles.shooting.period_map import period_map
 from frbcli.cycles.shooting.rest import settled
 from frbcli.cycles.shooting.shots import Shooting
 from frbcli.equilibrium.linearised import first_order, linearised
@@ -23,11 +23,9 @@ from frbcli.errors import InputError
 from frbcli.film.cells.tilted.force import tilted_force
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.linear.stability import stability_points
-from frbcli.rotor.assembly import Link, assembled
-from frbcli.rotor.body import COORDINATES, PLANE, spin, tilting_ring
+from frbcli.rotor.body import COORDINATES, PLANE
 from frbcli.rotor.linear import without_spins
 from frbcli.rotor.loads import speed_profile
-from frbcli.runs.record.films import tilt_signals
 from frbcli.runs.start import state_at
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.gate.gate import faults
@@ -77,22 +75,6 @@ def in_plane(case: Case, system: System) -> System:
 
 
 # -------------------------------------------------------------------------------------------------------------- body
-
-
-def test_a_ring_that_turns_whirls_in_two_cones() -> None:
-    """On a spring k in tilt: w^2 -+ w Omega I_p / I_t = k / I_t, the forward one the faster."""
-    tilt, polar, stiffness, turn = 2e-7, 3e-7, 0.4, 2.0 * math.pi * 150.0
-    bodies = [tilting_ring("ring", 5e-3, tilt, 0.0), spin(polar)]
-    rotor = assembled(bodies, [Link("ring", sees=COORDINATES)])
-    slopes = rotor.journals[0, [3, 2]] * [[1.0], [-1.0]]
-    machine = without_spins(replace(rotor, cones=((4, math.sqrt(polar) * slopes),)), np.array([turn]))
-    springs = np.diag([1e4, 1e4, stiffness, stiffness])[None]
-    values = np.linalg.eigvals(first_order(*linearised(machine, 0.0, springs, 0.0 * springs)))
-    frequencies = np.sort(values.imag[values.imag > 0.0])
-    split, square = 0.5 * turn * polar / tilt, stiffness / tilt
-    cones = [math.sqrt(split**2 + square) + sign * split for sign in (-1.0, 1.0)]
-    plane = [math.sqrt(1e4 / 5e-3)] * 2
-    np.testing.assert_allclose(frequencies, np.sort([*cones, *plane]), rtol=1e-9)
 
 
 def test_inertias_of_a_ring_that_are_not_given_are_those_of_a_hollow_cylinder() -> None:
@@ -171,39 +153,6 @@ def test_cones_of_a_rigid_rotor_in_rings_and_in_a_cartridge() -> None:
         damping[-2:, -2:] -= turn * parts["polar"] * ACROSS
         still = np.linalg.eigvals(first_order(np.diag(inertias), damping, stiffness))
         assert max(np.abs(point.eigenvalues - value).min() / abs(value) for value in still) > 1e-2
-
-
-def test_a_cartridge_is_two_rings_that_tilt_whose_halves_are_joined() -> None:
-    """Two rings have four tilts more than a cartridge. Where all of these follow the places of both rings, as on one
-    stiff body, the matrices of the two rings in any films are those of the cartridge of twice their mass and polar
-    inertia, and of their inertias about its middle. Joined by springs they come near to it as these become stiff."""
-    arm, tilt, mass = 3e-3, 1.5e-6, 5e-3
-    films = f"inner = {INNER.replace(BORES, GROOVE)}, outer = {OUTER}"
-    body = f'{{mass = "10 g", inertia = "4 kg*mm^2", tilt_inertia = "{2.0 * (tilt + mass * arm**2)} kg*m^2"}}'
-    ring = f'{{mass = "5 g", inertia = "2 kg*mm^2", tilt_inertia = "{tilt} kg*m^2"}}'
-    one = f'bearing={{kind = "cartridge", positions = ["7 mm", "13 mm"], ring = {body}, {films}}}'
-    turn = 0.3 * OMEGA
-    cartridge, rings = (
-        without_spins(system_of(case).rotor, np.full(count, turn))
-        for case, count in ((ringed(one), 1), (ringed(ring=ring, inner=INNER.replace(BORES, GROOVE)), 2))
-    )
-    shaft, ends = np.eye(4), np.eye(4).reshape(2, 2, 4)  # of the cartridge: the places of its left and right end
-    slope = ACROSS.T @ (ends[1] - ends[0]) / (2.0 * arm)  # t_x = -dy/dz, t_y = dx/dz
-    joined = np.block([[shaft, np.zeros((4, 4))], [np.zeros((8, 4)), np.vstack([ends[0], slope, ends[1], slope])]])
-    assert rings.journals @ joined == pytest.approx(cartridge.journals, rel=1e-9, abs=1e-9)
-    random, size = np.random.default_rng(4), np.array([1.0, 1.0, arm, arm])
-    stiffness, damping = (scale * random.normal(size=(4, 4, 4)) * np.outer(size, size) for scale in (1e6, 100.0))
-    whole, apart = (linearised(each, OMEGA, stiffness, damping) for each in (cartridge, rings))
-    for found, parts in zip(whole, apart, strict=True):
-        together = joined.T @ parts @ joined
-        assert np.abs(found - together).max() < 1e-9 * np.abs(found).max()
-    relative = np.eye(12)[[6, 7, 10, 11]] - np.vstack([slope, slope]) @ np.eye(12)[[4, 5, 8, 9]]
-    expected, apart_by = np.linalg.eigvals(first_order(*whole)), []
-    for spring in (1e4, 1e5):
-        values = np.linalg.eigvals(first_order(*apart[:2], apart[2] + spring * relative.T @ relative))
-        apart_by.append(max(np.abs(values - value).min() / abs(value) for value in expected))
-    assert apart_by[1] < 1e-3
-    assert apart_by[0] == pytest.approx(10.0 * apart_by[1], rel=0.1)
 
 
 def test_forces_moments_and_torques_on_the_rings_balance() -> None:
@@ -323,21 +272,6 @@ def test_small_tilts_grow_and_decay_as_the_eigenvalues_say() -> None:
 
 
 @pytest.mark.nightly  # the runs of this file compile a time loop that no other has
-def test_a_run_that_begins_at_rest_stays_there_and_tells_its_tilts() -> None:
-    case = ringed("disk.0.position=16 mm", inner=INNER.replace(BORES, GROOVE))  # no hole turns
-    system = system_of(case)
-    rest = resting_position(system, OMEGA)
-    profile = speed_profile((0.0, 2e-3), (OMEGA, OMEGA))
-    state = state_at(system, profile, rest.displacements, rest.velocities(system))
-    found = march(system, profile, CONTROL, state)
-    moved = system.films.seen(system.rotor.journals) @ (found.q - rest.displacements).T
-    assert np.abs(moved).max() < 1e-3 * system.clearances[0]
-    signals = tilt_signals(system, found.q)
-    assert signals["tilt_left_outer_x_rad"] == pytest.approx(rest.journals[1, 2], rel=2e-2)
-    assert signals["tilt_left_inner_x_rad"] == pytest.approx(rest.journals[0, 2], rel=2e-2)
-
-
-@pytest.mark.nightly  # the runs of this file compile a time loop that no other has
 def test_a_ring_follows_a_shell_that_is_not_in_line() -> None:
     """Both shells tilt against each other around a rotor without weight: by symmetry the shaft stays in line, and each
     ring stands between it and the shell so that the moments of its films balance. A run that begins there stays."""
@@ -371,17 +305,6 @@ def grooved(body: str, *more: str) -> Case:
     films = f"ring = {HEAVY}, inner = {inner}, outer = {OUTER}"
     one = (f'bearing={{kind = "cartridge", positions = ["7 mm", "13 mm"], {films}}}',) if body == "cartridge" else ()
     return ringed("disk.0.position=12 mm", *one, *more, ring=HEAVY, inner=inner)
-
-
-def test_tilts_stand_beside_lengths_in_the_state_of_a_cycle() -> None:
-    """One of each displacement moves a journal by a clearance at least: tilts are in rad."""
-    flow = period_map(grooved("rings"))
-    moves = np.abs(flow.journals[..., : len(flow.lengths)] * flow.lengths).max(axis=(0, 1)) / flow.scale
-    assert moves.min() == pytest.approx(1.0)
-    assert (flow.lengths > 100.0 * flow.scale).sum() == 4  # both tilts of both rings
-    still = wet_at(flow, np.zeros(flow.system.rotor.size), np.zeros(flow.system.rotor.size), OMEGA)
-    x = flow.packed(still, OMEGA) + np.random.default_rng(1).normal(size=flow.slow)
-    assert flow.packed(flow.unpacked(x, still, OMEGA), OMEGA) == pytest.approx(x, abs=1e-14)
 
 
 @pytest.mark.parametrize("body", ["rings", "cartridge"])

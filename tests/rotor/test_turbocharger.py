@@ -94,42 +94,6 @@ def test_heavy_turbocharger_on_springs_against_transfer_matrices(heavy: Case, sp
         assert mode.frequency_Hz == pytest.approx(exact_whirl(heavy, SPRING, speed, mode.frequency_Hz), rel=2e-6)
 
 
-def test_spin_raises_forward_and_lowers_backward_modes(heavy: Case) -> None:
-    at_rest, spinning = natural_modes(heavy, SPRING, [0.0, 350.0]).points
-    for direction, sign in (("forward", 1), ("backward", -1)):
-        pairs = zip(at_rest.directed(direction), spinning.directed(direction), strict=True)
-        assert all(sign * (b.frequency_Hz - a.frequency_Hz) > 0 for a, b in pairs)
-    assert [m.frequency_Hz for m in at_rest.directed("forward")] == pytest.approx(
-        [m.frequency_Hz for m in at_rest.directed("backward")]
-    )
-
-
-def test_free_precession_of_the_spinning_rotor(heavy: Case) -> None:
-    """Between the rigid body's Omega I_p / I_d and less: an elastic shaft lets the wheels tilt on their own."""
-    slowest = natural_modes(heavy, None, [10.0]).points[0].directed("forward")[0]
-    modes = shaft_of(heavy).free().modes
-    assert slowest.kind == "conical"
-    assert slowest.frequency_Hz == pytest.approx(10.0 * modes.polar[1, 1], rel=1e-3)  # the inertia of the tilt is 1
-
-
-def test_soft_springs_carry_a_rigid_rotor(heavy: Case) -> None:
-    """On springs that are soft against the shaft, at rest: sum of s x = omega^2 m x and the same about the tilt."""
-    found = natural_modes(heavy, 1e3, [0.0]).points[0].directed("forward")[:2]
-    modes = shaft_of(heavy).free().modes
-    rigid = np.stack([modes.at(b.position or 0.0)[:2] for b in heavy.bearings])
-    exact = np.sqrt(np.linalg.eigvalsh(1e3 * rigid.T @ rigid)) / (2 * math.pi)
-    assert [mode.frequency_Hz for mode in found] == pytest.approx(exact, rel=1e-4)
-    assert [mode.kind for mode in found] == ["conical", "cylindrical"]
-
-
-def test_reduction_of_the_shipped_rotors() -> None:
-    for name in ("turbocharger-heavy", "turbocharger-car"):
-        error = natural_modes(load_case(name), 1e6, [0.0, 1000.0]).error
-        assert error is not None
-        assert error.frequency < 2e-3
-        assert np.max(np.abs(error.missing_flexibility)) * 1e6 < 5e-3  # of the springs' own
-
-
 def test_car_turbocharger_weighs_100_g() -> None:
     assert natural_modes(load_case("turbocharger-car"), None, [0.0]).mass_kg == pytest.approx(0.1, rel=1e-3)
 
@@ -158,19 +122,6 @@ def test_picture_of_the_modes(heavy: Case, stiffness: float | None) -> None:
 def whole(case: Case) -> LinearRotor:
     """Without the angles of the two rings."""
     return without_spins(make_rotor(case), np.zeros(2))
-
-
-def test_size_films_and_points(heavy: Case) -> None:
-    rotor = whole(heavy)
-    assert rotor.size == 2 * 6 + 2 * 2
-    assert rotor.journals.shape == (4, 2, 16)
-    assert rotor.multiplicity.tolist() == [1.0] * 4
-    assert [name for name, _ in rotor.points] == [
-        "journal_compressor", "journal_turbine", "disk_nut", "disk_compressor", "disk_turbine",
-        "ring_compressor", "ring_turbine",
-    ]  # fmt: skip
-    for matrix, sign in ((rotor.mass, 1), (rotor.damping, 1), (rotor.stiffness, 1), (rotor.gyroscopic, -1)):
-        assert np.allclose(matrix, sign * matrix.T, rtol=1e-12, atol=1e-12)
 
 
 def test_cutoff_keeps_the_modes_below_it() -> None:
@@ -261,27 +212,6 @@ def on_rings(mass: float) -> LinearRotor:
     return assembled([jeffcott(), ring], [Link("journal", "ring", 2.0), Link("ring", count=2.0)])
 
 
-def test_rings_of_a_symmetric_rotor_are_two() -> None:
-    """m_F x_F'' = F_o - F_i of each ring, m_J x_J'' = 2 F_i + shaft (2.4)."""
-    rotor = on_rings(0.075)
-    assert rotor.multiplicity.tolist() == [2.0, 2.0]
-    assert np.diag(rotor.mass)[4:].tolist() == [0.15, 0.15]
-    assert rotor.static_load[[4, 5]].tolist() == [0.0, -0.15 * GRAVITY]
-    q = np.arange(1.0, 7.0)  # x_J, x_D, y_J, y_D, x_F, y_F
-    inner, outer = rotor.journals @ q
-    assert (inner.tolist(), outer.tolist()) == ([1.0 - 5.0, 3.0 - 6.0], [5.0, 6.0])
-    force = np.einsum("f,fki,fk->i", rotor.multiplicity, rotor.journals, np.array([[1.0, 2.0], [10.0, 20.0]]))
-    assert force.tolist() == [2.0, 0.0, 4.0, 0.0, 2 * (10.0 - 1.0), 2 * (20.0 - 2.0)]
-    assert [name for name, _ in rotor.points] == ["journal", "disk", "ring"]
-
-
-def test_a_ring_on_a_stiff_film_is_a_shell() -> None:
-    springs = np.stack([1e6 * np.eye(2), 1e14 * np.eye(2)])
-    ringed = eigenvalues(on_rings(0.075), 100.0, springs, 0 * springs)
-    single = eigenvalues(on_shell(), 100.0, springs[:1], 0 * springs[:1])
-    assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
-
-
 def test_a_light_ring_puts_films_in_series() -> None:
     inner, outer = 2e6, 3e6
     springs = np.stack([inner * np.eye(2), outer * np.eye(2)])
@@ -289,15 +219,6 @@ def test_a_light_ring_puts_films_in_series() -> None:
     series = np.eye(2)[None] / (1 / inner + 1 / outer)
     single = eigenvalues(on_shell(), 100.0, series, 0 * series)
     assert ringed[: len(single)] == pytest.approx(single, rel=1e-6)
-
-
-def test_bearings_with_and_without_a_ring() -> None:
-    films = [Link("journal"), Link("journal", "ring_b"), Link("ring_b")]
-    rotor = assembled([jeffcott(), point_mass("ring_b", 0.1, GRAVITY)], films)
-    q = np.arange(1.0, 7.0)
-    assert (rotor.journals @ q).tolist() == [[1.0, 3.0], [1.0 - 5.0, 3.0 - 6.0], [5.0, 6.0]]
-    assert rotor.mass[4, 4] == 0.1
-    assert rotor.points[-1][0] == "ring_b"
 
 
 def test_warm_films_of_the_heavy_turbocharger(heavy: Case) -> None:
@@ -343,7 +264,7 @@ def test_command_with_a_stiffness(
     assert (tmp_path / "turbocharger-heavy-modes.png").read_bytes().startswith(b"\x89PNG")
 
 
-@pytest.mark.parametrize("stiffness", ["0 N/m", "-1", "5 kg", "soft"])
+@pytest.mark.parametrize("stiffness", ["0 N/m", "5 kg"])
 def test_command_refuses_a_stiffness(stiffness: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert frb(["stability", "turbocharger-heavy", "--no-picture", "--stiffness", stiffness]) == 2
     assert stiffness.split()[0] in capsys.readouterr().err

@@ -68,9 +68,6 @@ def neither_grows_nor_decays(run: Run) -> float:
 
 HISTORIES = {  # speed in Hz, supply temperature in degC, pressure in bar, at the start and at the end; threshold in Hz
     "the oil warms up": ((160.0, 160.0), (50.0, 80.0), (1.1, 1.1), 160.0),
-    "the oil cools down": ((160.0, 160.0), (75.0, 45.0), (1.1, 1.1), 160.0),
-    "a run-up on cold oil": ((100.0, 130.0), (20.0, 20.0), (1.1, 1.1), 120.0),
-    "a run-up on warm oil": ((170.0, 210.0), (80.0, 80.0), (1.1, 1.1), 186.0),
     "a run-up while the oil warms up": ((110.0, 190.0), (40.0, 60.0), (1.1, 1.1), 136.0),
     "the pressure builds up": ((120.0, 120.0), (30.0, 30.0), (1.0, 1.3), 120.0),
 }

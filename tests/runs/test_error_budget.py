@@ -13,18 +13,13 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.errors.account import grows_late
-from frbcli.runs.errors.error_budget import BEFORE_WHIRL, FewerCells, FilmErrors, grows_from, quiet_until, summed
+from frbcli.runs.errors.error_budget import FewerCells, FilmErrors, grows_from, summed
 from frbcli.runs.errors.second_run import (
-    SAFETY,
-    SAFETY_OF_OPENINGS,
-    SAFETY_OF_RINGS,
-    SAFETY_OF_RINGS_AT_REST,
     on_fewer_cells,
 )
 from frbcli.runs.run import runup
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.cell_choice import worst_film
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
@@ -58,13 +53,6 @@ def test_the_stated_error_does_not_depend_on_when_the_run_is_looked_at(
     monkeypatch.setattr(march, "BUDGET", 7)
     monkeypatch.setattr(march, "BUFFER", 10)
     assert runup(case, tmp_path / "b.h5").error == often
-
-
-def test_quiet_until_a_whirl_grows() -> None:
-    events = [{"kind": "critical-speed", "t_s": 1.0}, {"kind": "onset", "t_s": 4.0}, {"kind": "contact", "t_s": 5.0}]
-    assert quiet_until(events, 10.0) == BEFORE_WHIRL * 4.0
-    assert quiet_until(events, 2.0) == 2.0
-    assert quiet_until([], 3.0) == 3.0
 
 
 def test_an_error_that_arises_late_says_from_when_on() -> None:
@@ -119,35 +107,6 @@ def test_stated_error_of_cells_bounds_the_true_one(settings: tuple[str, ...], tm
     assert run.cost["error_cpu_s"] > 0.0
 
 
-@pytest.mark.parametrize(
-    ("name", "mesh", "fewer"),
-    [
-        ("jeffcott", [6, 48], None),  # no cells
-        ("jeffcott-two-phase", [6, 48], (40, 5)),
-        ("floating-ring", [6, 48], (40, 4)),  # with bores
-        ("floating-ring", [5, 40], (32, 4)),
-        ("jeffcott-two-phase", [3, 12], None),
-    ],
-)
-def test_cells_of_the_comparison(name: str, mesh: list[int], fewer: tuple[int, int] | None) -> None:
-    case = load_case(name, [f"accuracy.mesh={mesh}"])
-    plan = make_plan(case)
-    assert plan.form.fewer_cells(case, plan) == fewer
-
-
-def test_error_of_cells_from_two_runs() -> None:
-    """An error of which the other run has three times as much; one run must not end before the other."""
-    case = load_case("rigid-two-phase")
-    system = make_system(case, make_plan(case))
-    exact, bent = (np.zeros((3, 2 * system.rotor.size + 2)) for _ in range(2))
-    bent[1, 0], bent[2, -1] = 1e-2 * system.clearances[0], 3e-3
-    found = FewerCells(0.5, exact + 3.0 * bent).error(exact + bent, system)
-    assert found is not None
-    assert (found.eccentricity, found.displacement) == pytest.approx((1e-2, 1e-2))
-    assert (found.ring_speed, found.oil_fraction) == pytest.approx((0.0, 3e-3))
-    assert FewerCells(1.0, exact[:2]).error(exact, system) is None
-
-
 @pytest.mark.parametrize(("least", "stated"), [(0.0, 0.0), (3e-3, 3e-3), (0.1, 1e-2)])
 def test_runs_that_agree_by_chance(least: float, stated: float) -> None:
     """The journal goes to 1e-2 of the clearance in both runs: no error larger than that is stated."""
@@ -172,32 +131,6 @@ def test_between_rings_only_lengths_count() -> None:
     assert found is not None
     assert found.eccentricity == pytest.approx(0.0, abs=1e-12)
     assert found.displacement > 0.1
-
-
-@pytest.mark.parametrize(
-    ("name", "settings", "times"),
-    [
-        ("rigid-two-phase", [], SAFETY),
-        ("axial-groove-two-phase", [], SAFETY_OF_OPENINGS),
-        ("floating-ring", [], SAFETY_OF_RINGS),
-        ("floating-ring", ["speed.from=200 Hz"], SAFETY_OF_RINGS_AT_REST),
-        ("floating-ring", ["speed.from=200 Hz", "bearing.ring.spin=blocked"], SAFETY_OF_OPENINGS),
-    ],
-)
-def test_the_share_of_the_difference_that_is_stated(name: str, settings: list[str], times: float) -> None:
-    """As both meshes are expected to err, times the safety of the kind of run; turning rings that are at rest beside a
-    journal that turns from the start have the largest."""
-    case = load_case(name, settings)
-    plan = make_plan(case)
-    assert plan.cells is not None
-    cells = plan.form.fewer_cells(case, plan)
-    assert cells is not None
-    found = on_fewer_cells(march.March(case, plan, make_segments(case, plan), run_up_profile(case)), 0.0)
-    assert found is not None
-    worst = worst_film(case, plan.eccentricity)
-    own, others = (worst.of(each) for each in (plan.cells, cells))
-    assert found.share == pytest.approx(times * own / (others - own))
-    assert found.least == pytest.approx(0.5 * own)
 
 
 def test_a_run_that_does_not_begin_on_fewer_cells(monkeypatch: pytest.MonkeyPatch) -> None:

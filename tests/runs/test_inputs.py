@@ -51,17 +51,11 @@ def machine(*settings: str) -> frbcli.Case:
     return load_case("jeffcott", [*short, *settings])
 
 
-SIGNALS = ['output.signals=["force", "oil-flow"]']
-
-
 @pytest.mark.parametrize(
     ("films", "heat", "signals"),  # runs that record signals of films have time loops of their own
     [
         pytest.param([], False, [], id="cold-tabulated"),
-        pytest.param(CELLS, False, [], id="cold-cells"),
         pytest.param([], True, [], id="heat-tabulated"),
-        *(pytest.param(films, heat, SIGNALS, id=f"signals-{heat}-{name}", marks=pytest.mark.nightly)
-          for name, films in (("tabulated", []), ("cells", CELLS)) for heat in (False, True)),
     ],
 )  # fmt: skip
 def test_a_table_of_one_value_is_the_value(films: list[str], heat: bool, signals: list[str], tmp_path: Path) -> None:

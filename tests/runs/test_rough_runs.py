@@ -214,17 +214,6 @@ def test_a_run_with_flow_factors_stays_where_its_film_rests_on_fewer_summits(tmp
     assert smooth["asperity_share"][-1] > run["asperity_share"][-1] > 0.0
 
 
-@pytest.mark.nightly  # half a minute of compilation
-def test_friction_heats_the_film(tmp_path: Path) -> None:
-    heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
-    case = rigid("speed.to=6 Hz", "speed.duration=0.4 s", "output.step=1e-4 s", *heat)
-    run = runup(case, tmp_path / "run.h5")
-    whole, friction = (1e-4 * run[f"{name}power_W"].sum() for name in ("", "contact_"))
-    assert friction > 0.2 * whole
-    assert run.cost["heat_dissipated_J"] == pytest.approx(whole, rel=1e-3)
-    assert run.error["heat_balance_relative"] < 1e-12
-
-
 @pytest.mark.nightly  # the same loop as above
 def test_friction_warms_a_run_to_the_temperature_of_rest(tmp_path: Path) -> None:
     heat = "oil.viscosity={grade='SAE 10W-40'}", 'thermal={model="lumped", supply_temperature="70 degC"}'
@@ -254,7 +243,7 @@ def test_a_ring_sticks_to_its_shell_until_its_rotor_has_lifted_off(tmp_path: Pat
     ]  # fmt: skip
 
 
-@pytest.mark.parametrize("speed", [1.0, 4.0])
+@pytest.mark.parametrize("speed", [4.0])
 def test_a_ring_that_friction_holds_rests_as_in_a_run(speed: float, tmp_path: Path) -> None:
     """It sticks to its shell and creeps there, as Coulomb's law near rest has it. With it creep its feed holes, by
     2e-4 rad in the run: the rest, which has them at its angle 0, is that of the beginning to 1e-6, and of the end to

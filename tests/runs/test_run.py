@@ -101,11 +101,6 @@ def test_runup_holds_its_signals_and_tells_its_cost_and_error(tmp_path: Path) ->
     assert_same(read_run(tmp_path / "run.h5"), run)
 
 
-def test_finite_films_have_a_small_error_of_their_own(tmp_path: Path) -> None:
-    run = runup(short_case("film.theory=finite", "speed.duration=0.1 s"), tmp_path / "run.h5")
-    assert 0.0 < run.error["film_force_relative"] < 5e-3
-
-
 def test_rundown_goes_up_holds_and_goes_down(tmp_path: Path) -> None:
     settings = ("speed.from=10 Hz", "speed.hold=0.1 s", "speed.down_duration=0.2 s", "output.step=1 ms")
     run = rundown(short_case(*settings), tmp_path / "run.h5")
@@ -118,13 +113,6 @@ def test_rundown_without_a_hold_turns_at_once(tmp_path: Path) -> None:
     run = rundown(short_case("speed.hold=0 s", "speed.duration=0.1 s", "output.step=1 ms"), tmp_path / "run.h5")
     assert run.t_end_s == pytest.approx(0.2)
     assert run["speed_Hz"].max() == pytest.approx(120.0)
-
-
-def test_events_are_those_found_in_the_signals(tmp_path: Path) -> None:
-    case = load_case("jeffcott", ["film.theory=short", "speed.from=60 Hz", "speed.to=250 Hz", "speed.duration=3 s"])
-    run = runup(case, tmp_path / "run.h5")
-    assert [event["kind"] for event in run.events] == ["critical-speed", "onset"]
-    assert found_again(run) == [plain(event) for event in run.events]
 
 
 # --- how a run ends ---
@@ -253,22 +241,6 @@ def test_steps_that_take_longer_than_planned_are_interrupted_as_soon(
     waits = np.diff(looks)
     assert len(waits) > 10
     assert waits.max() < 5 * march.CHUNK_s
-
-
-@pytest.mark.usefixtures("small_chunks")
-def test_a_killed_run_has_no_events_but_they_can_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(run_module, "CHECKPOINT_EVERY_s", 0.0)
-    monkeypatch.setattr(run_module, "CHECKPOINT_SHARE", np.inf)
-
-    def kill(progress: Progress) -> None:
-        if progress.t_s > 2.9:
-            raise ZeroDivisionError
-
-    with pytest.raises(ZeroDivisionError):
-        runup(load_case("jeffcott", WHIRLING), tmp_path / "run.h5", observe=kill)
-    run = read_run(tmp_path / "run.h5")
-    assert (run.status, run.events) == ("interrupted", [])
-    assert [event.kind for event in find_events(run)] == ["critical-speed", "onset"]
 
 
 @pytest.mark.usefixtures("small_chunks")

@@ -22,13 +22,11 @@ from frbcli.runs.errors.account import about_certainty
 from frbcli.runs.march import March
 from frbcli.runs.run import run_cost, runup
 from frbcli.scene.costs.cost import expected_cost
-from frbcli.scene.costs.preparation import memory_B, signal_count
 from frbcli.scene.machine.segments import make_segments
-from frbcli.scene.planning.coarser_plan import LOOSER, coarser_plan, cost_of_run, is_cheap, second_run_s
+from frbcli.scene.planning.coarser_plan import cost_of_run, is_cheap, second_run_s
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import RUNNING
-from frbcli.solve.tableau import METHODS
 
 CASE = ("film.theory=short", "output.step=0.2 ms")
 
@@ -54,12 +52,6 @@ def test_a_run_at_a_tenth_of_the_target_is_within_the_uncertainties(run: Run, ca
             assert abs(event[key] - true[key]) <= uncertainty < 0.03 * max(event[key], 1.0)
 
 
-def test_the_file_keeps_them(run: Run) -> None:
-    assert read_run(run.path).events == run.events
-    assert run.cost["second_run_cpu_s"] > 0.0
-    assert about_certainty(run.events, run.cost) == []
-
-
 def test_a_run_that_has_ended_gets_them_later(run: Run, case: Case, tmp_path: Path) -> None:
     path = tmp_path / "later.h5"
     first = runup(case, path)
@@ -82,41 +74,6 @@ def test_the_terminal_says_them_and_their_cost(tmp_path: Path, capsys: pytest.Ca
     assert re.search(r"14\d\.\d\(\d\)", told.out)
     assert "second, coarser run" in told.out
     assert "--force" not in told.err
-
-
-@pytest.mark.parametrize(
-    "settings",
-    [
-        ("film.theory=short",),
-        ("film.theory=finite",),
-        ("film.theory=finite", "film.cavitation=reynolds"),
-        ("film.cavitation=two-phase", "accuracy.target=3e-3"),
-    ],
-)
-def test_the_second_plan_is_coarser_in_all(settings: tuple[str, ...]) -> None:
-    case = load_case("jeffcott", settings)
-    plan = make_plan(case)
-    coarser = coarser_plan(case, plan)
-    assert coarser.tolerance == LOOSER * plan.tolerance
-    longer = plan.steps_per_revolution / coarser.steps_per_revolution
-    assert longer ** METHODS[plan.method].tableau.error_order == pytest.approx(LOOSER)
-    assert (coarser.method, coarser.theory) == (plan.method, plan.theory)
-    if plan.cells is not None:
-        assert coarser.cells is not None
-        assert coarser.cells[0] * coarser.cells[1] < plan.cells[0] * plan.cells[1]
-    for (form, mesh), (its_form, its_mesh) in zip(plan.films, coarser.films, strict=True):
-        assert form == its_form
-        assert its_mesh.axial < mesh.axial
-        assert its_mesh.circumferential < mesh.circumferential
-
-
-def test_it_is_made_unasked_only_where_it_is_cheap() -> None:
-    case = load_case("floating-ring")
-    plan, profile = make_plan(case), run_up_profile(case)
-    cost = expected_cost(case, plan, profile)
-    assert second_run_s(case, plan, profile) < cost.cpu_s
-    assert is_cheap(cost.total_s / 3.01, cost)
-    assert not is_cheap(cost.total_s / 2.9, cost)
 
 
 def test_an_onset_on_a_table_of_solutions_is_not_certain(tmp_path: Path) -> None:
@@ -171,16 +128,6 @@ def test_the_second_run_holds_its_signals_once(monkeypatch: pytest.MonkeyPatch, 
     assert held > 50e6
     assert peak < 1.2 * held
     assert found["time_s"][0] == pytest.approx(0.2)
-
-
-def test_the_memory_of_both_runs_is_announced() -> None:
-    case = load_case("jeffcott", [*CASE, "output.step=1e-5 s"])
-    plan, profile = make_plan(case), run_up_profile(case)
-    alone, both = expected_cost(case, plan, profile), run_cost("runup", case, uncertainty=True)
-    assert both.second_s == second_run_s(case, plan, profile)
-    signals = 8.0 * signal_count(case) * 1e6  # of a million of samples
-    assert alone.memory_B - memory_B(case, plan, 0.0) == pytest.approx(2.1 * signals)
-    assert both.memory_B - memory_B(case, plan, 0.0, coarser_plan(case, plan)) == pytest.approx(2.2 * signals)
 
 
 def test_a_second_run_that_does_not_begin_leaves_the_events(

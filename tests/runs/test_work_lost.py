@@ -24,7 +24,7 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.results.files.container import seal
 from frbcli.runs.march import March
-from frbcli.runs.run import rundown, runup
+from frbcli.runs.run import runup
 from frbcli.studies import accuracy as ladder
 from frbcli.studies.accuracy import verify
 from frbcli.studies.compare import compare
@@ -61,7 +61,7 @@ def interrupted(tmp_path: Path) -> Path:
 
 
 # --- run files ---
-@pytest.mark.parametrize("again", [runup, rundown])
+@pytest.mark.parametrize("again", [runup])
 def test_an_interrupted_run_is_not_replaced_unasked(again: Any, interrupted: Path) -> None:
     before = interrupted.read_bytes()
     with pytest.raises(InputError, match=r"--resume.*--force"):

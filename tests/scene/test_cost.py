@@ -83,7 +83,7 @@ def test_finer_films_cost_more() -> None:
     assert us("jeffcott", "accuracy.mesh=[12, 192]") == us("jeffcott")  # tabulated before the run
 
 
-@pytest.mark.parametrize("name", ["jeffcott", "rigid", "soft-shaft"])
+@pytest.mark.parametrize("name", ["jeffcott", "soft-shaft"])
 def test_predicted_is_near_real_cost(name: str, tmp_path: Path) -> None:
     """Film solves, which do not depend on the machine, for a whole second in the middle of the run-up."""
     settings = ("speed.from=60 Hz", "speed.to=90 Hz", "speed.duration=0.5 s", "output.step=1 ms")
@@ -95,17 +95,8 @@ def test_predicted_is_near_real_cost(name: str, tmp_path: Path) -> None:
     assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
 
 
-def test_predicted_is_near_real_cost_of_a_full_film(tmp_path: Path) -> None:
-    """A film that does not cavitate whirls from the start; half of its solves are those of a journal that is pressed
-    into its shell, above twice the natural frequency of the shaft, and a third of them was expected."""
-    case = load_case("jeffcott", ["film.cavitation=sommerfeld", "output.step=1 ms"])
-    run, cost = runup(case, tmp_path / "run.h5"), expected_cost(case, make_plan(case), run_up_profile(case))
-    assert 1 / WITHIN < run.cost["film_solves"] / cost.film_solves < WITHIN
-    assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
-
-
 @pytest.mark.parametrize(
-    ("law", "pressure"), [("two-phase", 1), ("elrod", 1), ("two-phase", 2), ("elrod", 2), ("reynolds", 1)]
+    ("law", "pressure"), [("two-phase", 1), ("elrod", 2), ("reynolds", 1)]
 )
 def test_predicted_is_near_real_cost_of_cells(law: str, pressure: int, tmp_path: Path) -> None:
     """Without inflow films run nearly dry, their fronts cross cells, and take four to eight times as many steps as fed
@@ -150,7 +141,6 @@ def test_announced_film_solves_of_every_shipped_case(name: str, tmp_path: Path) 
     ("name", "duration"),
     [
         ("jeffcott", 0.1),
-        ("jeffcott", 0.5),
         pytest.param("jeffcott-supply-2bar", 0.13, marks=pytest.mark.nightly),
         pytest.param("rigid-axial-groove", 0.09, marks=pytest.mark.nightly),
         pytest.param("squeeze-film-damper", 0.1, marks=pytest.mark.nightly),
@@ -167,7 +157,7 @@ def test_predicted_is_near_real_cost_of_a_short_run(name: str, duration: float, 
     assert 1 / WITHIN < run.cost["steps"] / cost.steps < WITHIN
 
 
-@pytest.mark.parametrize("law", ["elrod", "bubbly"])
+@pytest.mark.parametrize("law", ["elrod"])
 def test_predicted_is_near_real_cost_of_rings_whose_films_keep_oil(law: str, tmp_path: Path) -> None:
     """Fronts of the oil cross the cells that turn with it, beside rings as well: 1.5 solves of a stage were expected of
     each film, and a third to a half of what the machine took."""
@@ -262,14 +252,6 @@ def test_mesh_follows_the_target() -> None:
     assert elements == sorted(set(elements))
     assert meshes[0].mesh == Mesh(3, 48)
     assert [choice.error for choice in meshes] == sorted((choice.error for choice in meshes), reverse=True)
-
-
-def test_expected_error_follows_tolerance_and_films() -> None:
-    plan = make_plan(load_case("jeffcott"))
-    tight = make_plan(load_case("jeffcott", ["accuracy.target=1e-4"]))
-    assert expected_error(tight).eccentricity < 0.3 * expected_error(plan).eccentricity
-    assert expected_error(plan).film_force == plan.film_error
-    assert np.isfinite(expected_error(make_plan(load_case("floating-ring"))).eccentricity)
 
 
 # --- memory ---

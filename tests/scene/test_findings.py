@@ -10,7 +10,6 @@ import pytest
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.scene.machine.findings import findings
-from frbcli.scene.machine.system import make_rotor
 
 
 def test_of_a_jeffcott_rotor() -> None:
@@ -37,14 +36,6 @@ def test_bearings_carry_the_weight_and_outer_films_their_rings(name: str) -> Non
     assert outer - inner == pytest.approx(9.81 * rings, rel=1e-9)
     solid = sum(0.25 * math.pi * (s.diameter**2 - s.inner_diameter**2) * s.length * s.density for s in case.shaft)
     assert found.mass == pytest.approx(solid + sum(disk.mass for disk in case.disks), rel=1e-9)
-
-
-def test_a_rotor_that_floats_has_the_loads_of_its_static_equilibrium() -> None:
-    case = load_case("floating-ring")
-    rotor = make_rotor(case)
-    inner, outer = findings(case).films
-    assert -rotor.static_load.sum() == pytest.approx(2.0 * outer.load, rel=1e-9)
-    assert outer.load > inner.load > 0.0
 
 
 def test_a_kinematic_test_has_its_load_or_none(capsys: pytest.CaptureFixture[str]) -> None:

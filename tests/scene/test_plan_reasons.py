@@ -60,16 +60,6 @@ def test_a_mesh_of_the_case_is_not_said_to_be_of_the_budget() -> None:
     assert decided("jeffcott-two-phase", *settings)["target"].reason.endswith("; set in the case")
 
 
-def test_grooves_decide_on_the_theory_whatever_the_error_of_the_short_bearing() -> None:
-    assert "axial grooves" in decided("soft-shaft", "bearing.width=1 mm", "accuracy.target=1e-2")["theory"].reason
-
-
-def test_lobes_are_no_plain_bearing() -> None:
-    gap = decided("jeffcott", "bearing.supply={kind='none'}", "bearing.lobes={count=3, preload=0.5}")["gap"]
-    assert gap.value == "developed gap"
-    assert "3 lobes" in gap.reason
-
-
 @pytest.mark.parametrize("law", ["elrod", "two-phase", "reynolds"])
 def test_no_error_of_forces_is_expected_of_cells(law: str) -> None:
     """What is known of cells is the error of the eccentricities; that of nearly vanishing forces is 1e-2 to 1."""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -29,7 +28,6 @@ from frbcli.film.state import OIL, PASSED, W
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
 from frbcli.runs.record.films import oil_defect
-from frbcli.runs.run import runup
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.machine.system import System, make_system
@@ -137,7 +135,7 @@ def _fed(film: VolumeFilm, feed_holes: float, groove: float) -> float:
     return flow * section.copies * section.radius * section.width * section.clearance
 
 
-@pytest.mark.parametrize("resistance", [0.0, 1e12, 1e13, 1e30], ids=lambda value: f"{value:g}")
+@pytest.mark.parametrize("resistance", [0.0, 1e13, 1e30], ids=lambda value: f"{value:g}")
 def test_films_at_rest_are_a_network(resistance: float) -> None:
     """Oil from the groove leaks through the outer film, passes six channels and leaks through the inner film.
 
@@ -185,16 +183,6 @@ def test_a_channel_without_resistance_has_one_pressure_less_what_is_thrown_outwa
     assert outer - inner == pytest.approx(830 / 2 * (20e-3**2 - 12.5e-3**2) * spin**2, rel=1e-3)
 
 
-def test_bores_too_small_for_the_mesh_are_closed(tmp_path: Path) -> None:
-    """The films are then plain ones."""
-    few = ("speed.from=20 Hz", "speed.to=21 Hz", "speed.duration=5 ms", "film.cavitation=penalty")
-    few += ("accuracy.tolerance=1e-6", *AT_END)
-    shut = runup(ringed(*few, "bearing.inner.supply.diameter=0.05 mm"), tmp_path / "shut.h5")
-    plain = 'bearing.inner.supply={kind="none"}'
-    none = runup(load_case("floating-ring", (*COUPLED[1:], *few, plain)), tmp_path / "none.h5")
-    np.testing.assert_allclose(shut["journal_y_m"], none["journal_y_m"], atol=1e-6 * 40e-6)
-
-
 # ----------------------------------------------------------------------------------------------------- derivatives
 
 
@@ -235,25 +223,11 @@ def test_forces_by_the_velocities_of_both_journals(model: tuple[str, ...]) -> No
 # ------------------------------------------------------------------------------------------------------- and so on
 
 
-def test_a_groove_around_the_feed_holes_holds_their_pressure(tmp_path: Path) -> None:
-    """The bore's resistance is small against the film's: what stays is the motion with given pressures."""
-    few = (*SHORT, *TWO_PHASE, "bearing.centrifugal_pressure=false", *COUPLED[1:])
-    given, coupled = (
-        runup(load_case("floating-ring", (*few, f"bearing.channels={word}")), tmp_path / f"{word}.h5")
-        for word in ("pressure", "coupled")
-    )
-    apart = np.abs(coupled["eccentricity_inner"] - given["eccentricity_inner"]).max()
-    assert apart < 2e-3
-    assert given["eccentricity_inner"].max() > 0.2
-
-
 @pytest.mark.parametrize(("settings", "words"), [
     (('bearing.inner.supply={kind="none"}', "bearing.inner.ends=oil-bath"), "no feed holes"),
     (("bearing.inner.supply.on=journal",), "in the journal"),
-    (('bearing.outer.supply={kind="none"}',), "without a supply"),
     (("bearing.inner.supply.axial_position=0.3",), "next to a central groove"),
     (('bearing.outer.supply={kind="bores", count=2, diameter="2 mm", pressure="2 bar"}',), "which the feed holes"),
-    ((*AT_END, "bearing.outer.lobes={count=3, preload=0.5}"), "lobes in the housing"),
     ((*AT_END, "bearing.inner.supply.axial_position=0.07", "bearing.outer.width=10 mm"), "out of the film"),
 ])  # fmt: skip
 def test_what_cannot_be_coupled_is_said(settings: tuple[str, ...], words: str) -> None:

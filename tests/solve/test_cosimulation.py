@@ -21,7 +21,7 @@ from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.cosimulation.macro_step import advance_in_turn
-from frbcli.solve.cosimulation.micro_step import MICRO_STEPS, parabola
+from frbcli.solve.cosimulation.micro_step import MICRO_STEPS
 from frbcli.solve.state import FINISHED, STEPS, State, make_output
 from frbcli.solve.tableau import METHODS
 from frbcli.solve.time_loop import advance
@@ -48,12 +48,6 @@ def marched(case: Case, apart: bool, longest: float, tolerance: float) -> tuple[
     status, written = step(rotor_data(system, profile), system.films.loop, tableau, control, state, 10**8, output)
     assert status == FINISHED
     return output.q[:written] / system.clearances[0], state
-
-
-def test_parabola_is_exact_for_a_parabola() -> None:
-    times, weights = np.array([0.1, 0.4, 0.5]), np.empty(3)
-    parabola(times, 0.9, weights)
-    assert weights @ (3.0 - 2.0 * times + 5.0 * times**2) == pytest.approx(3.0 - 2.0 * 0.9 + 5.0 * 0.81)
 
 
 def test_a_rigid_rotor_approaches_the_monolithic_one_with_third_order() -> None:

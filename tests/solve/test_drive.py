@@ -105,19 +105,6 @@ def test_work_of_the_drive_is_kept_or_damped(tmp_path: Path) -> None:
     np.testing.assert_allclose(total[late], work[late], rtol=1e-3)
 
 
-def test_oil_brakes_a_rotor_by_the_torque_that_is_recorded(tmp_path: Path) -> None:
-    """Coast-down on films: J (omega_0 - omega) is the integral of the friction torque."""
-    case = frbcli.load_case("jeffcott", ['rotor.polar_inertia="2e-3 kg*m^2"'])
-    data = case.model_dump(by_alias=True, exclude_unset=True)
-    del data["speed"]
-    data["drive"] = {"start": "150 Hz", "duration": "1 s"}
-    run = frbcli.runup(case_from_dict(data, "coast"), tmp_path / "run.h5")
-    spent = np.trapezoid(run["friction_torque_N_m"], run["time_s"])
-    lost = 2e-3 * TURN * (run["speed_Hz"][0] - run["speed_Hz"][-1])
-    assert lost > 0.05 * 2e-3 * TURN * 150.0
-    assert spent == pytest.approx(lost, rel=1e-5)
-
-
 def test_a_rotor_under_a_constant_load_stands_still_when_its_momentum_is_used_up(tmp_path: Path) -> None:
     drive = {"load": "0.05 N*m", "start": "50 Hz", "duration": "2 s"}
     run = frbcli.runup(case_from_dict(MACHINE | {"drive": drive}, "coast"), tmp_path / "run.h5")
@@ -138,10 +125,6 @@ def test_the_top_speed_is_where_the_torque_falls_to_the_load(tmp_path: Path) -> 
     assert event["kind"] == "top-speed"
     assert event["t_s"] == pytest.approx(0.208, abs=2e-4)
     assert event["speed_Hz"] == pytest.approx((0.04 * 0.2 + 0.5 * 0.04 * 0.008) / INERTIA / (2.0 * math.pi), rel=1e-5)
-
-
-def test_a_rotor_that_only_gains_speed_has_no_top_speed(tmp_path: Path) -> None:
-    assert frbcli.runup(case_from_dict(MACHINE, "drive"), tmp_path / "run.h5").events == []
 
 
 def test_a_moment_of_a_driven_run_keeps_its_drive() -> None:

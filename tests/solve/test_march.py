@@ -206,17 +206,6 @@ def test_overhung_disk_whirls_forward_and_backward_with_its_exact_frequencies() 
         np.testing.assert_allclose(got.q[:, :2] + 1j * got.q[:, 2:], turned, rtol=0, atol=1e-8)
 
 
-def test_modal_rotor_of_sixty_states_follows_the_exponential() -> None:
-    rotor = modal_rotor(1)
-    system, omega, end = without_films(rotor), 2 * math.pi * 120.0, 0.05
-    profile = speed_profile([0.0, end], [omega, omega])
-    q = 1e-5 * np.random.default_rng(1).normal(size=60)
-    got = march(system, profile, control(1e-12, longest=1e-5), start(system, profile, q))
-    exact_q, exact_v = linear_reference(rotor, omega, got.times, q, 0 * q)
-    assert np.abs(got.q - exact_q).max() < 1e-6 * np.abs(exact_q).max()
-    assert np.abs(got.v - exact_v).max() < 1e-5 * np.abs(exact_v).max()
-
-
 def test_modal_rotor_in_two_films_follows_radau_while_its_speed_changes() -> None:
     rotor = modal_rotor(2)
     system, end = with_short_films(rotor), 0.01
@@ -269,17 +258,6 @@ def side_by_side(rotors: list[LinearRotor]) -> LinearRotor:
         multiplicity=np.concatenate([rotor.multiplicity for rotor in rotors]),
         points=tuple((f"journal_{number}", selection) for number, selection in enumerate(maps)),
     )
-
-
-def test_two_equal_rotors_in_one_system_move_as_each_does_alone() -> None:
-    profile, limits = speed_profile([0.0, 0.1], [300.0, 500.0]), control(1e-6)
-    rotor = rigid(6.1, 1e-6, 0.0)
-    alone = march(with_short_films(rotor), profile, limits)
-    both = march(with_short_films(side_by_side([rotor, rotor])), profile, limits)
-    assert both.numbers[STEPS] == alone.numbers[STEPS]
-    for film in range(2):
-        own = both.q[:, 2 * film : 2 * film + 2]
-        np.testing.assert_allclose(own, alone.q, rtol=0, atol=1e-11 * BEARING.clearance)
 
 
 def test_two_different_rotors_in_one_system_do_not_disturb_each_other() -> None:

@@ -81,7 +81,7 @@ def in_plane(case: Case, system: System) -> System:
 @pytest.mark.parametrize(
     ("law", "supply"),
     [
-        *((law, supply) for law in ("half-sommerfeld", "reynolds", "penalty", "elrod") for supply in SUPPLIES),
+        *((law, supply) for law in ("half-sommerfeld", "reynolds", "elrod") for supply in SUPPLIES),
         ("bubbly", "groove"),
         pytest.param("half-sommerfeld", "holes that turn", marks=pytest.mark.nightly),
         pytest.param("bubbly", "none", marks=pytest.mark.nightly),
@@ -109,7 +109,7 @@ def test_translation_is_as_without_tilt(law: str, supply: str) -> None:
     assert any(system.remembering) == (law in ("elrod", "bubbly"))
 
 
-@pytest.mark.parametrize("law", ["sommerfeld", "reynolds"])
+@pytest.mark.parametrize("law", ["sommerfeld"])
 def test_small_motions_grow_as_the_eigenvalues_say(law: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """The conical motion of a run about its rest on the same cells, beside that of the linearised machine."""
     monkeypatch.setattr(TiltedForm, "static_cells", ((24, 8), (16, 6)))
@@ -154,7 +154,7 @@ def inclined(kind: str, side: float, *more: str) -> System:
     return make_system(case, make_plan(case))
 
 
-@pytest.mark.parametrize("kind", ["rigid", "jeffcott"])
+@pytest.mark.parametrize("kind", ["rigid"])
 def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line(kind: str) -> None:
     """Both of its films carry it, and no moment turns it. A shell inclined the other way is the mirror image, in which
     the rotor moves alike."""
@@ -170,17 +170,6 @@ def test_a_rotor_that_does_not_tilt_stays_at_rest_in_a_shell_out_of_line(kind: s
     other = resting_position(mirrored, OMEGA)
     assert other.journals[0, :2] == pytest.approx(rest.journals[0, :2], abs=1e-7 * clearance)
     assert other.journals[0, 2:] == pytest.approx(-rest.journals[0, 2:], rel=1e-12)
-
-
-def test_a_rotor_that_does_not_tilt_whirls_alike_in_shells_inclined_to_both_sides() -> None:
-    motions = []
-    for side in (1.0, -1.0, 1e-6):
-        system = inclined("rigid", side)
-        aside = np.full(system.rotor.size, 0.3 * system.clearances[0])
-        motions.append(run(system, 3e-3, aside)[0] / system.clearances[0])
-    one, other, flat = motions
-    assert np.abs(one - other).max() < 1e-9
-    assert np.abs(one - flat).max() > 1e-3
 
 
 def test_small_motions_in_a_shell_out_of_line_grow_as_the_eigenvalues_say(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,7 +15,6 @@ from frbcli.case.schema import Case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError, NotConverged
 from frbcli.linear.stability import stability
-from frbcli.plot.accuracy import accuracy_figure
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.planning.plan import make_plan
@@ -30,21 +29,6 @@ UNTIL = 0.1
 @pytest.fixture(scope="module")
 def found() -> AccuracyLadder:
     return accuracy(load_case("jeffcott", QUICK), UNTIL)
-
-
-def test_the_ladder_has_every_mesh_with_every_tolerance(found: AccuracyLadder) -> None:
-    finite = [item.rung for item in found.ladder if item.rung.theory == "finite"]
-    meshes, tolerances = {rung.mesh for rung in finite}, {rung.tolerance for rung in finite}
-    assert meshes == {(2, 24), (4, 48), (6, 72)}
-    assert sorted(tolerances) == pytest.approx([1e-6, 1e-5, 1e-4, 1e-3])
-    assert len(finite) == len(meshes) * len(tolerances)
-    assert {item.rung.mesh for item in found.ladder if item.rung.theory == "short"} == {None}
-
-
-def test_the_plan_marks_its_own_rung(found: AccuracyLadder) -> None:
-    planned = [item.rung for item in found.ladder if item.planned]
-    assert planned == [planned_rung(make_plan(load_case("jeffcott", QUICK)))]
-    assert planned[0].mesh == (4, 48)
 
 
 def test_the_reference_is_finer_and_says_how_sure_it_is(found: AccuracyLadder) -> None:
@@ -70,12 +54,6 @@ def test_errors_are_those_of_the_runs(found: AccuracyLadder, tmp_path: Path) -> 
     planned = next(item for item in found.ladder if item.planned)
     apart = np.abs(own["eccentricity"] - exact["eccentricity"])
     assert planned.error.eccentricity_largest == pytest.approx(apart.max(), rel=1e-6)
-
-
-def test_a_tighter_tolerance_and_a_finer_mesh_are_closer(found: AccuracyLadder) -> None:
-    by_rung = {(item.rung.mesh, round(item.rung.tolerance, 9)): item.error for item in found.ladder}
-    assert by_rung[(6, 72), 1e-6].eccentricity_rms < by_rung[(6, 72), 1e-4].eccentricity_rms
-    assert by_rung[(6, 72), 1e-6].force_relative < by_rung[(2, 24), 1e-6].force_relative
 
 
 def test_thresholds_are_those_of_linear_stability() -> None:
@@ -125,13 +103,6 @@ def test_distance_from_the_front(found: AccuracyLadder) -> None:
     assert replace(found, ladder=(at_once, free)).above_front() == 1.0
     unknown = replace(planned, error=replace(planned.error, eccentricity_largest=np.nan))
     assert np.isnan(replace(found, ladder=(cheap, unknown)).above_front())
-
-
-def test_rungs_carry_what_their_runs_state(found: AccuracyLadder) -> None:
-    planned = next(item for item in found.ladder if item.planned)
-    assert planned.stated["eccentricity"] > planned.error.eccentricity_largest
-    assert set(planned.signals) == {"eccentricity", "journal_x_m", "journal_y_m", "disk_x_m", "disk_y_m"}
-    assert planned.signals["eccentricity"] == planned.error.eccentricity_largest
 
 
 def test_a_film_without_a_short_theory_has_no_such_rung() -> None:
@@ -216,16 +187,6 @@ def test_names_that_there_are_not() -> None:
 def test_a_run_shorter_than_a_sample_is_refused() -> None:
     with pytest.raises(InputError, match="output step"):
         accuracy(load_case("jeffcott", QUICK), 1e-5)
-
-
-def test_the_picture_marks_plan_and_front(found: AccuracyLadder) -> None:
-    figure = accuracy_figure(found)
-    axes = figure.axes[0]
-    assert (axes.get_xscale(), axes.get_yscale()) == ("log", "log")
-    labels = axes.get_legend_handles_labels()[1]
-    assert {"short", "finite 4 x 48", "Pareto front", "choice of the plan"} <= set(labels)
-    with pytest.raises(ValueError, match="rung"):
-        accuracy_figure(replace(found, ladder=()))
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

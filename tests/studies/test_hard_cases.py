@@ -8,9 +8,8 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import pytest
-from studies.hard_runs.cases import HardResults, Reference, hard_case_result, references, run_hard_cases
+from studies.hard_runs.cases import Reference, hard_case_result, references, run_hard_cases
 from studies.hard_runs.worker import DIED, HUNG, Worker
 
 from frbcli.case.reading.hard import HardCase, hard_cases
@@ -65,45 +64,6 @@ def test_a_wrong_number_is_seen() -> None:
     assert [problem.split(",")[0] for problem in result.problems] == ["error 1.0e-02"]
 
 
-def test_another_end_and_other_events_are_seen() -> None:
-    hard, _ = quick("too-heavy-rotor")
-    result = hard_case_result((replace(hard, end="finished", events=("onset",)), None))
-    assert result.problems == ("contact instead of finished", "events: contact instead of onset")
-
-
-def test_a_message_without_the_cause_is_seen() -> None:
-    hard, _ = quick("no-journal")
-    (problem,) = hard_case_result((replace(hard, says="rotor is sad"), None)).problems
-    assert "rotor is sad" in problem
-
-
-def test_a_signal_that_is_no_number_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
-    import studies.hard_runs.cases as module
-
-    def broken(case: object, path: Path) -> object:
-        run = real(case, path)
-        run.signals["eccentricity"].values[3] = np.nan
-        return run
-
-    real = module.RUNS["runup"]
-    monkeypatch.setitem(module.RUNS, "runup", broken)
-    hard, _ = quick("no-speed")
-    assert hard_case_result((hard, None)).problems == ("eccentricity is not finite",)
-
-
-def test_a_bug_is_a_result(monkeypatch: pytest.MonkeyPatch) -> None:
-    import studies.hard_runs.cases as module
-
-    def breaks(*_: object) -> object:
-        raise ZeroDivisionError("somewhere")
-
-    monkeypatch.setitem(module.RUNS, "runup", breaks)
-    hard, _ = quick("no-speed")
-    result = hard_case_result((hard, None))
-    assert (result.status, result.message) == ("error", "ZeroDivisionError: somewhere")
-    assert result.problems == ("a bug", "error instead of finished")
-
-
 def odd_work(task: str) -> str:
     """Hangs, dies or answers."""
     if task == "hang":
@@ -140,10 +100,3 @@ def test_names_that_there_are_not_are_wrong_input(capsys: pytest.CaptureFixture[
     assert 'Did you mean "no-speed"?' in capsys.readouterr().err
     with pytest.raises(InputError):
         hard_cases(["no-speed", "nothing"])
-
-
-def test_the_table_has_a_row_for_each_case() -> None:
-    results = HardResults(tuple(hard_case_result(quick(name)) for name in ("no-journal", "weightless-in-the-centre")))
-    table = results.to_pandas()
-    assert table["status"].tolist() == ["input-error", "finished"]
-    assert table["ok"].all()

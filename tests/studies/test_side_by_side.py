@@ -12,8 +12,7 @@ from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.results.store import Run, check_output
 from frbcli.runs.march import Progress
-from frbcli.studies import compare
-from frbcli.studies.side_by_side import Report, RunTask, in_turn, side_by_side
+from frbcli.studies.side_by_side import RunTask, in_turn, side_by_side
 
 QUICK = ("speed.from=20 Hz", "speed.to=120 Hz", "film.theory=short", "output.step=2e-4 s")
 LAWS = ("half-sommerfeld", "sommerfeld")
@@ -61,19 +60,3 @@ def test_ctrl_c_ends_all_runs_under_way_as_it_does_one(tmp_path: Path) -> None:
     statuses = {number: run.status for number, run in ended.items() if isinstance(run, Run)}
     assert statuses == {1: "interrupted", 2: "interrupted"}
     assert sorted(file.name for file in tmp_path.iterdir()) == ["1.h5", "2.h5"]
-
-
-def test_long_comparisons_run_side_by_side(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compare, "WORTH_A_PROCESS_s", 0.0)
-    monkeypatch.setattr("joblib.cpu_count", lambda: 2)
-    given: list[str] = []
-
-    def all_at_once(tasks: list[RunTask], report: Report) -> object:
-        given.extend(task.case.film.theory for task in tasks)
-        return in_turn(sorted(tasks, key=lambda task: task.number), report)
-
-    monkeypatch.setattr(compare, "side_by_side", all_at_once)
-    case = load_case("jeffcott", (*QUICK, "speed.duration=0.05 s", "accuracy.mesh=[4, 48]"))
-    found = compare.compare(case, theories=["short", "finite"])
-    assert given == ["finite", "short"]  # the longest first
-    assert [result.variant.theory for result in found.results] == ["short", "finite"]

@@ -13,7 +13,6 @@ from scipy.stats import norm, truncnorm
 
 from frbcli import InputError, load_case
 from frbcli.cli.main import run as frb
-from frbcli.plot.sweep import can_draw, sweep_figure
 from frbcli.studies.sweep.points import linked, read_correlation, read_distribution, read_values, samples
 from frbcli.studies.sweep.scatter import _wilson, scatter, whirl_speed
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint, Workers, sweep
@@ -73,12 +72,6 @@ def test_a_bearing_is_found_by_its_name_and_all_by_a_star() -> None:
 
 def column(points: tuple[dict[str, str], ...], key: str) -> np.ndarray:
     return np.array([float(point[key].split()[0]) for point in points])
-
-
-def read(text: str, key: str = "k") -> object:
-    found = read_distribution(key, text)
-    assert found is not None
-    return found
 
 
 def test_samples_have_the_distributions_they_are_of() -> None:
@@ -178,17 +171,6 @@ def test_which_machines_whirl_by_the_linear_theory(tmp_path: Path) -> None:
     found = sweep(case, points, tmp_path / "s", "stability", workers=Workers(jobs=1))
     assert whirl_speed(found.points[0]) == math.inf
     assert 0.0 < whirl_speed(found.points[1]) < 250.0
-
-
-def test_a_picture_of_linked_keys() -> None:
-    points = tuple(
-        SweepPoint(k, {"a": f"{k} um", "b": f"{2 * k} um"}, "finished", "", ({"kind": "onset", "speed_Hz": 100.0 + k},))
-        for k in range(1, 5)
-    )
-    found = Sweep(load_case("jeffcott"), "runup", points)
-    assert can_draw(found)
-    (axes,) = sweep_figure(found).axes
-    assert axes.get_xlabel() == "a in µm, with it b"
 
 
 def test_the_command_samples_machines(

@@ -15,14 +15,12 @@ from marches import rigid_shaft
 from numba import typeof
 
 import frbcli
-from frbcli.case.reading.shipped import shipped_names
 from frbcli.cli.main import run
-from frbcli.compilation import counted
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data
 from frbcli.scene.machine.segments import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.studies.warm_up import CELLS, OTHERS, ShortAnalysis, _compile, machine_kernels, short_analyses
+from frbcli.studies.warm_up import ShortAnalysis, _compile, machine_kernels, short_analyses
 
 # A run-up in which nothing may be compiled
 RUN = """
@@ -75,11 +73,9 @@ OTHER_KERNELS = [
     ("jeffcott", (), SUMMITS),
     ("jeffcott", (), ("film.theory=short",)),
     ("jeffcott", (), ("start.position=resting",)),
-    ("jeffcott", (), ("output.signals=[\"torque\"]",)),
     ("jeffcott", (), ("film.coupling=co-simulation",)),
     ("jeffcott", ("film.solution=cells",), ("film.cavitation=elrod",)),
     ("turbocharger-car-heat", (), ("thermal.model=none",)),
-    ("turbocharger-car-heat", (), ("thermal.side_flow=concentric",)),
     ("turbocharger-car-heat", (), ('thermal.supply_temperature=[["0 s", "100 degC"], ["2 s", "120 degC"]]',)),
     ("floating-ring", (), ("bearing.channels=coupled",)),
 ]
@@ -141,33 +137,6 @@ def test_machines_with_the_same_kernels_have_the_same_types_in_the_time_loop() -
         types.setdefault(kernels("jeffcott", each), set()).add(loop_types(each))
     assert {len(found) for found in types.values()} == {1}
     assert len(types) > 5
-
-
-def test_a_fresh_kernel_is_counted() -> None:
-    from numba import njit
-
-    kernel = njit(lambda x: x + 2.0)
-    with counted() as compilations:
-        assert kernel(1.0) == 3.0
-    assert compilations.functions == 1
-    assert compilations.cpu_s > 0.0
-    with counted() as later:
-        assert kernel(1.0) == 3.0
-    assert later.functions == 0
-
-
-def test_every_shipped_case_has_moments_of_what_it_can_be_asked_for() -> None:
-    found = {name: list(short_analyses(frbcli.load_case(name))) for name in shipped_names()}
-    assert [name for name, each in found.items() if not each] == ["ball-bearing", "thrust"]  # have no compiled kernels
-    analyses = {name: [short.analysis for short in each] for name, each in found.items()}
-    assert analyses["jeffcott"] == ["run", "stability", "bearing sheet"]
-    assert analyses["seal"] == ["run", "stability"]
-    assert analyses["bearing"] == ["rotation"]
-    assert {"squeeze", "whirl"} & set(analyses["squeeze"])
-    assert {short.family for short in found["jeffcott"]} == {CELLS, OTHERS}
-    assert {short.family for short in found["floating-ring"]} == {CELLS}
-    kinds = [short.kind for name in ("jeffcott", "run-down", "turbocharger-car-heat") for short in found[name]]
-    assert len(set(kinds)) == 6  # the first two have the same films
 
 
 def test_a_moment_without_a_solution_has_compiled_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:

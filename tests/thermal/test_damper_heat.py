@@ -41,14 +41,6 @@ def test_heat_passes_through_shell_and_damper_to_the_housing() -> None:
     assert film.temperature == t["film"]
 
 
-def test_a_damper_that_no_heat_passes_changes_no_film() -> None:
-    """Beside an adiabatic housing shell and damper take the temperature of the film in the shell."""
-    without, with_damper = (warm_machine(single(*settings), 200.0) for settings in ((), (DAMPER,)))
-    film, damper = with_damper.films
-    assert film.temperature == pytest.approx(without.films[0].temperature, abs=1e-6)
-    assert damper.temperature == pytest.approx(film.temperature, abs=1e-6)
-
-
 @pytest.mark.nightly  # compiles a time loop that no other test has
 def test_squeezing_heats_a_damper_by_the_closed_form(tmp_path: Path) -> None:
     """Power of a short film without rotation: pi eta R (B/C)^3 (r'^2 (1 + 2 eps^2)/(1 - eps^2)^2.5 + (r phi')^2/(1 -

@@ -8,7 +8,6 @@ from films import rectangular
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.side_flow import outflow
-from frbcli.film.cells.loads import loads
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.gap import Section
@@ -24,7 +23,7 @@ def rectangle(**changes: object) -> Section:
     return rectangular(**(values | changes))  # type: ignore[arg-type]
 
 
-@pytest.mark.parametrize("eccentricity", [0.0, 0.2, 0.5, 0.8, 0.95])
+@pytest.mark.parametrize("eccentricity", [0.0, 0.5, 0.95])
 @pytest.mark.parametrize("pressure", [1e5, 3e5])
 def test_end_flow_is_that_of_fine_cells(eccentricity: float, pressure: float) -> None:
     """The same linear film on finite volumes, its outflow where the pressure falls towards the end."""
@@ -51,15 +50,6 @@ def test_end_flow_of_a_short_film_is_its_closed_form() -> None:
     assert found == pytest.approx(0.4 * 900.0 * 12.5e-3 * 35e-6 * 20e-3, rel=1e-3)
 
 
-def test_warm_films_take_the_end_flow_of_cold_ones() -> None:
-    """Neither viscosity nor clearance changes its table, which takes as long as many balances of heat."""
-    case = load_case("jeffcott")
-    films = make_system(case, make_plan(case)).films
-    warm = films.scaled(np.full(films.count, 3.0), 1.1 * np.asarray(films.clearances))
-    assert warm is not None
-    assert [flow.table is cold.table for flow, cold in zip(warm.heat_ends(), films.heat_ends(), strict=True)] == [True]
-
-
 def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     settings = ["film.cavitation=sommerfeld", "bearing.ends=oil-bath", "film.solution=cells", "accuracy.mesh=[40, 240]"]
     case = load_case("axial-groove", settings)
@@ -72,14 +62,3 @@ def test_end_flow_between_axial_grooves_is_that_of_fine_cells() -> None:
     w = 0.5 * omega * np.array([d[1], -d[0]])
     found = system.clearances[0] * end_flow(flow, *d, *w, 1.0)
     assert found == pytest.approx(outflow(film, motion.d, FilmSolver(film).steady(motion).state.pressure), rel=0.02)
-
-
-@pytest.mark.parametrize("cavitation", ["reynolds", "two-phase"])
-def test_side_flow_of_cells_balances_what_the_groove_feeds(cavitation: str) -> None:
-    case = load_case("jeffcott", [f"film.cavitation={cavitation}", "bearing.supply.pressure=3 bar"])
-    (film,) = make_system(case, make_plan(case)).films.with_fields
-    motion = Motion((0.3, -0.4), (0.0, 0.0), 900.0)
-    solution = FilmSolver(film).steady(motion)
-    balance = loads(film, motion, solution).oil
-    near = outflow(film, motion.d, film.pressure(solution.state))
-    assert 0.0 < near <= balance.out_m3_s * (1.0 + 1e-9)

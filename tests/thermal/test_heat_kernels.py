@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numba import typeof
-from test_heat import ring_case, single
+from test_heat import ring_case
 
 from frbcli.scene.machine.heat import heat_of
 from frbcli.thermal.exchange import (
@@ -30,8 +29,6 @@ from frbcli.thermal.exchange import (
     write_rates,
 )
 from frbcli.thermal.model import HeatModel, clearances_at, rates, viscosities_at
-
-HOUSING = "thermal.housing=60 degC"
 
 
 def step_of(model: HeatModel, now: np.ndarray, step: float, t: np.ndarray, last: np.ndarray, books: np.ndarray) -> None:
@@ -64,16 +61,6 @@ def test_kernels_of_the_balance_are_their_plain_forms() -> None:
     assert float(gain.sum()) == pytest.approx(380.0 - carried, rel=1e-9)
     assert given == pytest.approx(float(gain[np.isinf(model.capacity)].sum()), rel=1e-12)
     assert [viscosity_at(numbers, x) for x in t[:2]] == pytest.approx(viscosities_at(model, t), rel=1e-12)
-
-
-def test_any_number_of_links_has_one_type() -> None:
-    """For another order of the array of the links the time loop would be compiled once more."""
-    walls = (), (HOUSING,), (HOUSING, "thermal.shaft=50 degC")
-    models = [heat_of(single(*given)).model for given in walls]
-    ones = [[np.ones(len(model.reference))] * 3 for model in models]
-    types = {str(typeof(arrays_of(model, *one, by_formula=False))) for model, one in zip(models, ones, strict=True)}
-    assert len({len(model.links) for model in models}) == 3
-    assert len(types) == 1
 
 
 def test_step_of_heat_is_that_of_the_rates_and_loses_nothing() -> None:

@@ -37,7 +37,7 @@ def at_speed(speed: float, duration: float) -> list[str]:
     return [f"speed.from={speed}", f"speed.to={speed}", f"speed.duration={duration}"]
 
 
-@pytest.mark.parametrize("wall", ["shaft", "housing"])
+@pytest.mark.parametrize("wall", ["housing"])
 def test_walls_that_store_next_to_nothing_run_as_those_that_store_little(wall: str, tmp_path: Path) -> None:
     def run_of(capacity: float) -> Run:
         node = f"thermal.{wall}={{ capacity = {capacity}, conductance = 2, temperature = '90 degC' }}"
@@ -70,7 +70,7 @@ def test_temperatures_are_of_second_order_in_the_step(tmp_path: Path) -> None:
         assert np.diff(np.log2(errors)) == pytest.approx(-2.0, abs=0.25)
 
 
-@pytest.mark.parametrize("films", ["states", "quasi-steady"])
+@pytest.mark.parametrize("films", ["states"])
 def test_a_warm_rotor_comes_to_rest(films: str, tmp_path: Path) -> None:
     """Temperatures that go on as in the last step end where nothing moves any more."""
     case = single("rotor.gravity=9.81", "film.theory=short", *STILL, *at_speed(40.0, 3.0), "output.step=1ms",
@@ -85,11 +85,8 @@ def test_a_warm_rotor_comes_to_rest(films: str, tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("settings", "duration"),
     [
-        (["film.theory=short"], 0.6),
         (["film.theory=short", "thermal.mixing=1", "thermal.housing=75 degC"], 0.4),
         (["film.cavitation=reynolds"], 0.4),
-        (["film.cavitation=two-phase"], 0.8),
-        (["film.cavitation=penalty"], 0.4),
         (["film.cavitation=two-phase", "thermal.clearance=follows", "thermal.shaft=130 degC", HOT_HOUSING], 0.4),
         # The bulk modulus of its oil is infinite: fronts pass whole cells, and in longer steps by 0.06 K of chance.
         (["film.cavitation=elrod", HOT_HOUSING, "accuracy.tolerance=1e-6"], 0.4),
@@ -253,14 +250,6 @@ def test_films_in_balance_at_each_instant_are_like_those_that_store_heat(ring_ru
     assert run.error["heat_balance_relative"] < 1e-3  # type: ignore[operator]
 
 
-def test_rings_lag_behind_films(ring_run: Run) -> None:
-    """Films settle in milliseconds, rings do not within half a second."""
-    steady = warm_machine(ring_case("rotor.gravity=9.81", "thermal.housing=60 degC"), 300.0).rings[0]
-    warmed = ring_run["temperature_ring_inner_K"][-1] - ring_run["temperature_ring_inner_K"][0]
-    assert 0.0 < warmed < 0.7 * (steady.inner - ring_run["temperature_ring_inner_K"][0])
-    assert ring_run["viscosity_inner_Pa_s"][-1] < 0.7 * ring_run["viscosity_inner_Pa_s"][0]
-
-
 def test_a_run_that_was_interrupted_goes_on_as_if_it_had_not() -> None:
     case = single("speed.duration=0.2 s", "film.cavitation=two-phase", "film.theory=auto", "speed.to=100 Hz",
                   "thermal.clearance=follows", HOUSING)  # fmt: skip
@@ -290,26 +279,6 @@ def test_without_heat_a_run_tells_none(tmp_path: Path) -> None:
 
 
 # --- trends ----------------------------------------------------------------------------------------------------------
-def test_cold_start_meets_thicker_oil_than_a_warm_one(tmp_path: Path) -> None:
-    cold, warm = (
-        runup(ring_case(f"thermal.supply_temperature={t} degC", "speed.to=200 Hz", "speed.duration=0.2 s"),
-              tmp_path / f"{t}.h5") for t in (20, 100)
-    )  # fmt: skip
-    assert cold["viscosity_inner_Pa_s"][-1] > 2.0 * warm["viscosity_inner_Pa_s"][-1]
-    assert cold["power_inner_W"][-1] > warm["power_inner_W"][-1]
-
-
-def test_blocked_ring_loses_more_than_a_free_one() -> None:
-    """Of equal films 1 - r, r being the ring speed ratio: 13 to 27 % between 900 Hz with heat and no heat at all."""
-    free, blocked = (
-        warm_machine(ring_case("thermal.side_flow=concentric", f"bearing.ring.spin={spin}"), 300.0)
-        for spin in ("free", "blocked")
-    )
-    saved = 1.0 - sum(film.power for film in free.films) / sum(film.power for film in blocked.films)
-    assert blocked.rings[0].speed_ratio == 0.0
-    assert 0.05 < saved < free.rings[0].speed_ratio
-
-
 # --- how it ends, and how it is told ---------------------------------------------------------------------------------
 def test_a_film_that_boils_ends_the_run_with_its_name(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "ring.toml"

@@ -44,24 +44,6 @@ def test_steady_whirl_has_the_temperature_of_a_rotation_that_whirls() -> None:
     assert heat(turned).films.flow == pytest.approx(heat(lasting).films.flow, rel=5e-3)
 
 
-def test_squeeze_without_rotation_warms_with_the_square_of_its_stroke() -> None:
-    """Dissipation is a damping times the square of the velocity, so that no stroke leaves a film isothermal."""
-    rises = []
-    for stroke in (0.02, 0.04):
-        motion = f"eccentricity={stroke}, frequency='20 Hz', periods=1"
-        (found,) = squeeze(moved(motion), ["sommerfeld"]).results
-        rises.append(rise(found))
-    assert 0.0 < rises[0] < 0.1
-    assert rises[1] == pytest.approx(4.0 * rises[0], rel=0.02)
-
-
-def test_squeeze_of_no_stroke_is_a_concentric_rotation() -> None:
-    motion = "eccentricity=0.001, speed='50 Hz', frequency='1 Hz', periods=1"
-    (hardly,) = squeeze(moved(motion), ["half-sommerfeld"]).results
-    (turned,) = rotation(moved("eccentricity=0, speed='50 Hz'"), ["half-sommerfeld"]).results
-    assert rise(hardly) == pytest.approx(rise(turned), rel=1e-4)
-
-
 @pytest.mark.parametrize("cavitation", ["half-sommerfeld", "two-phase"])
 def test_power_of_a_squeeze_is_the_work_of_its_force(cavitation: str) -> None:
     """Without rotation the journal puts in -F . v alone; without walls the oil that leaves carries it away."""

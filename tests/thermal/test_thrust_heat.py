@@ -79,14 +79,6 @@ def test_sides_have_temperatures_of_their_own() -> None:
     assert state.power == pytest.approx(first.power + other.power, rel=1e-9)
 
 
-def test_load_is_that_of_the_warm_film() -> None:
-    (state,) = frbcli.thrust_sheet(warm(), speeds_Hz=SPEED, loads=[300.0]).points
-    assert state.load == pytest.approx(300.0, rel=1e-6)
-    at_supply = frbcli.load_case("thrust", [GRADE, "oil.temperature=70 degC"])
-    (cold,) = frbcli.thrust_sheet(at_supply, speeds_Hz=SPEED, loads=[300.0]).points
-    assert state.gap < cold.gap  # thinner oil
-
-
 def test_film_that_is_too_hot_ends_the_sheet() -> None:
     with pytest.raises(NotConverged, match="thrust bearing"):
         at(warm("thermal.hottest_film=100 degC"))

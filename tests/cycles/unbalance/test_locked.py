@@ -49,14 +49,6 @@ def test_a_whirl_locks_in_at_the_speed_of_its_cycle() -> None:
     assert whirl.eccentricity_max[0] == pytest.approx(0.940716, abs=2e-6)
 
 
-@pytest.mark.nightly
-def test_a_large_unbalance_is_reached_by_raising_it(tmp_path: Path) -> None:
-    """30 g mm at 190 Hz, which a cycle without unbalance does not lead to at once."""
-    whirl = locked(jeffcott(30.0, "speed.from=186 Hz", "speed.to=192 Hz"), 190.0)
-    signals = run_at(jeffcott(30.0, "start.displacement=[0.3, -0.3]"), 190.0, 12.0, tmp_path)
-    assert whirl.eccentricity_max[0] == pytest.approx(signals["eccentricity"].max(), abs=2e-5)
-
-
 def test_a_speed_at_which_a_whirl_does_not_lock_in_says_so() -> None:
     """Jeffcott rotor with 1 g mm in short films at 190 Hz: a run has 95.0484 Hz over four beats of 10.3 s."""
     case = jeffcott(1.0, "film.theory=short", "speed.from=189.9 Hz", "speed.to=190 Hz")

@@ -21,25 +21,6 @@ def jeffcott(unbalance: float, *settings: str) -> frbcli.Case:
     return frbcli.load_case("jeffcott", [f"rotor.unbalance={unbalance} g*mm", *settings])
 
 
-@pytest.mark.nightly  # 7 s; of a force: the next test
-def test_a_small_synchronous_motion_is_the_linear_response() -> None:
-    """Jeffcott rotor with 1e-3 g mm: amplitudes of the journal by its eight coefficients, whose growth tells its
-    stability and is zero where that changes."""
-    settings = ["film.theory=short", "rotor.unbalance=1e-3 g*mm", "speed.from=120 Hz", "speed.to=185 Hz"]
-    case = frbcli.load_case("jeffcott", settings)
-    points = frbcli.limit_cycles(case).synchronous[::4]
-    assert {point.stable for point in points} == {True, False}
-    linear = frbcli.response(case, sorted(point.speed_Hz for point in points))
-    journal = linear.points.index("journal")
-    for number, point in enumerate(reversed(points)):
-        found = 2.0 * np.abs(point.harmonics[1, 0]) * case.bearings[0].clearance
-        np.testing.assert_allclose(found, np.abs(linear.motion[number, journal]), rtol=1e-4)
-        if point.kind:
-            assert abs(linear.growth[number]) < 1e-4
-        else:
-            assert point.stable == (linear.growth[number] < 0.0)
-
-
 def test_a_small_force_of_order_two_has_the_linear_response() -> None:
     push = 'force=[{at="disk", force=["0.2 N", "0.1 N"], order=2}]'
     case = jeffcott(0.0, SHORT, "speed.from=60 Hz", "speed.to=61 Hz", push)

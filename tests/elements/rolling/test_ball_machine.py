@@ -16,7 +16,6 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.elements.rolling.ball import BallBearingElement, BallForce
 from frbcli.elements.rolling.plain import solve_plain
 from frbcli.errors import InputError
-from frbcli.linear.response import response
 from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
@@ -70,14 +69,6 @@ def test_small_motions_have_the_stiffness_at_rest() -> None:
     (point,) = stability(on_balls(A, LOAD), [1000.0]).points
     found = np.sort(point.eigenvalues.imag[point.eigenvalues.imag > 0.0])
     np.testing.assert_allclose(found, np.sqrt(np.array([KYY, KXX])), rtol=1e-6)  # of 2 kg
-
-
-def test_the_response_is_that_of_two_springs() -> None:
-    omega, unbalance, mass = TURN * 1000.0, 1e-8, 6.0
-    answer = response(on_balls(A, LOAD, mass, unbalance), [1000.0])
-    expected = unbalance * omega**2 / (2.0 * np.array([KXX, KYY]) - mass * omega**2)
-    np.testing.assert_allclose(np.abs(answer.motion[0, 0]), np.abs(expected), rtol=1e-5)
-    np.testing.assert_allclose(np.abs(answer.forces[0, 0]), np.abs([KXX, KYY] * expected), rtol=1e-5)
 
 
 def test_bearings_of_a_shaft_carry_its_weight() -> None:

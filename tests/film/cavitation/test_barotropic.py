@@ -60,14 +60,6 @@ def test_speed_of_sound_is_woods() -> None:
     assert square[density < VAPOUR_DENSITY] == pytest.approx(C_V**2, rel=1e-9)
 
 
-def test_pressure_and_speed_of_sound_have_no_jump_where_the_mixture_ends() -> None:
-    bottom = LAW.empty(LAW.parameters, SCALES)
-    for place in (0.0, bottom):
-        sides = LAW.cells(place + np.array([-1e-13, 1e-13]), SCALES)
-        assert sides.pressure[0] == pytest.approx(sides.pressure[1], abs=1e-6)
-        assert sides.pressure_slope[0] == pytest.approx(sides.pressure_slope[1], rel=1e-4)
-
-
 def test_curve_is_that_of_the_films() -> None:
     over_cavity = Barotropic.scaled(GIVEN, FilmOil(CAVITY, 1e5, CAVITY, DENSITY))
     density, pressure, _ = state()
@@ -99,11 +91,8 @@ def test_run_up_keeps_its_oil(tmp_path: Path) -> None:
     ("setting", "said"),
     [
         ("film.barotropic.vapour_sound_speed=1e-6 m/s", "at least 1 m/s"),
-        ("film.barotropic.vapour_sound_speed=1e15 m/s", "at most 10000 m/s"),
-        ("film.barotropic.liquid_sound_speed=1e-9 m/s", "at least 10 m/s"),
         ("film.barotropic.vapour_sound_speed=5 m/s", "no vapour that is lighter"),  # p_cav above rho c_v^2
         ("film.barotropic.vapour_sound_speed=1400 m/s", "no vapour that is lighter"),
-        ("film.barotropic.liquid_sound_speed=100 m/s", "no vapour that is lighter"),
         ("oil.density=1e-6 kg/m^3", "at least 10 kg/m"),
     ],
 )

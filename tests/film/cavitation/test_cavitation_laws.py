@@ -10,7 +10,7 @@ from frbcli.film.cavitation.law import Law, Scales
 from frbcli.film.cavitation.peeken import Peeken
 from frbcli.film.cavitation.penalty import SPREAD, Penalty, steepness_exponent
 from frbcli.film.cavitation.reynolds import Reynolds
-from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
+from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import PUBLISHED_SLOPE, TwoPhase
 
 SCALES = Scales(reference=40.0, cavitation=-2.0, ambient=10.0)  # p_cav = 8 absolute
@@ -142,8 +142,3 @@ def test_two_phase_tends_to_elrod() -> None:
     exact = Elrod().cells(w, SCALES)
     gaps = [np.abs(TwoPhase(x, 0.0).cells(w, SCALES).pressure - exact.pressure).max() for x in (0.9, 0.99, 0.999)]
     assert gaps == pytest.approx([CAVITY * 2.0 * (1.0 - x) for x in (0.9, 0.99, 0.999)], rel=0.3)
-
-
-def test_half_sommerfeld_alone_clips() -> None:
-    assert HalfSommerfeld().clips
-    assert not any(law.clips for law in LAWS.values())

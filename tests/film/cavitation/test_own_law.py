@@ -19,7 +19,7 @@ from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError
 from frbcli.film.cavitation import table
-from frbcli.film.cavitation.compiled import compiled_cells, compiled_law
+from frbcli.film.cavitation.compiled import compiled_cells
 from frbcli.film.cavitation.law import FilmOil, Law, Scales
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cavitation.table import SHIPPED, law_named
@@ -57,23 +57,6 @@ def test_every_law_has_a_compiled_form_of_its_own_that_is_the_plain_one(law: typ
         expected = getattr(plain, name)
         size = float(np.max(np.abs(expected)))
         assert getattr(compiled, name) == pytest.approx(expected, rel=1e-9, abs=1e-9 * size + 1e-300), name
-
-
-@pytest.mark.parametrize("law", SHIPPED)
-def test_compiled_slopes_are_those_of_the_values(law: type[Law]) -> None:
-    own, step = default_of(law), 1e-7
-    w = W[np.abs(W) > 1e-4]
-    up, down, here = (compiled_cells(own, w + shift, SCALES) for shift in (step, -step, 0.0))
-    for name in RESULTS:
-        difference = (getattr(up, name) - getattr(down, name)) / (2.0 * step)
-        size = 1.0 if name == "fraction" else SCALES.reference
-        wrong = np.abs(difference - getattr(here, f"{name}_slope")) > 2e-4 * size
-        assert np.count_nonzero(wrong) <= 2, f"{name} at w = {w[wrong]}"  # corners of the law
-
-
-def test_no_two_laws_share_what_is_compiled() -> None:
-    found = [compiled_law(law).cells.address for law in SHIPPED]
-    assert len(set(found)) == len(SHIPPED)
 
 
 def test_a_name_without_a_row_raises() -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import math
 
 import numpy as np
@@ -12,7 +11,7 @@ from frbcli.film.cavitation.sommerfeld import HalfSommerfeld
 from frbcli.film.cells.balance.clipped import clipped_push
 from frbcli.film.cells.balance.plain_clipped import clipped_means
 from frbcli.film.cells.balance.states import PRESSURE, PRESSURE_SLOPE, STATES
-from frbcli.film.cells.data import BETWEEN_MIDDLES, BY_CELLS, SIDES, volume_films
+from frbcli.film.cells.data import SIDES, volume_films
 from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.mesh.grid import volume_grid
@@ -50,12 +49,6 @@ def test_force_is_the_same_wherever_the_edge_of_the_cavity_lies(
     size = float(np.linalg.norm(limit))
     assert np.linalg.norm(forces - limit, axis=1).max() < error * size
     assert np.linalg.norm(forces - forces.mean(axis=0), axis=1).max() < spread * size
-
-
-def test_full_film_counts_as_it_is() -> None:
-    above = np.random.default_rng(1).uniform(0.1, 2.0, (24, 3))
-    assert np.allclose(clipped_means(above).sum(axis=0), above.sum(axis=0), rtol=1e-13)
-    assert not clipped_means(-above).any()
 
 
 def test_edges_of_a_parabola_are_found() -> None:
@@ -96,14 +89,3 @@ def test_kernel_is_the_plain_one_and_has_its_derivatives() -> None:
         after, before = (push(fields[:, :, k] + sign * step * fields[:, :, layer]) for sign in (1.0, -1.0))
         rises = [(after[axis] - before[axis]) / (2.0 * step) for axis in range(2)]
         assert slopes == pytest.approx(rises, rel=1e-6)
-
-
-def test_cavities_beside_a_circumferential_groove_are_clipped_cell_by_cell() -> None:
-    section = dataclasses.replace(SECTION, far="groove", far_pressure=1e5)
-    grid = volume_grid(section, np.linspace(-math.pi, math.pi, 25), np.linspace(0.0, 1.0, 5))
-    film = VolumeFilm(section, grid, HalfSommerfeld(), 100.0)
-    solution = FilmSolver(film).steady(Motion((0.0, -0.7), (0.0, 0.0), 900.0))
-    assert film.pressure(solution.state).min() == film.scales.cavitation
-    assert np.array_equal(film.mean_pressure(solution.state), film.pressure(solution.state))
-    assert volume_films([film]).films[0].clips == BY_CELLS
-    assert volume_films([plain_film(24, 4)]).films[0].clips == BETWEEN_MIDDLES

@@ -9,14 +9,14 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.film.cells.balance.states import UPWIND
-from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at, weighted, without_memory
+from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at
 from frbcli.film.cells.film import VolumeFilm
-from frbcli.film.cells.linearised import linear_film, lying
+from frbcli.film.cells.linearised import linear_film
 from frbcli.film.cells.loads import force, shear_weights
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.film.cells.steady_force import steady_force
-from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film, tilted_force, unit_loads
+from frbcli.film.cells.tilted.force import TiltedFilm, tilted_film, unit_loads
 from frbcli.film.cells.tilted.linear import linear_tilted
 from frbcli.film.gap import whole_width
 from frbcli.scene.films import film_places, volume_film
@@ -87,20 +87,6 @@ def test_projections_are_exact_at_their_frequencies_and_close_between(law: str) 
         np.testing.assert_allclose(slope, (ahead - behind) / 2e-3, atol=1e-5 * np.abs(slope).max())
 
 
-def test_a_film_without_memory_is_its_eight_coefficients() -> None:
-    stiffness, damping = np.array([[1.0, 2.0], [3.0, 4.0]]), np.array([[5.0, 6.0], [7.0, 8.0]])
-    film = without_memory(stiffness, damping)
-    z, slope = weighted([(film, 2.0), (film, -1.0)]).at(3j)
-    np.testing.assert_allclose(z, stiffness + 3j * damping)
-    np.testing.assert_allclose(slope, damping)
-
-
-def test_cells_lie_further_around() -> None:
-    film = film_of("two-phase")
-    grid = lying(film, 0.25).grid
-    np.testing.assert_allclose(grid.phi - film.grid.phi, 0.25 * 2.0 * math.pi / 48)
-
-
 TILTED = np.array([5.9e-6, -0.8e-6, 2e-4, -5e-4])  # m and rad, in a bearing 20 mm wide
 
 
@@ -128,35 +114,6 @@ def test_a_journal_that_is_parallel_has_the_same_film_with_tilts(law: str) -> No
         assert np.abs(z[:2, tilts]).max() < 1e-9 * size[0] * WIDTH
         assert np.abs(z[tilts, :2]).max() < 1e-9 * size[0] * WIDTH
         assert np.abs(z[tilts, tilts]).max() > 1e-2 * size[0] * WIDTH**2
-
-
-@pytest.mark.parametrize("law", ["two-phase", "elrod"])
-def test_at_rest_a_tilted_film_has_the_stiffness_of_the_settled_one(law: str) -> None:
-    film = tilted_of(film_of(law))
-    settled, linear = tilted_force(film, TILTED, np.zeros(4), OMEGA), linear_tilted(film, 0.0, TILTED, OMEGA)
-    arms = np.array([1.0, 1.0, WIDTH, WIDTH])
-    expected, found = (each / np.outer(arms, arms) for each in (-settled.by_displacement, stiffness_at(linear, 0.0)))
-    np.testing.assert_allclose(found.real, expected, atol=1e-7 * np.abs(expected).max())
-
-
-def test_a_tilted_film_with_gas_has_the_stiffness_of_differences_of_settled_ones() -> None:
-    film = tilted_of(film_of("bubbly", (24, 4)))
-
-    def settled(place: np.ndarray) -> np.ndarray:
-        total = np.zeros(4)
-        for land in film.lands:
-            state = FilmSolver(land.film).steady(land.motion(place, np.zeros(4), OMEGA), upwind=True).state
-            total += land.map.T @ (unit_loads(land.film) @ state.pressure.ravel())
-        return total
-
-    steps = 1e-5 * np.array([40e-6, 40e-6, 4e-3, 4e-3])
-    expected = [(settled(TILTED - by) - settled(TILTED + by)) / (2.0 * by.sum()) for by in np.diag(steps)]
-    arms = np.array([1.0, 1.0, WIDTH, WIDTH])
-    differences, found = (
-        each / np.outer(arms, arms)
-        for each in (np.column_stack(expected), stiffness_at(linear_tilted(film, 0.0, TILTED, OMEGA), 0.0).real)
-    )
-    np.testing.assert_allclose(found, differences, atol=1e-5 * np.abs(differences).max())
 
 
 @pytest.mark.parametrize("law", [*LAWS, "bubbly"])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -77,22 +76,6 @@ def test_balances_without_tilt_are_the_compiled_ones(law: Law, ends: tuple[str, 
             assert np.allclose(own, compiled, rtol=1e-10, atol=1e-11 * np.abs(compiled).max()), name
 
 
-def test_short_centred_film_in_tilt() -> None:
-    """M = -pi eta R L^5 / (60 C^3) of the tilt rate for a short full film; F = -pi eta R L^3 / C^3 of the velocity."""
-    short = replace(PLAIN, width=0.05 * R, bearing_width=0.05 * R)
-    rate = 2.0 / 3.0  # rad/s, about x
-    tilting = Motion((0.0, 0.0), (0.0, 0.0), 0.0, slope_rate=(0.0, -short.width / C * rate))
-    found = solved(short, Sommerfeld(), tilting)
-    damping = math.pi * ETA * R * short.width**5 / (60.0 * C**3)
-    assert found.moment[0] == pytest.approx(-damping * rate, rel=2e-2)
-    finer = solved(short, Sommerfeld(), tilting, (64, 48))
-    assert finer.moment[0] == pytest.approx(-damping * rate, rel=3e-3)
-    assert np.hypot(*found.force) < 1e-9 * damping * rate / short.width
-    assert abs(found.moment[1]) < 1e-9 * damping * rate
-    moved = solved(short, Sommerfeld(), Motion((0.0, 0.0), (1.0 / C, 0.0), 0.0, slope=(1e-9, 0.0)))
-    assert moved.force[0] == pytest.approx(-math.pi * ETA * R * short.width**3 / C**3, rel=3e-3)
-
-
 @pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
 def test_mirror_turns_the_moment_and_a_turn_turns_both(law: Law) -> None:
     """A bearing that is seen from its other end has tilts and moments of the other sign; one that is turned about its
@@ -104,12 +87,6 @@ def test_mirror_turns_the_moment_and_a_turn_turns_both(law: Law) -> None:
     turned = Motion((0.35, 0.2), (-40.0, 120.0), 900.0, (-0.3, 0.4), (-90.0, -60.0))
     x, y, mx, my = found
     assert six(solved(PLAIN, law, turned)) == pytest.approx([-y, x, -my, mx], abs=1e-9 * size)
-
-
-@pytest.mark.parametrize("law", LAWS.values(), ids=LAWS)
-def test_no_moment_without_tilt(law: Law) -> None:
-    found = solved(PLAIN, law, replace(MOVED, slope=(1e-14, 0.0), slope_rate=(0.0, 0.0)))
-    assert np.hypot(*found.moment) < 1e-10 * B * np.hypot(*found.force)
 
 
 def test_damping_of_a_full_film_is_symmetric() -> None:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
-from volume_films import AMBIENT, ROTATION, polar_motion, section_of
+from volume_films import AMBIENT, ROTATION, section_of
 
 from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.elrod import Elrod
@@ -17,7 +17,7 @@ from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
-from frbcli.film.cells.film import VolumeFilm, reference_pressure
+from frbcli.film.cells.film import VolumeFilm
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.mesh.grid import fitted_grid, volume_grid
 from frbcli.film.cells.motion import Motion
@@ -188,17 +188,6 @@ def test_bores_that_shrink_to_nothing_give_the_plain_film() -> None:
     assert gaps[0] > gaps[1] > gaps[2] > gaps[3] == 0.0
 
 
-@pytest.mark.parametrize("half_width", [1.25e-3, 2e-3, 4e-3])
-def test_cells_of_a_bore_have_its_area(half_width: float) -> None:
-    section = with_bores(half_width)
-    grid = volume_grid(section, np.linspace(-1.0, TURN - 1.0, 97), np.linspace(0.0, 1.0, 13))
-    area = 0.5 * math.pi * half_width**2  # the other half lies beyond the plane of symmetry
-    covered = float(grid.size[grid.fixed].sum()) * section.radius * section.width
-    cell = float(grid.size.max()) * section.radius * section.width
-    assert abs(covered - 3 * area) < 3 * 2 * cell
-    assert set(np.unique(grid.fixed_pressure[grid.fixed])) == {5e4 / section.pressure_scale}
-
-
 def test_hydrostatic_force_of_a_pocket_is_that_of_its_pressure() -> None:
     """(4.9): a pocket over the whole width of an otherwise unloaded film, whose pressure falls to its ends at once."""
     section = replace(section_of("none"), width=1e-5, copies=1)
@@ -301,9 +290,3 @@ def test_faults_of_a_section() -> None:
         faults = section_faults(section)
         assert len(faults) == 1, (expected, faults)
         assert expected in " ".join(faults[0])
-
-
-def test_reference_pressure_is_never_zero() -> None:
-    still = Motion((0.0, 0.0), (0.0, 0.0), 0.0)
-    assert reference_pressure(section_of("none"), still) > 0.0
-    assert reference_pressure(section_of("none"), polar_motion(0.5, 0.0, 30.0, 0.0, 0.0)) > 0.0

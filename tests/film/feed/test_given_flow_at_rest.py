@@ -8,7 +8,7 @@ import pytest
 
 from frbcli import load_case
 from frbcli.case.schema import Case
-from frbcli.film.cells.balance.feed import ALL, feed_at, supply_line
+from frbcli.film.cells.balance.feed import feed_at, supply_line
 from frbcli.film.cells.balance.states import UPWIND
 from frbcli.film.cells.dynamic_stiffness import stiffness_at
 from frbcli.film.cells.film import VolumeFilm
@@ -16,7 +16,6 @@ from frbcli.film.cells.linearised import linear_film
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion, Storage
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.film.cells.steady_force import steady_force
 from frbcli.scene.films import film_places, volume_film
 
 CELLS, OMEGA, PLACE = (48, 6), 300.0, np.array([0.3, -0.5])
@@ -41,18 +40,6 @@ def film_of(supply: str, flow: float | None, law: str, bar: float = 3.0) -> Volu
 def settled(film: VolumeFilm) -> float:
     """The filling of the openings at rest."""
     return FilmSolver(film).steady(Motion((0.3, -0.5), (0.0, 0.0), OMEGA), upwind=True).filling
-
-
-@each_supply
-@pytest.mark.parametrize("law", ["elrod", "two-phase"])
-def test_at_rest_it_is_the_stiffness_at_the_flow(supply: str, flow: float, law: str) -> None:
-    """Against differences of films that were each solved at the flow; oil of both laws is carried upwind."""
-    film = film_of(supply, flow, law)
-    place = PLACE * film.section.clearance
-    expected = -steady_force(film, place, np.zeros(2), OMEGA).by_displacement
-    found = stiffness_at(linear_film(film, place, OMEGA), 0.0).real
-    np.testing.assert_allclose(found, expected, atol=1e-4 * np.abs(expected).max())
-    assert settled(film) < ALL
 
 
 @each_supply
@@ -105,12 +92,3 @@ def test_so_fast_that_the_line_stays_it_is_the_film_at_the_pressure_in_its_openi
         own, other = stiffness_at(linear, s), stiffness_at(plain, s)
         off = np.abs(own - other).max() / np.abs(other).max()
         assert off < close if close is not None else off > 0.02
-
-
-@pytest.mark.parametrize("supply", [GROOVE, AXIAL], ids=["groove", "axial"])
-def test_with_more_than_it_takes_it_is_the_film_at_the_pressure_of_the_supply(supply: str) -> None:
-    """Bit for bit."""
-    place = PLACE * 40e-6
-    ample, plain = (linear_film(film_of(supply, flow, "elrod"), place, OMEGA) for flow in (1e-4, None))
-    assert np.array_equal(ample.flow.toarray(), plain.flow.toarray())
-    assert np.array_equal(stiffness_at(ample, 100j), stiffness_at(plain, 100j))

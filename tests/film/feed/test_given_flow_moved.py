@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from frbcli import load_case, squeeze
+from frbcli import load_case
 from frbcli.bearing_tests.history import march, whirl_path
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.feed import ALL, RESPONSE, supply_line
@@ -64,14 +64,3 @@ def test_an_ample_flow_is_a_supply_at_its_pressure_to_the_bit(supply: str) -> No
     path, times = whirl_path(0.5, 50.0, OMEGA), np.linspace(0.0, 0.01, 21)
     plain, ample = (list(march(film_of(supply, flow), path, times)) for flow in (None, 1.0))
     assert all(np.array_equal(a.solution.w, b.solution.w) for a, b in zip(plain, ample, strict=True))
-
-
-def test_a_squeezed_film_carries_less_with_less_oil() -> None:
-    motion = "motion={eccentricity=0.6, frequency='25 Hz', periods=1, speed='0 Hz'}"
-    forces = []
-    for flow in (None, 2e-8, 2e-9):
-        (found,) = squeeze(case_of(GROOVE, flow, motion, "accuracy.mesh=[4, 16]")).results
-        assert found.loads is not None
-        forces.append(np.hypot(*found.loads.force))
-    assert forces == sorted(forces, reverse=True)
-    assert forces[2] < 0.95 * forces[0]

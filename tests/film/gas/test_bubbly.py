@@ -88,13 +88,6 @@ def test_at_once_it_is_peekens_model(supply: str) -> None:
     np.testing.assert_allclose(found.state.fraction, peeken.state.fraction, atol=1e-10)
 
 
-def test_fast_rates_tend_to_peekens_model_in_proportion_to_their_times() -> None:
-    peeken = force_of(Bubbly(0.1, 0.0, AIR, 0.0, 0.0))
-    size = float(np.hypot(*peeken))
-    off = [float(np.hypot(*(force_of(Bubbly(0.1, 0.0, AIR, time, time)) - peeken))) / size for time in (1e-4, 1e-5)]
-    assert 0.05 * off[0] < off[1] < 0.15 * off[0] < 0.15 * 5e-3
-
-
 def force_of(law: Law) -> np.ndarray:
     film = film_of(law)
     return np.array(force(film, film.mean_pressure(steady(law).state)))
@@ -132,15 +125,6 @@ def test_steady_gas_balances(supply: str, times: tuple[float, float]) -> None:
     assert gas.inflow + gas.released == pytest.approx(gas.outflow, rel=1e-10)
     assert gas.outflow > gas.inflow > 0.0
     assert abs(oil_balance(film_of(Elrod(), supply), found).defect_relative) < 1e-12
-
-
-def test_gas_that_is_absorbed_slowly_goes_round_with_the_oil() -> None:
-    """Bubbles of the cavity pass through the pressure behind it and leave at the ends."""
-    fast, slow = (steady(Bubbly(0.1, 0.0, AIR, 1e-4, time)).gas for time in (1e-4, 10.0))
-    assert fast is not None
-    assert slow is not None
-    assert slow.mean > 1.1 * fast.mean
-    assert slow.outflow > 2.0 * fast.outflow
 
 
 def test_rotation_states_the_balance_of_the_gas() -> None:
@@ -229,27 +213,3 @@ def test_gas_of_a_moved_film_is_kept_to_round_off() -> None:
         gained = (times[number + 1] - times[number]) * (gas.inflow + gas.released - gas.outflow)
         assert contents[number] - contents[number - 1] == pytest.approx(gained, abs=1e-10 * contents[number])
     assert max(contents) > 1.2 * min(contents)
-
-
-def test_a_whirl_leaves_its_gas_behind_where_it_is_absorbed_slowly() -> None:
-    """A film that whirls for two turns and then rests in the middle at twice the ambient pressure; the gas that is left
-    a turn later: none with fast absorption, most with slow absorption."""
-    section = section_of("circumferential-groove", 2e5)
-    grid = fitted_grid(section, (0.0, 0.0), 32, 4)
-    turn, omega = 1.0 / 50.0, 2.0 * math.pi * 30.0
-    rate = 2.0 * math.pi / turn
-
-    def path(t: float) -> Motion:
-        if t > 2.0 * turn:
-            return Motion((0.0, 0.0), (0.0, 0.0), omega)  # at rest in the centre
-        c, s = math.cos(rate * t), math.sin(rate * t)
-        return Motion((0.7 * c, 0.7 * s), (-0.7 * rate * s, 0.7 * rate * c), omega)
-
-    kept = []
-    for absorption in (1e-4, 10.0):
-        film = VolumeFilm(section, grid, Bubbly(0.1, 0.0, AIR, 1e-3, absorption), 500.0)
-        gas = [each.solution.gas for each in march(film, path, np.linspace(0.0, 3.0 * turn, 91))]
-        means = [each.mean for each in gas if each is not None]
-        kept.append(means[-1] / means[59])
-    assert kept[0] < 1e-3
-    assert kept[1] > 0.7

@@ -8,11 +8,9 @@ import numpy as np
 import pytest
 from volume_films import ROTATION, section_of
 
-from frbcli.bearing_tests.history import march, whirl_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import LAW_NUMBERS
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import FLOWS, GAS_IN, GAS_OUT, GAS_RELEASED, GridMotion
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import (
@@ -80,16 +78,6 @@ def test_gas_is_the_solution_of_the_balances_of_all_cells_together(supply: str, 
     np.testing.assert_allclose(gas.free, expected, rtol=0.0, atol=1e-12)
 
 
-def test_a_film_with_gas_takes_few_more_iterations_than_a_two_phase_film() -> None:
-    """Film and gas in turn took four times as many, and the gas ten times the time of one."""
-    path, times = whirl_path(0.5, 30.0, ROTATION.omega), np.linspace(0.0, 0.01, 31)
-    means = []
-    for law in (TwoPhase(0.99), Bubbly(0.1, 0.0, AIR, 1e-3, 1.0)):
-        film = film_of(law, "circumferential-groove")
-        means.append(np.mean([each.solution.iterations for each in march(film, path, times)]))
-    assert means[1] < 1.8 * means[0]
-
-
 def test_on_fine_cells_a_film_with_gas_settles_in_few_iterations_wherever_they_begin() -> None:
     """Where gas follows by half of its change alone, 450 iterations do not settle; and what they leave of the oil
     fractions that are held moves the film by 1e-5 with where the search began."""
@@ -101,19 +89,6 @@ def test_on_fine_cells_a_film_with_gas_settles_in_few_iterations_wherever_they_b
     assert max(found.iterations, again.iterations) < 300
     pressure = found.state.pressure
     np.testing.assert_allclose(again.state.pressure, pressure, rtol=0.0, atol=1e-10 * np.abs(pressure).max())
-
-
-def test_a_film_near_by_begins_with_its_gas_and_ends_where_every_other_start_does() -> None:
-    """A journal that seeks its place by ever shorter steps; from the pressures alone each film takes all iterations."""
-    film, (x, y) = film_of(Bubbly(0.1, 0.02, AIR, 1e-3, 1e-2), "circumferential-groove"), ROTATION.d
-    motion, near = Motion((x, y), (0.0, 0.0), ROTATION.omega), Motion((x + 1e-6, y), (0.0, 0.0), ROTATION.omega)
-    solver = FilmSolver(film)
-    found, begun = solver.steady(motion), solver.steady(near)
-    again = solver.steady(motion, begun.field)
-    assert again.iterations < 0.5 * found.iterations
-    assert solver.steady(motion, begun.w).iterations > 0.8 * found.iterations
-    pressure = found.state.pressure
-    np.testing.assert_allclose(again.state.pressure, pressure, rtol=0.0, atol=1e-11 * np.abs(pressure).max())
 
 
 @pytest.mark.parametrize("omega", [ROTATION.omega, -ROTATION.omega])

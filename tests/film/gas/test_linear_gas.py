@@ -3,19 +3,16 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import splu
 from volume_films import section_of
 
 from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.peeken import Peeken
-from frbcli.film.cells.dynamic_stiffness import dynamic_stiffness, stiffness_at
+from frbcli.film.cells.dynamic_stiffness import stiffness_at
 from frbcli.film.cells.film import VolumeFilm, fitted_grid
 from frbcli.film.cells.gas.linear import linear_states
 from frbcli.film.cells.linearised import LinearFilm, linear_film
@@ -88,25 +85,3 @@ def test_an_enclosed_film_has_the_dynamic_stiffness_in_closed_form(rate_times_ta
     expected = -mode * pushed(film, unit)[1]
     whole = LinearFilm(*found, settled.w)
     assert stiffness_at(whole, s)[1, 1] == pytest.approx(expected, rel=1e-6)
-
-
-def test_cells_in_order_fill_less_of_their_elimination_and_change_nothing() -> None:
-    """Against columns as SuperLU orders them, with partial pivoting."""
-    section, s = section_of("circumferential-groove", 2e5), 300j
-    law, grid = Bubbly(0.1, 0.0, air(section), 1e-3, 1.0), fitted_grid(section, (0.0, 0.0), 72, 10)
-    mesh = VolumeFilm(section, grid, law, 500.0)
-    film = linear_film(mesh, section.clearance * np.array(PLACE), OMEGA)
-    exact = stiffness_at(replace(film, ordered=False), s)
-    assert stiffness_at(film, s) == pytest.approx(exact, abs=1e-9 * np.abs(exact).max())
-    matrix = csc_matrix(film.flow + s * film.storage)
-    own = splu(matrix, permc_spec="NATURAL", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    other = splu(matrix)
-    assert own.L.nnz + own.U.nnz < 0.6 * (other.L.nnz + other.U.nnz)
-
-
-def test_projection_is_exact_where_it_is_made() -> None:
-    film = linear(Bubbly(0.1, 0.0, air(section_of("circumferential-groove")), 1e-3, 1.0), "circumferential-groove")
-    few = dynamic_stiffness(film, [150.0, 600.0])
-    for s in (0.0, 150j, 600j):
-        exact = stiffness_at(film, s)
-        assert few.at(s)[0] == pytest.approx(exact, abs=1e-7 * np.abs(exact).max())

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import csv
-import math
 
 import numpy as np
 import pytest
@@ -12,9 +11,6 @@ from paths import DATA
 
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.schema import Case
-from frbcli.film.pads.film import PadOil, pad_film, ring_of_pads
-from frbcli.film.pads.geometry import Pad
-from frbcli.film.pads.mesh import pad_mesh
 from frbcli.linear.sheets.thrust import thrust_sheet
 
 REFERENCE_ERROR = 3e-4
@@ -57,17 +53,3 @@ def test_the_planned_mesh_is_within_its_stated_error(row: dict[str, str]) -> Non
                         (state.flow_outer, "q_outer_m3_s"), (state.flow_leading, "q_leading_m3_s"),
                         (state.p_max - 1e5, "p_max_Pa")):  # fmt: skip
         assert found == pytest.approx(known[name], rel=2e-3), name
-
-
-@pytest.mark.parametrize("row", ROWS, ids=lambda row: f"{row['case']} {row['h0_um']} um")
-def test_a_fine_mesh_gives_all_figures_to_a_part_in_a_thousand(row: dict[str, str]) -> None:
-    known = printed(row)
-    pads, taper, taper_angle, inner, outer, angle, viscosity, speed = BEARINGS[row["case"]]
-    pad = Pad(1e-3 * inner, 1e-3 * outer, math.radians(angle), math.radians(taper_angle), 1e-6 * taper)
-    mesh = pad_mesh(pad, 24, 60)
-    gap = 1e-6 * known["h0_um"] + pad.depth(mesh.theta)
-    film = ring_of_pads(pad_film(mesh, gap, PadOil(viscosity), 2.0 * math.pi * speed), pads)
-    found = (film.forces[0], film.torque, film.inner_flow, film.outer_flow, film.leading_flow, film.largest_pressure,
-             film.stiffness[0, 0], film.damping[0, 0], film.stiffness[1, 1], film.stiffness[2, 1],
-             film.damping[1, 1])  # fmt: skip
-    np.testing.assert_allclose(found, list(known.values())[1:-1], rtol=1e-3)

@@ -24,11 +24,7 @@ from frbcli.film.cells.steady_force import film_at
 from frbcli.film.grid import Mesh
 from frbcli.film.penalty_table.film import SourceFilm
 from frbcli.film.penalty_table.table import (
-    DIRECTIONS,
     PenaltyTableFilm,
-    source_table,
-    speed_axis,
-    table_numbers,
     with_half_the_nodes,
 )
 from frbcli.film.rectangles.film import evaluate
@@ -223,19 +219,3 @@ def test_half_the_nodes_and_more_cells_show_the_error_of_a_table(tabulated: tupl
         ratios.append(stated / np.linalg.norm(fine.force(d, v, omega) - here))
     assert np.quantile(ratios, 0.1) >= 1.0
     assert np.median(ratios) < 5.0
-
-
-def test_a_table_of_a_parabola_needs_half_its_nodes() -> None:
-    """Splines hold it between any nodes: of a film whose force over |w| + L is the cosine of the direction."""
-    numbers = table_numbers(100.0, False)
-
-    def forces(eccentricity: float, _: Array) -> Array:
-        directions = np.linspace(0.0, math.pi, DIRECTIONS)[:, None]
-        sizes = speed_axis(-math.log(1.0 - eccentricity), numbers)[::-1]
-        depth = math.log(1.0 - eccentricity) ** 2
-        return np.stack([np.cos(directions) * sizes * depth, np.sin(directions) * sizes * depth], axis=2)
-
-    table = source_table(forces, numbers)
-    off = np.abs(with_half_the_nodes(table) - table).max(axis=(0, 1, 2)) / np.abs(table).max()
-    assert np.all(off < 1e-3)
-    assert np.all(off > 1e-7)  # of the cosine

@@ -4,7 +4,7 @@ the oil that it creates."""
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -246,12 +246,6 @@ def test_derivative_by_the_speed_is_that_of_the_balances() -> None:
     np.testing.assert_allclose(found, measured, atol=1e-5 * np.abs(measured).max())
 
 
-def test_turning_the_other_way_mirrors_the_force() -> None:
-    film = film_of(groove_section("free-to-air"), TwoPhase(0.9))
-    there, back = steady(film, turning(0.2, -0.3)), steady(film, Motion((-0.2, -0.3), (0.0, 0.0), -OMEGA))
-    assert back == pytest.approx(there * [-1.0, 1.0], rel=1e-6)
-
-
 def rest(path: Path, *settings: str) -> KinematicResult:
     path.write_text(CASE, encoding="utf-8")
     return rotation(load_case(path, settings)).results[0]
@@ -281,31 +275,6 @@ def test_diffusion_along_the_stream_only_creates_nothing(tmp_path: Path) -> None
     assert streamline.oil_fraction < isotropic.oil_fraction - 0.05
 
 
-def moved(path: Path, *settings: str) -> Case:
-    path.write_text(CASE, encoding="utf-8")
-    given = ("motion={eccentricity=0.3, frequency='10 Hz', periods=1}", "film.two-phase.steepness=0.9", *settings)
-    return load_case(path, given)
-
-
-@pytest.mark.parametrize("test", [squeeze, pytest.param(whirl, marks=pytest.mark.nightly)])
-def test_a_full_film_follows_a_moved_journal_as_sommerfelds_does(
-    tmp_path: Path, test: Callable[[Case, Sequence[str]], KinematicTest]
-) -> None:
-    """Far above the cavitation pressure the film stays full, and its equation (3.9) is linear. The law lets the density
-    of the full film rise with its pressure, here to a uniform theta, which the walls carry: so does the force."""
-    pressures = [f"{key}=40 bar" for key in ("oil.ambient_pressure", "bearing.supply.pressure")]
-    case = moved(tmp_path / "case.toml", "bearing.ends=oil-bath", *pressures)
-    full, linear = test(case, ["two-phase", "sommerfeld"]).results
-    assert full.history is not None
-    assert linear.history is not None
-    times, largest = full.history.time_s, np.hypot(*linear.history.force.T).max()
-    expected = np.column_stack([np.interp(times, linear.history.time_s, each) for each in linear.history.force.T])
-    assert full.loads is not None
-    theta = full.loads.oil_fraction
-    np.testing.assert_allclose(full.history.force[5:-5], theta * expected[5:-5], atol=2e-3 * largest)
-    assert theta == pytest.approx(1.039, abs=1e-3)
-
-
 # Largest and mean force in N over a period of 30 Hz at an eccentricity of 0.5, with 20 x 10 quadratic elements.
 MOVED_ELEMENTS = [
     (squeeze, "free-to-air", 0.9, 77.59, 30.41),
@@ -328,17 +297,3 @@ def test_moved_journals_feel_what_they_feel_of_quadratic_elements(
     assert result.history is not None
     found = np.hypot(*result.history.force.T)
     assert (found.max(), found.mean()) == pytest.approx((largest, mean), rel=5e-3)
-
-
-def test_a_ramp_of_the_supply_is_followed(tmp_path: Path) -> None:
-    """As in films of other laws: the share (4.11) of the pressure; before its rise the film is that without it."""
-    fed = ("bearing.supply.pressure=3 bar", "motion={eccentricity=0.3, frequency='10 Hz', periods=0.2}")
-    ramped, full, none = (
-        squeeze(moved(tmp_path / "case.toml", *fed, *settings)).results[0].history
-        for settings in (("bearing.supply.ramp=0.005 s",), (), ("bearing.supply.pressure=1 bar",))
-    )
-    assert ramped is not None
-    assert full is not None
-    assert none is not None
-    assert ramped.force[0] == pytest.approx(none.force[0], abs=0.1 * np.abs(none.force).max())
-    assert ramped.force[-1] == pytest.approx(full.force[-1], abs=0.05 * np.abs(full.force).max())

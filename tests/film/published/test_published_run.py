@@ -83,26 +83,6 @@ def test_a_full_film_is_that_of_the_other_forms() -> None:
     assert state.flows[PASSED, 0, CREATED] == 0.0
 
 
-def test_a_fed_film_moves_as_in_the_conservative_form() -> None:
-    """Nothing is created where it is fed well, and both forms are then the same equation."""
-    settings = ["bearing.supply.pressure=2bar", "bearing.ends=oil-bath", SOFT, "speed.duration=0.03s"]
-    case = case_of(*settings, "accuracy.mesh=[8,48]")
-    other = load_case("jeffcott", [*SHORT, "film.cavitation=two-phase", *settings, "accuracy.mesh=[8,96]"])
-    plan, system = planned(case)
-    found, _ = run(case, plan, system)
-    expected, _ = run(other, *planned(other))
-    apart, moved = np.abs(found - expected), np.abs(found - found[0])
-    assert np.max(moved) > 0.3 * system.clearances[0]
-    assert np.max(apart) < 0.02 * system.clearances[0]
-
-
-def test_a_rotor_that_rests_stays_there() -> None:
-    case = case_of(SOFT, "start.position=resting", "rotor.unbalance=0 kg*m", "speed.duration=0.05s")
-    plan, system = planned(case)
-    q, _ = run(case, plan, system)
-    assert np.max(np.abs(q - q[0])) < 1e-4 * system.clearances[0]
-
-
 def test_order_of_the_time_steps() -> None:
     """Third order with a smooth theta(p): errors against eight times as many steps."""
     case = case_of("film.two-phase.steepness=0.5", "bearing.ends=oil-bath", "start.displacement=[0.1,-0.3]",

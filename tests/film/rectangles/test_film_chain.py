@@ -11,14 +11,11 @@ from films import rectangular
 from paths import DATA
 
 from frbcli.arrays import Array
-from frbcli.case.reading.load import load_case
 from frbcli.film.gap import AxialGroove, Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices
 from frbcli.film.rectangles.chain import chain_grid, element_matrices, mode_fields
 from frbcli.film.rectangles.film import FilmForce, evaluate, make_film
 from frbcli.film.rectangles.film_force import FilmData
-from frbcli.scene.machine.system import make_system
-from frbcli.scene.planning.plan import make_plan
 
 CLEARANCE = 40e-6
 MESH = Mesh(6, 48)
@@ -148,41 +145,3 @@ def test_turning_bearing_and_motion_turns_the_force() -> None:
     there = at(turned, row, turn).force
     rotation = np.array([[math.cos(turn), -math.sin(turn)], [math.sin(turn), math.cos(turn)]])
     assert there == pytest.approx(rotation @ here, rel=1e-10)
-
-
-def test_supply_pressure_of_one_groove_pushes_the_resting_journal_down() -> None:
-    """Without motion only the hydrostatic pressure is left: from the top, and by symmetry without a side force."""
-    force = evaluate(FILMS[2e5], CLEARANCE, np.zeros(2), np.zeros(2), 0.0).force
-    assert force[1] < 0.0
-    assert abs(force[0]) < 1e-9 * abs(force[1])
-    three = make_film(grooved(2e5, count=3), "finite", "half-sommerfeld", MESH)
-    balanced = evaluate(three, CLEARANCE, np.zeros(2), np.zeros(2), 0.0).force
-    assert np.abs(balanced).max() < 1e-9 * abs(force[1])
-
-
-def test_a_narrow_groove_leaves_the_plain_film() -> None:
-    """At the widest gap Sommerfeld's pressure is ambient by symmetry: a groove at ambient pressure there changes
-    little, and less the narrower it is."""
-    plain = rectangular(0.02, 0.025, CLEARANCE, 0.01, 1e5, 1e5)
-    place, omega = CLEARANCE * np.array([0.3, -0.5]), 200.0
-    film = make_film(plain, "finite", "half-sommerfeld", Mesh(6, 96))
-    expected = evaluate(film, CLEARANCE, place, np.zeros(2), omega)
-    widest = math.atan2(place[1], place[0]) + 0.5 * math.pi
-    errors = []
-    for opening in (15.0, 0.5):
-        groove = AxialGroove(widest, math.radians(opening), 0.0)
-        bearing = rectangular(0.02, 0.025, CLEARANCE, 0.01, 1e5, 1e5, grooves=(groove,))
-        force = evaluate(make_film(bearing, "finite", "half-sommerfeld", MESH), CLEARANCE, place, np.zeros(2), omega)
-        errors.append(float(np.hypot(*(force.force - expected.force)) / np.hypot(*expected.force)))
-    assert errors[1] < min(1e-3, 0.2 * errors[0])
-    assert errors[0] < 0.1
-
-
-def test_the_plan_and_the_system_know_axial_grooves() -> None:
-    supply = 'bearing.supply={kind="axial-grooves",count=2,position="10 deg",opening_angle="15 deg",pressure="2 bar"}'
-    case = load_case("jeffcott", [supply])
-    plan = make_plan(case)
-    assert any(decision.value == "2 rectangles" for decision in plan.decisions)
-    bearing = make_system(case, plan).films.sections[0]
-    assert [round(math.degrees(groove.position)) for groove in bearing.grooves] == [10, 190]
-    assert bearing.grooves[0].pressure == pytest.approx(1e5)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 import pytest
 from skfem import Basis, BilinearForm, ElementLineP2, MeshLine, asm
@@ -33,8 +31,3 @@ def test_modes_are_those_of_the_forms_that_a_library_assembles(elements: int) ->
     np.testing.assert_allclose(modes.shapes @ mass @ modes.shapes.T, np.eye(len(modes.shapes)), rtol=0, atol=1e-12)
     by_form = modes.shapes @ stiffness @ modes.shapes.T
     np.testing.assert_allclose(by_form, np.diag(modes.eigenvalues), rtol=0, atol=1e-9 * modes.eigenvalues.max())
-
-
-def test_the_slowest_mode_is_half_a_wave() -> None:
-    """-p'' = lambda p between two open ends."""
-    assert axial_modes(axial_vertices(32)).eigenvalues[0] == pytest.approx(math.pi**2, rel=2e-6)

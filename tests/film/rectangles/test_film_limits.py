@@ -11,13 +11,13 @@ from films import AMBIENT, CLEARANCE, GROOVED, PLAIN, RADIUS, VISCOSITY, film_of
 
 from frbcli.film.gap import Section
 from frbcli.film.grid import Mesh, axial_modes, axial_vertices, ring_vertices
-from frbcli.film.rectangles import modal, short
+from frbcli.film.rectangles import short
 from frbcli.film.rectangles.film import evaluate, make_film
 from frbcli.film.rectangles.modal import unit_fields
 from frbcli.film.rectangles.plain import solve_plain
 from frbcli.film.rectangles.short import short_closed, short_general, short_pressure
 from frbcli.film.rectangles.table import ring_contraction
-from frbcli.film.rectangles.untabulated import direct_force, section_pressure
+from frbcli.film.rectangles.untabulated import direct_force
 
 OMEGA = 300.0
 REST = np.zeros(2)
@@ -77,7 +77,7 @@ def test_closed_form_is_the_clipped_integral(eccentricity: float, w: tuple[float
     assert np.linalg.norm(found - expected) < 1e-5 * np.linalg.norm(expected)
 
 
-@pytest.mark.parametrize(("sigma", "level"), [(0.0, 0.0), (0.3, 0.0), (0.3, -0.2), (0.0, -0.4), (5.0, -0.1)])
+@pytest.mark.parametrize(("sigma", "level"), [(0.0, 0.0), (0.3, 0.0), (0.0, -0.4), (5.0, -0.1)])
 @pytest.mark.parametrize("w", MOTIONS)
 @pytest.mark.parametrize("eccentricity", [0.05, 0.5, 0.95])
 def test_extended_short_bearing_is_the_clipped_integral(
@@ -111,20 +111,6 @@ def test_extended_short_bearing_has_the_derivatives_of_its_integral(
     damping, fine = found[2:6].reshape(2, 2), np.stack([by_r, by_t], axis=1)
     np.testing.assert_allclose(damping, fine, rtol=0.0, atol=2e-2 * np.abs(fine).max())
     np.testing.assert_allclose(found[6:], by_e, rtol=0.0, atol=2e-2 * np.abs(by_e).max())
-
-
-@pytest.mark.parametrize("eccentricity", [0.1, 0.4, 0.7, 0.9])
-def test_long_bearing_has_sommerfelds_pressure(eccentricity: float) -> None:
-    """In the middle of a bearing with B/D = 20 the edges are not felt:
-    p = 6 eta omega (R/C)^2 eps sin(Theta) (2 + eps cos(Theta)) / ((2 + eps^2) (1 + eps cos(Theta))^2), Theta from the
-    widest gap in the sense of rotation; divided by 12 eta / psi^2 that is the scaled pressure."""
-    mesh = Mesh(24, 192)
-    field = section_pressure(plain(20.0), mesh, eccentricity, 0.0, -0.5 * OMEGA * eccentricity)
-    middle = int(np.argmin(np.abs(field.z - 0.5)))
-    theta, found = field.vertices, field.values[::2, middle]
-    gap = 1 + eccentricity * np.cos(theta)
-    expected = 0.5 * OMEGA * eccentricity * np.sin(theta) * (1 + gap) / ((2 + eccentricity**2) * gap**2)
-    np.testing.assert_allclose(found, expected, atol=1e-4 * np.abs(expected).max())
 
 
 @pytest.mark.parametrize("eccentricity", [0.1, 0.3, 0.6, 0.8])
@@ -181,15 +167,6 @@ def test_raimondi_and_boyd(slenderness: float) -> None:
         previous = ratio
 
 
-def test_raimondi_and_boyd_at_small_eccentricity() -> None:
-    """Where the two conditions differ least, in the shortest bearing and near the centre, they agree to a per cent."""
-    for eccentricity in (0.1, 0.2):
-        s, attitude = RAIMONDI_BOYD[0.25][eccentricity]
-        so, angle = rotating(plain(0.25), "half-sommerfeld", FINE, eccentricity)
-        assert so * 2 * math.pi * s == pytest.approx(1.0, abs=0.01)
-        assert abs(angle) == pytest.approx(attitude, abs=1.0)
-
-
 @pytest.mark.parametrize("mesh", [Mesh(6, 96), Mesh(3, 20)])
 @pytest.mark.parametrize("radius_to_width", [0.625, 1.25, 5.0])
 @pytest.mark.parametrize("eccentricity", [0.1, 0.6, 0.95])
@@ -210,14 +187,6 @@ def test_modal_solve_is_the_plain_solve(mesh: Mesh, radius_to_width: float, ecce
     assert len(set(zip(ring.tolist(), width.tolist(), strict=True))) == found.size
     error = np.abs(found[ring, width] - plain_film.pressure).max()
     assert error < 1e-12 * np.abs(plain_film.pressure).max()
-
-
-def test_loads_of_any_layout_have_one_kernel() -> None:
-    phi, modes = ring_vertices(20, ring_contraction(0.6)), axial_modes(axial_vertices(3))
-    decays, spread = modes.eigenvalues, np.repeat(modes.loads, 2)[::2]
-    assert not spread.flags.c_contiguous
-    assert np.array_equal(unit_fields(phi, 0.6, decays, spread), unit_fields(phi, 0.6, decays, modes.loads))
-    assert len(modal._mode_fields.signatures) == 1
 
 
 def random_motions(count: int) -> list[tuple[np.ndarray, np.ndarray, float]]:

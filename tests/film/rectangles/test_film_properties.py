@@ -56,17 +56,6 @@ def test_mirror_turns_the_rotation_round(kind: str, d: np.ndarray, v: np.ndarray
     assert near(found, mirror * force(kind, d, v, omega), size(kind, d, v, omega))
 
 
-@pytest.mark.parametrize("kind", EQUAL_PRESSURES)
-@given(d=places, v=velocities, omega=speeds, factor=st.floats(0.1, 10.0))
-@examples
-def test_force_is_proportional_to_the_speeds(
-    kind: str, d: np.ndarray, v: np.ndarray, omega: float, factor: float
-) -> None:
-    """With equal pressures all around So does not depend on the speed."""
-    found = force(kind, d, factor * v, factor * omega)
-    assert near(found, factor * force(kind, d, v, omega), factor * size(kind, d, v, omega))
-
-
 @every_kind
 @given(d=places, v=velocities, omega=speeds, factor=st.sampled_from([0.5, 3.0]), thicker=st.booleans())
 @examples

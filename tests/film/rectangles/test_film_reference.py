@@ -13,7 +13,7 @@ from paths import DATA
 
 from frbcli.film.gap import Section
 from frbcli.film.rectangles.film import evaluate
-from frbcli.film.rectangles.untabulated import direct_force, largest_pressure
+from frbcli.film.rectangles.untabulated import largest_pressure
 from frbcli.scene.planning.film_choice import DEFAULT_MESH
 
 FORCES = DATA / "film-forces.csv"
@@ -57,14 +57,6 @@ def test_force(row: dict[str, str]) -> None:
     bearing = bearing_of(row)
     film = film_of(bearing, "finite", "half-sommerfeld")
     found = evaluate(film, bearing.clearance, *motion_of(row, bearing.clearance)).force
-    expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
-    assert np.linalg.norm(found - expected) < allowed(row, expected)
-
-
-@pytest.mark.parametrize("row", reference(), ids=name_of)
-def test_force_without_tables(row: dict[str, str]) -> None:
-    bearing = bearing_of(row)
-    found = direct_force(bearing, "half-sommerfeld", DEFAULT_MESH, *motion_of(row, bearing.clearance))
     expected = np.array([float(row["Fx_N"]), float(row["Fy_N"])])
     assert np.linalg.norm(found - expected) < allowed(row, expected)
 

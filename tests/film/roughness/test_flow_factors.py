@@ -10,7 +10,6 @@ from scipy.integrate import quad
 
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
-from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import Sommerfeld
 from frbcli.film.cells.film import VolumeFilm, fitted_grid
 from frbcli.film.cells.loads import FilmLoads, loads
@@ -83,14 +82,6 @@ def test_kernels_are_the_equations_and_their_derivatives(x: float) -> None:
     assert (by_h, carried_by_h) == pytest.approx((found[0], found[2]), rel=1e-6, abs=1e-7)
     assert flowing_cube(h, 0.0) == pytest.approx((h**3, 3.0 * h**2), rel=1e-14)
     assert stress_factor(h, 0.0) == 1.0
-
-
-@pytest.mark.parametrize("law", [Sommerfeld(), Reynolds(), Elrod(2e4)])
-def test_smooth_surfaces_are_the_limit(law: Law) -> None:
-    motion = Motion((0.3, -0.5), (0.0, 0.0), OMEGA)
-    found, smooth = (solved(section, law, motion) for section in (rough(0.7, 1e-3), BATH))
-    np.testing.assert_allclose(found.force, smooth.force, rtol=1e-9)
-    assert found.torque.journal == pytest.approx(smooth.torque.journal, rel=1e-4)  # local gaps: 1 + (sigma / h)^2
 
 
 def test_an_even_gap_has_the_same_factors_everywhere() -> None:

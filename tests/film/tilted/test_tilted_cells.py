@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
-from frbcli.film.cells.mesh.tilted import tilted_cells, tilted_weights
 from frbcli.film.cells.tilted.force import settled_force, tilted_film, tilted_force
 from frbcli.film.gap import Section
 
@@ -17,21 +16,6 @@ R, C, ETA, TOTAL = 0.01, 40e-6, 0.01, 900.0
 
 def plain(width: float) -> Section:
     return Section(R, width, width, C, ETA, 1e5, 1e5, 1, "oil-bath", "oil-bath")
-
-
-@pytest.mark.parametrize("along", [5, 6, 8, 10, 12, 14, 16])
-def test_faces_lie_midway_and_weights_are_exact(along: int) -> None:
-    """For constants and straight lines, nearly for parabolas, and of one sign."""
-    z, height = tilted_cells(along)
-    assert z[1:-1] == pytest.approx(0.5 * (height[1:] + height[:-1]), abs=1e-15)
-    assert (np.diff(z) > 0.0).all()
-    weights = tilted_weights(z, height)
-    assert (weights > 0.0).all()
-    assert weights == pytest.approx(weights[::-1], rel=1e-12)
-    for power in (0, 1, 2):
-        tolerance = 1e-12 if power < 2 else 3e-2 / along  # but for the change that the moment takes
-        assert weights @ height**power == pytest.approx(1.0 / (power + 1.0), rel=tolerance)
-    assert weights @ (height * (1.0 - height)) == pytest.approx(1.0 / 6.0, rel=2e-2)
 
 
 @pytest.mark.parametrize("along", [3, 4, 5, 8, 10])

@@ -13,10 +13,8 @@ from frbcli.film.cavitation.reynolds import Reynolds
 from frbcli.film.cavitation.sommerfeld import HalfSommerfeld, Sommerfeld
 from frbcli.film.cavitation.two_phase import TwoPhase
 from frbcli.film.cells.balance.balances import ENDS_NET, FLOWS, SUPPLY_NET
-from frbcli.film.cells.balance.newton_step import film_loads
 from frbcli.film.cells.balance.plain import CellBalances
 from frbcli.film.cells.balance.states import BEFORE_UPSTREAM, CARRIED_GAS, STATES, before_upstream
-from frbcli.film.cells.data import volume_films
 from frbcli.film.cells.elimination.block_cyclic import ABOVE, BEFORE, BEHIND, BELOW, CENTRE, ENTRIES
 from frbcli.film.cells.film import VolumeFilm, gap_height
 from frbcli.film.cells.gas.balance import oil_paths, path_layers
@@ -198,19 +196,3 @@ def test_loads_do_the_work_of_the_plain_ones(section: str, law: Law) -> None:
                 moved[:, :, k] += side * step * fields[:, :, k + BY_ENDS + b]
                 difference += side * loads_of(data, number, states, moved)[0] / (2.0 * step)
             assert np.abs(slopes[:, b] - difference).max() < 1e-6 * np.abs(slopes).max()
-
-
-def test_loads_without_tilt_are_those_of_the_film_without() -> None:
-    data, (land,) = lands_of(SECTIONS["plain"], HalfSommerfeld())
-    m, k = land.film.grid.shape
-    states, _ = some_states(land.film)
-    fields = np.random.default_rng(3).uniform(-0.02, 0.02, (m, k, k + ALL_SIDES))
-    loads, slopes = loads_of(data, 0, states, fields)
-    flat = volume_films([land.film])
-    f_x, f_y, xx, xy, yx, yy = film_loads(
-        flat.films[0], flat.ring[0], flat.cells[0], states, np.ascontiguousarray(fields[:, :, : k + 3])
-    )
-    size = np.hypot(f_x, f_y)
-    assert loads[:2] + loads[2:] == pytest.approx([f_x, f_y], abs=1e-12 * size)
-    found, expected = slopes[:2, :2] + slopes[2:, :2], np.array([[xx, xy], [yx, yy]])
-    assert found == pytest.approx(expected, abs=1e-12 * np.abs(expected).max())

@@ -13,8 +13,6 @@ import pytest
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
-from frbcli.linear.critical_speeds import larger_semi_axis
-from frbcli.linear.response import CriticalSpeed
 from frbcli.rotor.beam import BeamSection
 
 TURN = 2.0 * math.pi
@@ -58,12 +56,6 @@ def test_a_peak_is_found_from_given_speeds_which_stay_as_they_are() -> None:
     assert found.speeds_Hz.tolist() == [100.0, 150.0, 250.0]
     assert found.critical_speeds_Hz == pytest.approx([math.sqrt(2.0 * K / M) / TURN], rel=1e-5)
     assert frbcli.response(rigid(0.1), [100.0]).critical_speeds == ()
-
-
-def test_without_damping_a_critical_speed_has_no_height() -> None:
-    (peak,) = frbcli.response(rigid(0.0)).critical_speeds
-    assert peak.speed_Hz == pytest.approx(math.sqrt(2.0 * K / M) / TURN, rel=1e-9)
-    assert (peak.amplitude, peak.amplification_factor, peak.logarithmic_decrement) == (None, None, 0.0)
 
 
 @pytest.mark.parametrize("inner", [0.0, 0.03])
@@ -224,9 +216,3 @@ duration = "1 s"
     assert "Critical speeds" in capsys.readouterr().out
     assert frb(["response", str(path), "--operating", "15000..12000 rpm", "--no-picture"]) == 2
     assert "does not ascend" in capsys.readouterr().err
-
-
-def test_amplitudes_are_those_of_the_larger_semi_axis() -> None:
-    """A circle one way of 2 and the other way of 1."""
-    assert larger_semi_axis(np.array([3.0 + 0j, -1j])) == pytest.approx(3.0)
-    assert CriticalSpeed.__dataclass_fields__["amplitude"].type == "float | None"

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from marches import in_two_bearings, rigid
+from marches import in_two_bearings
 
 from frbcli.analysis.orders.order_tracking import order_track
 from frbcli.case.reading.load import load_case
@@ -41,29 +41,9 @@ def test_a_jeffcott_rotor_on_springs_and_dampers_has_its_closed_form(omega: floa
     assert abs(x_disk - 1j * y_disk) < 1e-12 * abs(x_disk)
 
 
-def test_a_rigid_rotor_far_above_all_turns_about_its_centre_of_mass() -> None:
-    rotor = rigid(5.0, 2e-6, 0.0)
-    omega = 1e6
-    pull = omega, omega**2 * rotor.unbalance
-    x, y = forced_motion(rotor, omega, pull, 1e6 * np.eye(2)[None], 10.0 * np.eye(2)[None])
-    assert 0.5 * abs(x + 1j * y) == pytest.approx(2e-6 / 5.0, rel=1e-4)
-
-
 @pytest.fixture(scope="module")
 def jeffcott() -> Response:
     return response(load_case("jeffcott"))
-
-
-def test_the_run_up_follows_the_response_until_it_whirls(jeffcott: Response, tmp_path: Path) -> None:
-    """Within 2 % of the peak, at 30 Hz/s through it; forward and backward motion, and the phase."""
-    run = runup(load_case("jeffcott"), tmp_path / "run.h5")
-    still = (jeffcott.growth < 0.0) & (jeffcott.speeds_Hz > 30.0)
-    speeds = jeffcott.speeds_Hz[still]
-    for number, name in enumerate(jeffcott.points):
-        track = order_track(run, 1.0, name)
-        for mine, its in ((jeffcott.forward, track.forward), (jeffcott.backward, track.backward)):
-            seen = np.interp(speeds, track.speed_Hz, its.real) + 1j * np.interp(speeds, track.speed_Hz, its.imag)
-            assert np.abs(mine[still, number] - seen).max() < 0.02 * np.abs(jeffcott.forward[still, number]).max()
 
 
 def test_a_fast_ramp_follows_it_too(tmp_path: Path) -> None:
@@ -134,7 +114,7 @@ def test_the_picture_has_the_orbits_at_the_largest_amplitude_and_the_highest_spe
 
 
 @pytest.mark.parametrize(("unbalance", "kinds"), [
-    ("3 g*mm", {"linear"}), ("60 g*mm", {"linear", "doubtful"}), ("400 g*mm", {"linear", "doubtful", "beyond-gap"}),
+    ("3 g*mm", {"linear"}), ("400 g*mm", {"linear", "doubtful", "beyond-gap"}),
 ])  # fmt: skip
 def test_motions_beyond_the_gap_are_told(
     unbalance: str, kinds: set[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -171,8 +151,7 @@ def test_the_largest_eccentricity_is_that_of_the_orbit_about_the_resting_positio
 
 
 @pytest.mark.parametrize(("name", "unbalance", "to_Hz"), [
-    ("jeffcott", 60, 170), pytest.param("jeffcott", 100, 170, marks=pytest.mark.nightly),
-    pytest.param("rigid", 100, 160, marks=pytest.mark.nightly),
+    ("jeffcott", 60, 170), pytest.param("rigid", 100, 160, marks=pytest.mark.nightly),
 ])  # fmt: skip
 def test_linear_amplitudes_hold_up_to_the_share_of_the_gap_that_is_called_doubtful(
     name: str, unbalance: int, to_Hz: float
@@ -190,4 +169,3 @@ def test_linear_amplitudes_hold_up_to_the_share_of_the_gap_that_is_called_doubtf
             error = abs(2.0 * larger_semi_axis(point.harmonics[1, 0]) / linear - 1.0)
             assert error < (0.04 if share < 0.1 else 0.15 if share < DOUBTFUL else math.inf)
     assert found.gap_share.max() > DOUBTFUL
-

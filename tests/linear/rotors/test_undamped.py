@@ -15,7 +15,6 @@ from frbcli.cli.main import run as frb
 from frbcli.linear.stability import stability
 from frbcli.plot.machine.modes import campbell_figure
 
-TURN = 2.0 * math.pi
 SPEED = {"from": "1 Hz", "to": "80 Hz", "duration": "1 s"}
 
 
