@@ -15,7 +15,7 @@ from scipy.optimize import brentq
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.surroundings.spring import Spring
-from frbcli.elements.spring import SpringForce
+from frbcli.elements.spring import STICKS, SpringForce
 from frbcli.errors import InputError
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
@@ -154,6 +154,29 @@ def test_a_rotor_rubs_all_around_its_stop(friction: float) -> None:
     _, result = run_from(case, 0.5, (0.0, -radius), (omega * radius, 0.0), 1e-8, 1e-3, omega)
     found = np.hypot(*result.q[-100:].T)
     np.testing.assert_allclose(found, radius, rtol=1e-6)
+
+
+def test_a_rotor_that_rolls_in_a_stop_whirls_backwards() -> None:
+    """Dry whirl: r (K + k - M nu^2) = k gap holds it outside, mu N tanh(u / STICKS) = D nu r turns it against its
+    damping, with the sliding u = Omega R - nu r, which is nearly 0."""
+    damping, friction, omega, radius = 20.0, 0.3, 100.0, 0.25e-3
+
+    def place(nu: float) -> float:
+        return STOP * GAP / (K + STOP - M * nu**2)
+
+    def surplus(nu: float) -> float:
+        r = place(nu)
+        slides = math.tanh((omega * radius - nu * r) / STICKS)
+        return friction * STOP * (r - GAP) * slides - damping * nu * r
+
+    nu = brentq(surplus, 800.0, 1200.0, xtol=1e-12)
+    r = place(nu)
+    assert omega * radius - nu * r < 0.01 * omega * radius
+    case = sprung(stop(friction=friction, radius="0.25 mm"), damping=damping)
+    _, result = run_from(case, 0.5, (1.01 * r, 0.0), (0.0, -0.98 * nu * r), 1e-9, 1e-3, omega)
+    q, v = result.q[-100:], result.v[-100:]
+    np.testing.assert_allclose(np.hypot(*q.T), r, rtol=1e-6)
+    np.testing.assert_allclose((q[:, 0] * v[:, 1] - q[:, 1] * v[:, 0]) / r**2, -nu, rtol=1e-6)
 
 
 def test_a_run_says_when_a_stop_is_touched_and_left(tmp_path: Path) -> None:

@@ -10,6 +10,8 @@ import numpy as np
 import pytest
 from marches import rigid_shaft
 
+from frbcli.case.reading.load import case_from_dict
+from frbcli.case.schema import Case
 from frbcli.results.store import Run
 from frbcli.runs import march
 from frbcli.runs.run import runup
@@ -53,7 +55,24 @@ def test_a_resumed_run_is_bit_equal(
     settings: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(march, "BUDGET", LOOKS)
-    case, broken, reached = rigid_shaft(*TIMES, *settings), tmp_path / "broken.h5", [0.0]
+    assert_resumable(rigid_shaft(*TIMES, *settings), tmp_path)
+
+
+def test_a_resumed_run_of_a_free_speed_is_bit_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its speed and angle are part of the state: a torque that changes, a load, the reaction of the whirl."""
+    monkeypatch.setattr(march, "BUDGET", LOOKS)
+    data = {
+        "rotor": {"kind": "rigid", "mass": "6 kg", "unbalance": "2 g*m", "polar_inertia": "0.02 kg*m^2"},
+        "bearing": {"kind": "coefficients", "stiffness": "2e6 N/m", "damping": "100 N*s/m"},
+        "drive": {"torque": [["0 s", "30 N*m"], ["0.2 s", "10 N*m"]], "load": "1e-3 N*m*s", "duration": "0.2 s",
+                  "start": "20 Hz", "reaction": True},
+    }  # fmt: skip
+    assert_resumable(case_from_dict(data, "driven"), tmp_path)
+
+
+def assert_resumable(case: Case, tmp_path: Path) -> None:
+    """A run that is interrupted twice is the run in one piece."""
+    broken, reached = tmp_path / "broken.h5", [0.0]
     whole = runup(case, tmp_path / "whole.h5")
     assert whole.status == "finished"
     for stop_at in (3, 2):
