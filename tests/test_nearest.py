@@ -6,7 +6,7 @@ import pytest
 
 from frbcli.errors import InputError
 from frbcli.nearest import did_you_mean, nearest
-from frbcli.results.signals import Signal
+from frbcli.results.records import Signal
 from frbcli.results.store import Run
 
 POINTS = ("journal_front", "journal_rear", "disk_turbine", "disk_compressor")

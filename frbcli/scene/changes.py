@@ -1,7 +1,7 @@
 """What changes suddenly during a run: clearances, in steps by heat or wear, and the unbalance by a loss. Times, values,
 and the case after each change.
 
-The rotor keeps its displacement and velocity, a mass-conserving film its oil (runs/sudden_change.py). The motion of
+The rotor keeps its displacement and velocity, a mass-conserving film its oil (runs/start.py). The motion of
 the gap while it changes is left out.
 """
 

@@ -26,7 +26,7 @@ from frbcli.scene.costs.trial import end_of_trial, planned_trial
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.expected_error import expected_error
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.differences import difference
+from frbcli.studies.accuracy import difference
 
 TARGETS = (1e-2, 3e-3, 1e-3)
 FINE = ("accuracy.mesh=[10, 144]", "accuracy.tolerance=2e-6")

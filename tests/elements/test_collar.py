@@ -17,7 +17,7 @@ from frbcli.elements.collar.collar import NotCarried, collar_of
 from frbcli.elements.collar.thrust import ThrustElement
 from frbcli.equilibrium.linearised import linearised, states
 from frbcli.errors import InputError
-from frbcli.linear.thrust.axial import axial_state
+from frbcli.linear.sheets.thrust import axial_state
 from frbcli.scene.machine.elements import site_of
 from frbcli.scene.machine.rotor import make_rotor
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from volume_films import ROTATION, polar_motion, section_of
 
-from frbcli.bearing_tests.march import march
+from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.elrod import Elrod
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.reynolds import Reynolds

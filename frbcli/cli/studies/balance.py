@@ -86,7 +86,7 @@ def command(
     """
     from frbcli.balancing.balance import TrialRun, balance
     from frbcli.case.course.speed import given_speed_unit
-    from frbcli.results.files.kinds import TABLES
+    from frbcli.results.files.write import TABLES
 
     check_outputs((csv, TABLES["csv"]))
     with display(terminal, READING):

@@ -78,8 +78,7 @@ def command(
     neither oil nor gas.
     """
     from frbcli.scene.planning.kinematic_plan import TESTS, with_model
-    from frbcli.studies.compare import compare
-    from frbcli.studies.comparison_columns import HEAT
+    from frbcli.studies.compare import HEAT, compare
 
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
@@ -112,7 +111,7 @@ def command(
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
-    from frbcli.cli.bearings.kinematic import run_test
+    from frbcli.cli.machines.kinematic import run_test
     from frbcli.film.cavitation.table import laws, names
 
     for option, given, problem in (
@@ -127,9 +126,9 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
 
 
 def _report(comparison: Comparison, couplings: bool, terminal: Terminal) -> None:
-    from frbcli.studies.comparison_columns import COUPLINGS, MODELS
+    from frbcli.studies.compare import COUPLING_TABLE, MODELS
 
-    name, table = COUPLINGS if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
+    name, table = COUPLING_TABLE if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
     rows = table.cells(name)
     if couplings and len({(result.variant.cavitation, result.variant.theory) for result in comparison.results}) > 1:
         rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{coupling}", *rest)
