@@ -25,7 +25,7 @@ from frbcli.arrays import Array
 from frbcli.nearest import did_you_mean
 from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
-from frbcli.results.records import LARGEST, SMALLEST, Signal, wrong_values
+from frbcli.results.records import LARGEST, PER_MINUTE, SMALLEST, Signal, wrong_values
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, quantity
 
@@ -249,6 +249,7 @@ def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], t
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
     references = {} if tacho is None or tacho.mark is None else {MARK: tacho.mark}
+    references |= {PER_MINUTE: 1.0} if units.per_minute else {}
     return signals, tuple(filter(None, (units.sentence(), pulses, rolled))), references
 
 
@@ -280,6 +281,7 @@ class _Units:
     def __init__(self, columns: Columns) -> None:
         self.columns = columns
         self._used: dict[str, str] = {}
+        self.per_minute = False  # whether speeds are in revolutions per minute
 
     def sentence(self) -> str:
         """The units of the columns that were read."""
@@ -294,6 +296,7 @@ class _Units:
         columns = self.columns
         values, stated = columns.values[columns.named(name)] if gaps else columns[name], columns.unit(name)
         one = self._one(name, stated, one, unit, option)
+        self.per_minute |= unit == SPEED and math.isclose(one, 1.0 / 60.0, rel_tol=SAME)
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if not largest <= LARGEST / one:
             problem = f'has values of up to {largest:.3g} in "{name}", and {option} is {one:g} {unit}.'

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 
 from frbcli.analysis.ridges import Ridges
 from frbcli.analysis.signals import films, joined
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.speed import speed_unit_of
 from frbcli.film.cavitation.table import label_of
 from frbcli.plot.signals import MICRO, curve, ends
 from frbcli.plot.style import (
@@ -84,7 +84,7 @@ def comparison_figure(comparison: Comparison) -> Figure:
 def _draw_events(axes: Axes, run: Run, row: int, colour: str, line: Line) -> None:
     """A run as a line as long as it lasts, with its events on it."""
     left, right = axes.get_xlim()
-    unit = given_speed_unit(run.case_text)
+    unit = speed_unit_of(run)
     axes.plot(ends(run), [row, row], color=colour, linestyle=line)
     for event in run.events[:MOST_MARKED]:
         at = event["t_s"]

@@ -19,7 +19,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.signals import films, joined, points, speed_at
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.speed import speed_unit_of
 from frbcli.plot.run.motion import LAST_s
 from frbcli.plot.signals import MICRO, at_times, cut, ends, heading, motion, shell
 from frbcli.plot.style import BLUE, GREY, LEVEL_MAP, VERMILION, new_figure, refused, styled
@@ -120,7 +120,7 @@ def _scene(run: Run, begin: float, end: float, frames: int) -> tuple[Figure, Cal
         trail = axes.plot([], [], color=BLUE, linewidth=1.0)[0]
         dot = axes.plot([], [], color=BLUE, marker="o", markersize=5.0, linestyle="none")[0]
         lines.append((x, y, trail, dot))
-    unit = given_speed_unit(run.case_text)
+    unit = speed_unit_of(run)
     caption = figure.text(0.99, 0.015, "", ha="right", fontsize=9.0)
 
     def draw(frame: int) -> None:
@@ -283,5 +283,5 @@ def _draw_maps(row: Any, kept: KeptFilm, frame: int) -> tuple[list[Any], list[An
 
 def _moment(run: Run, kept: KeptFilm, frame: int) -> str:
     now = float(kept.times[frame])
-    speed = given_speed_unit(run.case_text).words(speed_at(run, now), 1)
+    speed = speed_unit_of(run).words(speed_at(run, now), 1)
     return f"{now:.4f} s, {speed}, eccentricity {np.hypot(*kept.places[frame]):.3f}"

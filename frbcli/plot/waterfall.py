@@ -26,7 +26,7 @@ from frbcli.analysis.signals import RingSpeed, joined, located, points, samples
 from frbcli.analysis.spectrum import FROM_SPEED, PADDING, Direction, Spectrogram, window_length
 from frbcli.analysis.spectrum import waterfall as spectra
 from frbcli.arrays import Array
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.speed import speed_unit_of
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
 from frbcli.plot.signals import MICRO, at_times, bearing_of, case_tables, clearance, ends, extremes, heading, motion
@@ -146,7 +146,7 @@ def waterfall_figure(
                 mesh = draw_levels(axes, run, signal, part, over, log, scale)
                 number_events(axes, run, part, over)
                 _draw_other_axis(axes, part, over)
-        _list_events(figure, run, unit or given_speed_unit(run.case_text))
+        _list_events(figure, run, unit or speed_unit_of(run))
         if not cascade:
             bar = figure.colorbar(mesh, ax=list(panels), pad=0.02, extend="both")
             bar.set_label("amplitude in µm" if scale.linear else level_label(run, signal))

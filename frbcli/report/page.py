@@ -17,7 +17,7 @@ from markupsafe import Markup
 from frbcli import __version__
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.speed import speed_unit_of
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable
@@ -118,7 +118,7 @@ def report(
     """
     end = ends(run)[1]
     shown = with_whirl_names(events(run)[:MOST_EVENTS])
-    unit = replace(given_speed_unit(run.case_text), both=both_units)
+    unit = replace(speed_unit_of(run), both=both_units)
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
     if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area

@@ -4,14 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from pydantic import Field, model_validator
 
 from frbcli.case.model import Model, with_default
 from frbcli.case.quantities import Count, Duration, FirstSpeed, Hold, Label, Quantity, Speed
 from frbcli.case.reading.toml import TomlFault, parse
+from frbcli.results.records import PER_MINUTE
 from frbcli.units import SpeedUnit, is_per_minute
+
+if TYPE_CHECKING:
+    from frbcli.results.store import Run
 
 DEFAULT_HOLD = 0.5
 
@@ -58,6 +62,11 @@ def given_speed_unit(text: str) -> SpeedUnit:
     motion = tables.get("motion")
     of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
     return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), of_motion]))
+
+
+def speed_unit_of(run: Run) -> SpeedUnit:
+    """The unit in which people read the rotor speeds of a run: of its case, or of the column of a measurement."""
+    return SpeedUnit(rpm=True) if PER_MINUTE in run.references else given_speed_unit(run.case_text)
 
 
 def _any_per_minute(given: object) -> bool:

@@ -72,7 +72,7 @@ def command(
     terminal: Terminal,
 ) -> None:
     """Draw one or several runs in one picture; with --what law, the oil fraction of a case over pressure."""
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.speed import speed_unit_of
     from frbcli.results.store import read_run
 
     if animate and what not in MOVING:
@@ -102,7 +102,7 @@ def command(
         return
     check_outputs(picture=target)
     runs = [read_run(path) for path in run_files]
-    terminal = terminal.with_speeds_in(given_speed_unit(runs[0].case_text))
+    terminal = terminal.with_speeds_in(speed_unit_of(runs[0]))
     if what == "eccentricity" and over == "time" and all("length_m" in run.references for run in runs):
         what = "displacement"  # no bearing has a film
     draw_wanted(terminal, lambda: _figure(what, runs, span.both, over, film or signal), target, what)

@@ -83,7 +83,7 @@ def command(
     """
     from frbcli.analysis.events import about_critical_speeds
     from frbcli.analysis.orders.subsynchronous import with_whirl_names
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.speed import speed_unit_of
     from frbcli.results.columns import EVENTS
 
     if listed:
@@ -97,7 +97,7 @@ def command(
     check_outputs(picture=target)
     with display(terminal, READING):
         run = run_of(run_file, measurement, terminal, relative=orders is None and not view.linear)
-    terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
+    terminal = terminal.with_speeds_in(speed_unit_of(run))
     if orders is None:
         drawn = _spectra(terminal, run, signal, view, target)
     else:

@@ -147,7 +147,7 @@ def beside_measured(
     outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
-    from frbcli.case.course.speed import given_speed_unit
+    from frbcli.case.course.speed import speed_unit_of
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 
@@ -155,7 +155,7 @@ def beside_measured(
     with display(terminal):
         run = read_run(run_file)
         comparison = against_measured(run, run_of(file, measurement, terminal), signal)
-    terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
+    terminal = terminal.with_speeds_in(speed_unit_of(run))
     _show(terminal, comparison)
     terminal.emit(
         {

@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
-from frbcli.case.course.speed import given_speed_unit
+from frbcli.case.course.speed import speed_unit_of
 from frbcli.plot.run.motion import draw_distances, draw_eccentricity
 from frbcli.plot.signals import curve, ends, events, heading, is_searchable, uncertain_times
 from frbcli.plot.style import (
@@ -59,7 +59,7 @@ def summary_figure(run: Run) -> Figure:
     """
     begin, end = ends(run)
     title, subtitle = heading([run])
-    marked = _marks(events(run), given_speed_unit(run.case_text))
+    marked = _marks(events(run), speed_unit_of(run))
     words = [subtitle]
     if not run.events and not is_searchable(run):
         words.append("too long for a search for events")
