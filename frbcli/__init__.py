@@ -13,7 +13,7 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.analysis.measured import Measurement as Measurement
     from frbcli.analysis.measured import measured_run as measured_run
     from frbcli.analysis.orders.order_tracking import order_track as order_track
-    from frbcli.analysis.spectra.spectrum import waterfall as waterfall
+    from frbcli.analysis.spectrum import waterfall as waterfall
     from frbcli.balancing.balance import TrialRun as TrialRun
     from frbcli.balancing.balance import balance as balance
     from frbcli.case.additions import add_law as add_law
@@ -24,25 +24,25 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.case.reading.shipped import shipped_cases as shipped_cases
     from frbcli.case.schema import Case as Case
     from frbcli.cycles.limit_cycles import limit_cycles as limit_cycles
-    from frbcli.cycles.maps.stability_map import stability_map as stability_map
-    from frbcli.cycles.over_key import limit_cycles_over as limit_cycles_over
+    from frbcli.cycles.limit_cycles import limit_cycles_over as limit_cycles_over
+    from frbcli.cycles.stability_map import stability_map as stability_map
     from frbcli.equilibrium.warm_machine import warm_machine as warm_machine
     from frbcli.errors import Fault as Fault
     from frbcli.errors import FrbError as FrbError
     from frbcli.errors import InputError as InputError
     from frbcli.errors import NotConverged as NotConverged
     from frbcli.errors import RunFileError as RunFileError
-    from frbcli.linear.bearing_sheet import bearing_sheet as bearing_sheet
-    from frbcli.linear.bearing_sheet import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.balance_quality import balance_quality as balance_quality
     from frbcli.linear.critical_map import critical_map as critical_map
     from frbcli.linear.damped_modes import damped_modes as damped_modes
     from frbcli.linear.modes import natural_modes as natural_modes
     from frbcli.linear.response import response as response
-    from frbcli.linear.rolling.sheet import ball_bearing_sheet as ball_bearing_sheet
+    from frbcli.linear.sheets.ball import ball_bearing_sheet as ball_bearing_sheet
+    from frbcli.linear.sheets.bearing import bearing_sheet as bearing_sheet
+    from frbcli.linear.sheets.bearing import sommerfeld_chart as sommerfeld_chart
+    from frbcli.linear.sheets.thrust import thrust_sheet as thrust_sheet
     from frbcli.linear.stability import stability as stability
-    from frbcli.linear.standards.balance_quality import balance_quality as balance_quality
-    from frbcli.linear.standards.vibration import vibration_limits as vibration_limits
-    from frbcli.linear.thrust.sheet import thrust_sheet as thrust_sheet
+    from frbcli.linear.vibration import vibration_limits as vibration_limits
     from frbcli.plot.axes import bearing as draw_bearing  # noqa: F401
     from frbcli.plot.axes import campbell as draw_campbell  # noqa: F401
     from frbcli.plot.axes import eccentricity as draw_eccentricity  # noqa: F401
@@ -65,8 +65,8 @@ if TYPE_CHECKING:  # so that types are known where they are checked
     from frbcli.studies.against import against_measured as against_measured
     from frbcli.studies.compare import compare as compare
     from frbcli.studies.fit import fit as fit
-    from frbcli.studies.kernels.warm_up import warm_up as warm_up
     from frbcli.studies.sweep.sweep import sweep as sweep
+    from frbcli.studies.warm_up import warm_up as warm_up
 
 
 __version__ = "0.1.0"
@@ -90,9 +90,9 @@ _PUBLIC = {  # module, or module:attribute of another name
     "add_law": "frbcli.case.additions",
     "against_measured": "frbcli.studies.against",
     "balance": "frbcli.balancing.balance",
-    "balance_quality": "frbcli.linear.standards.balance_quality",
-    "ball_bearing_sheet": "frbcli.linear.rolling.sheet",
-    "bearing_sheet": "frbcli.linear.bearing_sheet",
+    "balance_quality": "frbcli.linear.balance_quality",
+    "ball_bearing_sheet": "frbcli.linear.sheets.ball",
+    "bearing_sheet": "frbcli.linear.sheets.bearing",
     "case_from_dict": "frbcli.case.reading.load",
     "compare": "frbcli.studies.compare",
     "draw_bearing": "frbcli.plot.axes:bearing",
@@ -109,7 +109,7 @@ _PUBLIC = {  # module, or module:attribute of another name
     "find_events": "frbcli.analysis.events",
     "fit": "frbcli.studies.fit",
     "limit_cycles": "frbcli.cycles.limit_cycles",
-    "limit_cycles_over": "frbcli.cycles.over_key",
+    "limit_cycles_over": "frbcli.cycles.limit_cycles",
     "load_case": "frbcli.case.reading.load",
     "load_case_text": "frbcli.case.reading.load",
     "make_plan": "frbcli.scene.planning.plan",
@@ -125,17 +125,17 @@ _PUBLIC = {  # module, or module:attribute of another name
     "rundown": "frbcli.runs.run",
     "runup": "frbcli.runs.run",
     "shipped_cases": "frbcli.case.reading.shipped",
-    "sommerfeld_chart": "frbcli.linear.bearing_sheet",
-    "stability_map": "frbcli.cycles.maps.stability_map",
+    "sommerfeld_chart": "frbcli.linear.sheets.bearing",
+    "stability_map": "frbcli.cycles.stability_map",
     "squeeze": "frbcli.bearing_tests.kinematic",
     "stability": "frbcli.linear.stability",
     "sweep": "frbcli.studies.sweep.sweep",
-    "thrust_sheet": "frbcli.linear.thrust.sheet",
-    "vibration_limits": "frbcli.linear.standards.vibration",
-    "warm_up": "frbcli.studies.kernels.warm_up",
+    "thrust_sheet": "frbcli.linear.sheets.thrust",
+    "vibration_limits": "frbcli.linear.vibration",
+    "warm_up": "frbcli.studies.warm_up",
     "warm_machine": "frbcli.equilibrium.warm_machine",
     "whirl": "frbcli.bearing_tests.kinematic",
-    "waterfall": "frbcli.analysis.spectra.spectrum",
+    "waterfall": "frbcli.analysis.spectrum",
     "write_report": "frbcli.report.page",
 }
 

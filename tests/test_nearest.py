@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from frbcli.errors import InputError, did_you_mean, nearest
-from frbcli.results.signals import Signal
+from frbcli.results.records import Signal
 from frbcli.results.store import Run
 
 POINTS = ("journal_front", "journal_rear", "disk_turbine", "disk_compressor")

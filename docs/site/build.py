@@ -20,7 +20,7 @@ import click
 
 import frbcli
 from frbcli.cli.main import COMMANDS, frb
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.film_state import FilmState
 
 sys.path.insert(0, str(Path(__file__).parent))
 from reference import reference

@@ -2,7 +2,7 @@
 contact, touch and lift-off of rough surfaces, pins and stops; when a clearance changed or a blade was lost; the top
 speed and the standstill of a rotor whose speed is free.
 
-The motion x + iy is followed order by order (revolutions.py), piece by piece. With a window of 4 revolutions the
+The motion x + iy is followed order by order (order_tracking.py), piece by piece. With a window of 4 revolutions the
 amplitude for half the rotor speed sees the orders 0.2 to 0.8, and neither a static displacement (order 0) nor unbalance
 (order 1). Floating rings whirl at lower orders, and with several frequencies at once: see subsynchronous.py. Critical
 speed and self-excited vibration are in resonance.py.
@@ -18,6 +18,7 @@ import numpy as np
 
 from frbcli.analysis import signals
 from frbcli.analysis.orders.forced import without_forced
+from frbcli.analysis.orders.order_tracking import STEPS, Revolutions, START_s, Tracked, track
 from frbcli.analysis.orders.resonance import (
     FLOOR,
     LATE,
@@ -30,11 +31,10 @@ from frbcli.analysis.orders.resonance import (
     synchronous_amplitude,
     vibrations_beside,
 )
-from frbcli.analysis.orders.revolutions import STEPS, Revolutions, START_s, Tracked, track
 from frbcli.analysis.orders.subsynchronous import HOPS, SIDES, WhirlMoment, find_whirls, rings_out, window_step_s
+from frbcli.analysis.peaks import crossing, intervals_above, summit
 from frbcli.analysis.signals import RunLike, joined, pieces, points
-from frbcli.analysis.spectra.peaks import crossing, intervals_above, summit
-from frbcli.analysis.spectra.spectrum import hann
+from frbcli.analysis.spectrum import hann
 from frbcli.arrays import Array, Complex
 from frbcli.results.store import CLEARANCE_STEP, LOSS
 from frbcli.units import HERTZ, SpeedUnit

@@ -1,4 +1,9 @@
-"""A measured motion as a run: the same spectra, orders and events as of a computed one."""
+"""A measured motion as a run: the same spectra, orders and events as of a computed one; less its slow roll.
+
+The slow-roll vector is what a probe sees once in a revolution as the rotor turns slowly, without dynamic forces. It is
+the runout of the surface under the probe with the bow of the shaft, and belongs to the angle of the rotor at all
+speeds: subtracted, it leaves the motion of the rotor.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +18,6 @@ import numpy as np
 
 from frbcli.analysis.events import Event, find_events
 from frbcli.analysis.orders.forced import ForcedLine, constant_lines, forced_lines, forced_references
-from frbcli.analysis.orders.slow_roll import slow_roll
 from frbcli.analysis.orders.tacho import MARK, Tacho, tacho_speed
 from frbcli.analysis.sampling import even_steps, require_rising, sampled_at
 from frbcli.analysis.signals import point_of
@@ -21,11 +25,12 @@ from frbcli.arrays import Array
 from frbcli.errors import did_you_mean
 from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
-from frbcli.results.records import LARGEST, SMALLEST, wrong_values
-from frbcli.results.signals import Signal
+from frbcli.results.records import LARGEST, PER_MINUTE, SMALLEST, Signal, wrong_values
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, quantity
 
+BAND = 0.1  # of the slow speed, by which the speed may be off it
+LEAST_REVOLUTIONS = 3.0  # about that speed
 MEASURED = "measured"  # the command of such a run
 USUAL = {"--unit": 1e-6, "--time-unit": 1.0, "--speed-unit": 1.0}  # SI, of columns without a unit
 SPELLINGS = {"u/min": "rpm", "upm": "rpm", "seconds": "s", "second": "s"}  # of units, in measured files
@@ -35,6 +40,39 @@ EXAMPLES = {"--unit": '"125 um"', "--time-unit": '"1 ms"', "--speed-unit": '"1 r
 SAME = 1e-6  # relative difference of two units that are one
 NAMES = {"--unit": "um", "--time-unit": "s", "--speed-unit": "Hz"}  # of the units in USUAL
 SLOWEST = 1.0  # samples per second: a smaller number is an interval
+
+
+@dataclass(frozen=True)
+class SlowRoll:
+    """vector: complex amplitude A of Re(A exp(i angle)), in the unit of the signal; revolutions: that it was taken
+    over."""
+
+    vector: complex
+    revolutions: float
+
+    def at(self, angle: Array) -> Array:
+        """(n,) the slow roll at angles (n,) of the rotor in rad."""
+        return np.asarray((self.vector * np.exp(1j * angle)).real)
+
+
+def slow_roll(signal: Array, angle: Array, speed: Array, slow: float) -> SlowRoll:
+    """The slow-roll vector of a signal (n,) at angles (n,) in rad and speeds (n,) in Hz of the rotor, where these are
+    within BAND of the speed `slow` in Hz, by least squares together with a straight line.
+
+    Raises ValueError if the rotor turns less than LEAST_REVOLUTIONS there."""
+    near = np.abs(np.abs(speed) - slow) <= BAND * slow
+    turned = np.abs(np.diff(angle))[near[1:] & near[:-1]].sum() / (2.0 * np.pi)
+    if turned < LEAST_REVOLUTIONS:
+        least, most = float(np.abs(speed).min()), float(np.abs(speed).max())
+        raise ValueError(
+            f"turns {turned:.2g} times within {BAND:.0%} of {slow:g} Hz, and {LEAST_REVOLUTIONS:g} times are needed: "
+            f"its speed is {least:.4g} to {most:.4g} Hz."
+        )
+    there = angle[near]
+    line = (there - there.mean()) / np.ptp(there)
+    columns = np.column_stack([np.cos(there), -np.sin(there), np.ones_like(there), line])
+    real, imaginary = np.linalg.lstsq(columns, signal[near], rcond=None)[0][:2]
+    return SlowRoll(complex(real, imaginary), float(turned))
 
 
 @dataclass(frozen=True)
@@ -211,6 +249,7 @@ def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], t
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
     references = {} if tacho is None or tacho.mark is None else {MARK: tacho.mark}
+    references |= {PER_MINUTE: 1.0} if units.per_minute else {}
     return signals, tuple(filter(None, (units.sentence(), pulses, rolled))), references
 
 
@@ -242,6 +281,7 @@ class _Units:
     def __init__(self, columns: Columns) -> None:
         self.columns = columns
         self._used: dict[str, str] = {}
+        self.per_minute = False  # whether speeds are in revolutions per minute
 
     def sentence(self) -> str:
         """The units of the columns that were read."""
@@ -256,6 +296,7 @@ class _Units:
         columns = self.columns
         values, stated = columns.values[columns.named(name)] if gaps else columns[name], columns.unit(name)
         one = self._one(name, stated, one, unit, option)
+        self.per_minute |= unit == SPEED and math.isclose(one, 1.0 / 60.0, rel_tol=SAME)
         largest = float(np.nanmax(np.abs(values), initial=0.0))
         if not largest <= LARGEST / one:
             problem = f'has values of up to {largest:.3g} in "{name}", and {option} is {one:g} {unit}.'

@@ -13,8 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.analysis.orders.order_tracking import FEWEST as LEAST_REVOLUTIONS
-from frbcli.analysis.orders.order_tracking import REVOLUTIONS, OrderTrack, order_track
-from frbcli.analysis.orders.revolutions import STEPS
+from frbcli.analysis.orders.order_tracking import REVOLUTIONS, STEPS, OrderTrack, order_track
 from frbcli.analysis.orders.tacho import MARK
 from frbcli.analysis.signals import RunLike, SignalOf, course, joined, points
 from frbcli.arrays import Array, Complex

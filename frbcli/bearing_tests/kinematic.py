@@ -1,37 +1,174 @@
-"""Kinematic bearing tests (section 4.2.2): the journal is moved as the case says, and the film answers."""
+"""Kinematic bearing tests (section 4.2.2): the journal is moved as the case says, and the film answers.
+
+A rotation under a load has its Stribeck curve: coefficient of friction of film and summits over the speed, from
+boundary friction to the film alone. With heat the film is warm: the steady heat of a single film, at rest or as its
+journal is moved.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
+from frbcli.arrays import Array
 from frbcli.bearing_tests.columns import moment_columns, result_columns
-from frbcli.bearing_tests.history import History
-from frbcli.bearing_tests.march import squeeze_path, whirl_path
-from frbcli.bearing_tests.steady_film import FilmField
-from frbcli.bearing_tests.stribeck import StribeckCurve, stribeck_curve
+from frbcli.bearing_tests.history import History, mean_heat, squeeze_path, whirl_path
+from frbcli.bearing_tests.steady_film import COARSE_CELLS, FilmField, film_moment
 from frbcli.bearing_tests.tested_film import tested_film
-from frbcli.bearing_tests.warm import warm_moved_film, warm_resting_film
 from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, table_of
 from frbcli.compilation import working_time
 from frbcli.errors import NotConverged
 from frbcli.film.cells.loads import FilmLoads
-from frbcli.film.cells.motion import Motion
-from frbcli.film.operating import sommerfeld_number
+from frbcli.film.cells.motion import Motion, Path
+from frbcli.film.operating import friction_coefficient, sommerfeld_number
 from frbcli.scene.gate.kinematic import tested_case
+from frbcli.scene.machine.heat import heat_of, warm_case
+from frbcli.scene.machine.system import rubbing_of
 from frbcli.scene.planning.kinematic_plan import KinematicPlan, kinematic_plan, with_model
 from frbcli.scene.supply import advised, film_advice
 from frbcli.scene.tilt import displacement_of, slope_of, states_moment, tilt_of, tilt_rate_of
-from frbcli.thermal.model import SteadyHeat
+from frbcli.thermal.model import FilmHeat, SteadyHeat, steady_heat
 
+RATIO, MOST = 10.0**0.2, 24  # of two speeds of a curve, and points on either side of the speed of the test
+BOUNDARY = 0.9  # share of the summits in the load, from which on they carry it
+FILM_ALONE = 10.0  # times the largest speed at which summits touch: the right end
+Placed = Callable[[Case, KinematicPlan], Motion]
+Dissipated = Callable[[Case, KinematicPlan], tuple[float, float]]  # power in W and side flow in m^3/s
+
+COARSER = 8  # steps of a test for each one of the course of which means are taken, or with which they are begun
 Observer = Callable[[int, int], None]
 
 OK, NOT_CONVERGED = "ok", "not-converged"
 FEWEST_TIMES = 8
+
+
+@dataclass(frozen=True)
+class StribeckCurve:
+    """Numbers (n,) over the speed: speed in Hz, rising; friction_coefficient: |T| / (R F) of the torque on the journal;
+    asperity_share: of the load that the summits carry."""
+
+    speed: Array
+    friction_coefficient: Array
+    asperity_share: Array
+
+    @property
+    def least(self) -> tuple[float, float]:
+        """The least coefficient of friction, and its speed in Hz."""
+        k = int(np.argmin(self.friction_coefficient))
+        return float(self.friction_coefficient[k]), float(self.speed[k])
+
+
+class _Point(NamedTuple):
+    speed: float
+    friction: float
+    share: float
+
+
+def stribeck_curve(case: Case, plan: KinematicPlan) -> StribeckCurve | None:
+    """The curve of a planned rotation; None without a load, a speed, rough surfaces or a known torque.
+
+    Finite-volume films have COARSE_CELLS. It ends where a journal has no static equilibrium. Raises NotConverged if it
+    has none at the speed of the test.
+    """
+    motion = case.motion
+    if motion is None or motion.load is None or not motion.speed or not case.contact.rough or not plan.form.solved:
+        return None
+    fast = replace(plan, cells=COARSE_CELLS) if plan.on_cells else plan
+    point = partial(_point, case, fast, motion.load)
+    down = _walk(point, [point(motion.speed)], 1.0 / RATIO, lambda points: points[-1].share > BOUNDARY)
+    whole = _walk(point, down[::-1], RATIO, _film_alone)
+    speed, friction, share = np.array(whole).T
+    return StribeckCurve(np.abs(speed), friction, share)
+
+
+def _film_alone(points: Sequence[_Point]) -> bool:
+    """Whether the last speed is far above the speeds at which summits touch."""
+    touching = [abs(each.speed) for each in points if each.share > 0.0] or [abs(points[0].speed)]
+    return abs(points[-1].speed) > FILM_ALONE * max(touching)
+
+
+def _walk(
+    point: Callable[[float], _Point], begun: list[_Point], ratio: float, ends: Callable[[Sequence[_Point]], bool]
+) -> list[_Point]:
+    """Given points and further ones, at speeds that grow by a ratio, up to one that ends them."""
+    points = list(begun)
+    while len(points) < len(begun) + MOST and not ends(points):
+        try:
+            points.append(point(points[-1].speed * ratio))
+        except NotConverged:
+            break
+    return points
+
+
+def _point(case: Case, plan: KinematicPlan, load: float, speed: float) -> _Point:
+    """The film under a load in N at a speed in Hz. Raises NotConverged."""
+    film, omega, section = tested_film(plan), 2.0 * math.pi * speed, plan.section
+    place = film.rest(case, plan, load, omega)
+    x, y = place.tolist()
+    torque = film.moment(case, plan, Motion((x, y), (0.0, 0.0), omega)).loads.torque.journal
+    own = rubbing_of(case).force(section.clearance * place, np.zeros(2), omega).force
+    return _Point(speed, friction_coefficient(torque, load, section.radius), 0.0 + float(own[1]) / load)
+
+
+@dataclass(frozen=True)
+class WarmFilm:
+    """The case and its plan with the viscosity and clearance at which the heat of its film balances; steady: that."""
+
+    case: Case
+    plan: KinematicPlan
+    steady: SteadyHeat
+
+
+def warm_resting_film(case: Case, plan: KinematicPlan, omega: float, place: Placed) -> WarmFilm:
+    """The film of a case with heat in a motion that lasts, at omega rad/s; place: that motion, of the case at one
+    viscosity. Raises NotConverged."""
+
+    def dissipated(alike: Case, its_plan: KinematicPlan) -> tuple[float, float]:
+        motion = place(alike, its_plan)
+        moment = film_moment(alike, its_plan, motion, its_plan.cells, flow=True)
+        push = float(np.dot(moment.loads.force, motion.v)) * its_plan.section.clearance
+        push += float(np.dot(moment.loads.moment, tilt_rate_of(alike))) if motion.tilts else 0.0
+        return -moment.loads.torque.journal * omega - push, moment.side_flow
+
+    return _warm_film(case, plan, omega, dissipated, heat_of(case).start)
+
+
+def warm_moved_film(case: Case, plan: KinematicPlan, omega: float, path: Path, times: Array) -> WarmFilm:
+    """The film of a case with heat whose journal is moved along a path at the times (n,) in s and turns at omega rad/s.
+    Its temperature is steady: what it dissipates and lets out is averaged over the last period. Raises NotConverged."""
+
+    def means(at: Array) -> Dissipated:
+        return lambda alike, its_plan: mean_heat(alike, its_plan, path, at)
+
+    few = np.linspace(times[0], times[-1], 1 + (len(times) - 1) // COARSER)
+    begun = _warm_film(case, plan, omega, means(few), heat_of(case).start)
+    if not plan.remembers:  # its moments have no error of the steps, and their mean hardly one
+        return begun
+    return _warm_film(case, plan, omega, means(times), begun.steady.temperatures)
+
+
+def _warm_film(case: Case, plan: KinematicPlan, omega: float, dissipated: Dissipated, start: Array) -> WarmFilm:
+    """start: (n,) K, to begin from. Raises NotConverged."""
+    heat = heat_of(case)
+
+    def at(viscosities: Array, clearances: Array) -> tuple[Case, KinematicPlan]:
+        alike = warm_case(case, viscosities, clearances)
+        return alike, kinematic_plan(alike, plan.cavitation, plan.test)
+
+    def solve(viscosities: Array, clearances: Array) -> FilmHeat:
+        power, flow = dissipated(*at(viscosities, clearances))
+        if case.heat is not None and case.heat.side_flow == "concentric":
+            flow = float(heat.concentric[0] * clearances[0] ** 3 / viscosities[0])
+        return FilmHeat(np.array([power]), np.array([flow]), np.array([omega]))
+
+    steady = steady_heat(heat.model, ("",), solve, start, np.array([omega]))
+    return WarmFilm(*at(steady.viscosities, steady.clearances), steady)
 
 
 @dataclass(frozen=True)

@@ -28,11 +28,9 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar, cast
 
 import click
 
-from frbcli.cli.completion import complete_case, complete_key
 from frbcli.cli.files import INPUT, note_read
-from frbcli.cli.looks import Look, look_of
-from frbcli.cli.options import PER_MINUTE
-from frbcli.cli.streams import OutputLost
+from frbcli.cli.options import PER_MINUTE, Look, complete_case, complete_key, look_of
+from frbcli.cli.process import OutputLost
 from frbcli.errors import printable
 from frbcli.units import HERTZ, SpeedUnit
 

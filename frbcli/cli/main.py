@@ -17,7 +17,7 @@ from collections.abc import Sequence
 import click
 
 from frbcli import __version__
-from frbcli.cli.runs.memory import require_memory, reserve, shortage
+from frbcli.cli.process import require_memory, reserve, shortage
 from frbcli.errors import INTERRUPTED, Fault, FrbError, InputError, NotConverged, input_error, printable
 
 # name: (module of the command, with its name there where a module has several; one line of help; an example);
@@ -29,17 +29,17 @@ COMMANDS = {
         "frb check jeffcott --set bearing.clearance='40 um'",
     ),
     "rotation": (
-        "frbcli.cli.bearings.kinematic:rotation",
+        "frbcli.cli.machines.kinematic:rotation",
         "Turn a journal at a displacement or under a load; compare models.",
         "frb rotation bearing-axial-groove --cavitation half-sommerfeld,elrod",
     ),
     "squeeze": (
-        "frbcli.cli.bearings.kinematic:squeeze",
+        "frbcli.cli.machines.kinematic:squeeze",
         "Move a journal up and down: force over time.",
         "frb squeeze squeeze --set motion.periods=1",
     ),
     "whirl": (
-        "frbcli.cli.bearings.kinematic:whirl",
+        "frbcli.cli.machines.kinematic:whirl",
         "Move a journal on a circle: pressure over time.",
         "frb whirl whirl --set motion.periods=1",
     ),
@@ -54,12 +54,12 @@ COMMANDS = {
         "frb rundown run-down -o down.h5",
     ),
     "waterfall": (
-        "frbcli.cli.pictures.waterfall",
+        "frbcli.cli.runs.waterfall",
         "Draw the spectra of a run or a measurement over time or speed.",
         "frb waterfall run.h5 --over speed --rpm",
     ),
     "plot": (
-        "frbcli.cli.pictures.plot",
+        "frbcli.cli.runs.plot",
         "Draw eccentricities, orbits, temperatures or film signals of runs.",
         "frb plot run.h5 --what orbit --from '1 s' --to '1.1 s'",
     ),
@@ -69,12 +69,12 @@ COMMANDS = {
         "frb compare jeffcott --cavitation half-sommerfeld,reynolds",
     ),
     "bearing": (
-        "frbcli.cli.bearings.bearing",
+        "frbcli.cli.machines.bearing",
         "Static equilibrium, K, C, loss, flow of every film over speed or eccentricity.",
         "frb bearing jeffcott --speed '50 Hz' --speed '100 Hz' --csv sheet.csv",
     ),
     "thrust": (
-        "frbcli.cli.bearings.thrust",
+        "frbcli.cli.machines.thrust",
         "Load, loss, flow, K and C of thrust bearings over gap, load or speed.",
         "frb thrust thrust --gap '12 um' --gap '20 um' --speed '900 Hz'",
     ),
@@ -114,12 +114,12 @@ COMMANDS = {
         "frb sweep jeffcott --set bearing.clearance='30 um,35 um,40 um' --stability",
     ),
     "report": (
-        "frbcli.cli.pictures.report",
+        "frbcli.cli.runs.report",
         "Write a run as one page: machine, events, waterfall, orbits, errors.",
         "frb report run.h5 --speed '100 Hz'",
     ),
     "export": (
-        "frbcli.cli.pictures.export",
+        "frbcli.cli.runs.export",
         "Write the signals of a run as CSV, Parquet or MAT.",
         "frb export run.h5 --format mat",
     ),

@@ -1,18 +1,29 @@
-"""Options that several commands have, each declared once, and the kinds of their values."""
+"""Options that several commands have, each declared once, and the kinds of their values; what the shell completes
+besides commands and options: shipped cases, files, keys of a case; and the look of pictures, by options of all commands
+that draw: size, resolution, limits, speeds per minute."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from contextlib import suppress
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from functools import wraps
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
+from click.shell_completion import CompletionItem
+
+if TYPE_CHECKING:
+    from frbcli.case.schema import Case
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 PER_MINUTE = "frbcli.per_minute"  # of the context: whether an option gives a speed in rpm
+_LOOK = "frbcli.look"
+INCH = 0.0254  # m
+DPI = 150
+COMMON = ("rotor.unbalance", "bearing.clearance", "oil.viscosity", "film.theory", "film.cavitation", "speed.from",
+          "speed.to", "speed.duration", "accuracy.target", "output.step")  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -86,7 +97,7 @@ class GradeOption(click.ParamType[float]):
 
     def convert(self, value: object, param: click.Parameter | None, ctx: click.Context | None) -> float:
         """Its number. Fails the option for anything else."""
-        from frbcli.linear.standards.balance_quality import read_grade
+        from frbcli.linear.balance_quality import read_grade
 
         try:
             return read_grade(str(value))
@@ -175,3 +186,124 @@ def gathered(name: str, record: type) -> Callable[[Function], Function]:
         return command  # type: ignore[return-value]
 
     return decorated
+
+
+def complete_case(_: click.Context, __: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Shipped cases that begin so, then files."""
+    from frbcli.case.reading.shipped import shipped_names
+
+    shipped = [CompletionItem(name) for name in shipped_names() if name.startswith(incomplete)]
+    return [*shipped, CompletionItem(incomplete, type="file")]
+
+
+def complete_key(context: click.Context, _: click.Parameter, incomplete: str) -> list[CompletionItem]:
+    """Keys of the case given earlier on the line, else the most usual ones."""
+    from frbcli.case.reading.listing import values
+
+    case = _case_on_line(context)
+    keys = list(COMMON) if case is None else [value.key for value in values(case)]
+    return [CompletionItem(f"{key}=") for key in keys if key.startswith(incomplete)]
+
+
+def _case_on_line(context: click.Context) -> Case | None:
+    """The case before an option that still lacks its value, because of which click has read no word of the line."""
+    from frbcli.case.reading.load import load_case
+    from frbcli.errors import InputError
+
+    for word in context.args:
+        with suppress(InputError):
+            return load_case(word)
+    return None
+
+
+@dataclass(frozen=True)
+class Look:
+    """size_in: width and height in inches, x_limits, y_limits: of the axes in their own units; None for those that the
+    picture has itself. rpm: rotor speeds in revolutions per minute."""
+
+    size_in: tuple[float, float] | None = None
+    dpi: int = DPI
+    x_limits: tuple[float, float] | None = None
+    y_limits: tuple[float, float] | None = None
+    rpm: bool = False
+
+
+@dataclass(frozen=True)
+class Size(click.ParamType[tuple[float, float]]):
+    """Width and height, such as "160 mm x 90 mm" or "160x90 mm", in inches."""
+
+    name: str = "size"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """Width and height in inches. Fails the option for anything but WIDTHxHEIGHT."""
+        from frbcli.units import quantity
+
+        if isinstance(value, tuple):
+            return value
+        width, by, height = str(value).partition("x")
+        if not by:
+            self.fail(f'{value!r} is not a width and a height. Write e.g. "160 mm x 90 mm".', param, ctx)
+        unit = "".join(letter for letter in height if letter.isalpha())
+        try:
+            if not any(letter.isalpha() for letter in width):
+                width = f"{width} {unit}"
+            sides = tuple(quantity(side.strip(), "m", "160 mm") / INCH for side in (width, height))
+        except ValueError as fault:
+            self.fail(f'{value!r} {fault} Write e.g. "160 mm x 90 mm".', param, ctx)
+        if not all(0.5 <= side <= 60.0 for side in sides):
+            self.fail(f"{value!r} is no size of a picture: 13 mm to 1500 mm.", param, ctx)
+        return sides[0], sides[1]
+
+
+@dataclass(frozen=True)
+class Span(click.ParamType[tuple[float, float]]):
+    """Two numbers, the lower one first, separated by a comma."""
+
+    name: str = "span"
+
+    def convert(
+        self, value: object, param: click.Parameter | None, ctx: click.Context | None
+    ) -> tuple[float, float]:
+        """The lower and the upper number."""
+        if isinstance(value, tuple):
+            return value
+        try:
+            low, high = (float(number) for number in str(value).split(","))
+        except ValueError:
+            self.fail(f"{value!r} is not two numbers, such as 0,300.", param, ctx)
+        if not low < high:
+            self.fail(f"{value!r}: the lower number comes first.", param, ctx)
+        return low, high
+
+
+def look_options(function: Function) -> Function:
+    """Give a command --size, --dpi, --xlim, --ylim and --rpm; its terminal knows them."""
+    options = (
+        _option("--size", "size_in", type=Size(), metavar="SIZE", help='Size of the picture, e.g. "160 mm x 90 mm".'),
+        _option("--dpi", "dpi", type=click.IntRange(30, 1200), metavar="N", help=f"Resolution of a PNG. [{DPI}]"),
+        _option("--xlim", "x_limits", type=Span(), metavar="A,B", help="Limits of the horizontal axis."),
+        _option("--ylim", "y_limits", type=Span(), metavar="A,B", help="Limits of the vertical axis."),
+        _option("--rpm", "rpm", is_flag=True, help="Rotor speeds in rpm. [as the case gives them]"),
+    )
+    for option in reversed(options):
+        function = option(function)
+    return function
+
+
+def look_of(context: click.Context) -> Look:
+    """The look that the options of a command ask for."""
+    look = context.meta.get(_LOOK, Look())
+    assert isinstance(look, Look)
+    return look
+
+
+def _option(name: str, field: str, **settings: Any) -> Callable[[Function], Function]:
+    """An option that changes one field of the look, before the terminal is made of it."""
+
+    def remember(context: click.Context, _: click.Parameter, value: Any) -> None:
+        if value is not None and value is not False:
+            context.meta[_LOOK] = replace(look_of(context), **{field: value})
+
+    return click.option(name, is_eager=True, expose_value=False, callback=remember, **settings)

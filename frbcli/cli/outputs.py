@@ -15,15 +15,14 @@ import click
 
 from frbcli.cli.common import Terminal
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import gathered
+from frbcli.cli.options import gathered, look_options
 from frbcli.cli.progress import drawing
 from frbcli.errors import InputError
 
 if TYPE_CHECKING:
     from frbcli.columns import Tabular
     from frbcli.plot.style import Picture
-    from frbcli.results.files.kinds import Kind
+    from frbcli.results.files.write import Kind
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
@@ -70,7 +69,7 @@ class OutputOptions:
     def check(self, default: Path, *others: tuple[Path | None, Kind]) -> Outputs:
         """The places of picture and table, default: of the picture. Raises UsageError or InputError, before the work,
         if these files, or others that the command writes, cannot be written."""
-        from frbcli.results.files.kinds import TABLES
+        from frbcli.results.files.write import TABLES
 
         if self.output is not None and not self.picture:
             raise click.UsageError("-o names the picture that --no-picture leaves out.")

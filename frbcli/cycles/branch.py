@@ -19,21 +19,23 @@ from frbcli.cycles.method.continuation import (
     oriented,
     step_from,
 )
-from frbcli.cycles.method.cycle import (
+from frbcli.cycles.method.equilibria import HopfPoint
+from frbcli.cycles.method.floquet import Multipliers
+from frbcli.cycles.method.follower import (
     ASKED,
     FIRST_HARMONICS,
     FLIP,
     FOLD,
+    MOST_HARMONICS,
     TORUS,
     Cycle,
+    Follower,
     amplitude,
+    at_speed,
     largest,
     passed_rest,
     resized_like,
 )
-from frbcli.cycles.method.equilibria import HopfPoint
-from frbcli.cycles.method.floquet import Multipliers
-from frbcli.cycles.method.follower import MOST_HARMONICS, Follower, at_speed
 
 STRIDES = Strides(first=0.01, shortest=1e-6, longest=0.06, points=600)
 LARGEST = 0.9998  # eccentricity beyond which no cycle is followed

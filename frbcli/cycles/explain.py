@@ -10,14 +10,12 @@ from typing import Any
 
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import first_place, follow_branch
-from frbcli.cycles.family import check
+from frbcli.cycles.limit_cycles import check
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.criticality import lyapunov_coefficient
-from frbcli.cycles.method.cycle import FOLD, HOPF, Cycle
-from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.method.follower import FoldFollower
-from frbcli.cycles.parts.machine import make_machine
+from frbcli.cycles.method.equilibria import lyapunov_coefficient, resting_curve
+from frbcli.cycles.method.follower import FOLD, HOPF, Cycle, FoldFollower
+from frbcli.cycles.method.machine import make_machine
 from frbcli.cycles.result import SUBCRITICAL, SUPERCRITICAL, LimitCycles, SpecialPoint, hertz
 from frbcli.errors import FrbError
 from frbcli.scene.machine.system import make_system

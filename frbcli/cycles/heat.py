@@ -18,9 +18,9 @@ from frbcli.case.schema import Case
 from frbcli.cycles.method.balance import harmonics_of, packed, through
 from frbcli.cycles.method.continuation import Equations, Unreachable
 from frbcli.cycles.method.courses import EquationsOf, MachineCourse
+from frbcli.cycles.method.film_heat import Ends, FilmHeats, film_heats, heats_at
 from frbcli.cycles.method.floquet import Multipliers
-from frbcli.cycles.parts.film_heat import Ends, FilmHeats, film_heats, heats_at
-from frbcli.cycles.parts.machine import Machine, make_machine, transfer
+from frbcli.cycles.method.machine import Machine, make_machine, transfer
 from frbcli.equilibrium.resting import RestingPosition
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.rotor.loads import largest_first

@@ -1,36 +1,202 @@
-"""Limit cycles of a case over its speed: static equilibria, Hopf points, and the branches of cycles from them."""
+"""Limit cycles of a case over its speed, or over another number at one speed, such as a clearance or a viscosity:
+static equilibria, Hopf points, and the branches of cycles from them; which cases have them, and the machines of a case
+by one of its numbers.
+
+Over another number the last unknown of branches is that number over its largest value. A machine is made for each
+value, see method/courses.py.
+"""
 
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
+import numpy as np
+
+from frbcli.case.reading.listing import machine_fault
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.diagram import Observer, Walk, diagram, with_hopf_errors, with_response
-from frbcli.cycles.family import check
 from frbcli.cycles.heat import warm_courses
 from frbcli.cycles.method.continuation import Unreachable
-from frbcli.cycles.method.courses import Changing, MachineCourse
-from frbcli.cycles.method.cycle import HOPF
-from frbcli.cycles.method.equilibria import at_rest, resting_along
-from frbcli.cycles.method.follower import Follower
+from frbcli.cycles.method.courses import MOST_UNKNOWNS, Changing, MachineCourse
+from frbcli.cycles.method.equilibria import Resting, at_rest, hopf_points, resting_along, settled
+from frbcli.cycles.method.follower import HOPF, Follower
+from frbcli.cycles.method.machine import Machine, make_machine
 from frbcli.cycles.method.mesh_error import OtherMesh, other_films, why_no_error
-from frbcli.cycles.parts.machine import make_machine
 from frbcli.cycles.result import LimitCycles, SpecialPoint, hertz
 from frbcli.cycles.shooting.diagram import limit_cycles_by_shooting
-from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
-from frbcli.cycles.unbalance.whirls import of_no_whirl, whirls_with_unbalance
+from frbcli.cycles.unbalance import Synchronous, of_no_whirl, synchronous_response, whirls_with_unbalance
 from frbcli.equilibrium.resting import RestingPosition, resting_position
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.errors import Fault, InputError, NotConverged
+from frbcli.errors import Fault, InputError, NotConverged, input_error
 from frbcli.linear.threshold import threshold_at
 from frbcli.scene.gate.cycles import by_shooting
+from frbcli.scene.gate.gate import require
+from frbcli.scene.gate.rule import CYCLES, SPEED_CYCLES, WHIRLS
 from frbcli.scene.machine.system import System, make_system
 from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
+from frbcli.scene.speeds import default_speeds
 from frbcli.scene.supply import advised
+
+LONGEST_SHOWN = 40  # characters of a value in a fault
+REMEDY = 'Write e.g. "40 um".'
+NUMBER = re.compile(r"([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)(.*)", re.DOTALL)
+POINTS = 41  # static equilibria of the diagram
+
+
+class Family(Changing):
+    """The machines of a case at a speed in rad/s, by the value of a key over its largest one, `high` in `unit`;
+    settings: of other keys, KEY=VALUE; mesh: number of another mesh of their films, see other_films."""
+
+    most_at_fold = MOST_UNKNOWNS  # each of its equations takes three machines
+
+    def __init__(
+        self, case: Case, key: str, high: float, unit: str, omega: float, settings: tuple[str, ...] = (),
+        mesh: int | None = None,
+    ) -> None:  # fmt: skip
+        super().__init__(self._made, omega)
+        self.case, self.high, self.speed, self.settings, self.mesh = case, high, omega, settings, mesh
+        self.over, self.unit = key, unit
+
+    @property
+    def scale(self) -> float:
+        """See MachineCourse."""
+        return self.high
+
+    def setting(self, share: float) -> str:
+        """KEY=VALUE of a share of the largest value."""
+        return f"{self.over}={share * self.high!r} {self.unit}".strip()
+
+    def with_setting(self, setting: str) -> Family:
+        """The machines with another setting of another key."""
+        return Family(self.case, self.over, self.high, self.unit, self.speed, (setting,))
+
+    def on_mesh(self, mesh: int) -> Family:
+        """The same machines with films on another mesh."""
+        return Family(self.case, self.over, self.high, self.unit, self.speed, self.settings, mesh)
+
+    def case_at(self, share: float) -> Case:
+        """The case at a share of the largest value. Raises InputError if it cannot have it."""
+        case = self.case.with_settings(*self.settings, self.setting(share))
+        check(case)
+        return case
+
+    def system(self, share: float) -> System:
+        """The system at a share of the largest value. Raises InputError if the case cannot have it."""
+        case = self.case_at(share)
+        plan = make_plan(case)
+        return make_system(case, plan) if self.mesh is None else other_films(plan)[self.mesh].system(case)
+
+    def _made(self, share: float) -> Machine:
+        """The machine at a share. Raises Unreachable where the number is not above zero."""
+        if not share > 0.0:
+            raise Unreachable
+        return make_machine(self.system(share), self.speed)
+
+
+def value_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
+    """The ends of a range of a number of the machine, text with one unit, and that unit. Raises InputError."""
+    if fault := machine_fault(key, "--over or --and"):
+        raise InputError(case.name or "case", (fault,))
+    (first, unit), (last, other) = _number(key, low), _number(key, high)
+    if unit != other or not first < last:
+        problem, remedy = "is no range of one unit.", f'Write e.g. --from "40 um" --to "90 um", not {low} to {high}.'
+        raise input_error(case.name or "case", key, f"{low} to {high}", problem, remedy)
+    return first, last, unit
+
+
+def positive_range(case: Case, key: str, low: str, high: str) -> tuple[float, float, str]:
+    """value_range of a key that is followed, whose values are above zero. Raises InputError."""
+    first, last, unit = value_range(case, key, low, high)
+    if first <= 0.0:
+        raise input_error(case.name or "case", key, low, "must be above 0 here.", "Begin above it.")
+    return first, last, unit
+
+
+def _number(key: str, text: str) -> tuple[float, str]:
+    """A number and its unit."""
+    match = NUMBER.fullmatch(text.strip())
+    if match is None or not math.isfinite(float(match[1])):
+        raise input_error(key, key, text[:LONGEST_SHOWN], "is no number with a unit.", REMEDY)
+    return float(match[1]), match[2].strip()
+
+
+def check(case: Case, shooting: bool = False, with_unbalance: bool = False) -> tuple[float, float]:
+    """The range of speeds of a case in rad/s, the slowest above zero. shooting: whether cycles may be found by shooting
+    on the time loop; with_unbalance: whether the whirls with it are asked for as well. Raises InputError."""
+    require(case, WHIRLS if with_unbalance else SPEED_CYCLES if shooting else CYCLES)
+    speeds = default_speeds(case)
+    return 2.0 * math.pi * speeds[0], 2.0 * math.pi * speeds[-1]
+
+
+def limit_cycles_over(
+    case: Case, key: str, low: str, high: str, speed_Hz: float, observe: Observer | None = None
+) -> LimitCycles:
+    """Compute a diagram as `limit_cycles` does, over a key of the case at one rotor speed.
+
+    Parameters
+    ----------
+    case : Case
+        The machine, see `load_case`.
+    key : str
+        A number of the machine, such as "bearing.clearance".
+    low, high : str
+        Values between which it varies, with units, both above zero.
+    speed_Hz : float
+        Rotor speed in Hz.
+    observe : callable, optional
+        As of `limit_cycles`, with the value of the key.
+
+    Returns
+    -------
+    LimitCycles
+        The diagram.
+
+    Raises
+    ------
+    InputError
+        As `limit_cycles`, and for a key that is no number of the machine.
+    NotConverged
+        As `limit_cycles`.
+
+    Examples
+    --------
+    >>> import frbcli
+    >>> case = frbcli.load_case("jeffcott", ["film.theory=short"])
+    >>> found = frbcli.limit_cycles_over(case, "oil.viscosity", "8 mPa*s", "14 mPa*s", 200.0)  # doctest: +SKIP
+    """
+    begun = working_time().cpu_s
+    check(case)
+    first, last, unit = positive_range(case, key, low, high)
+    family = Family(case, key, last, unit, 2.0 * math.pi * speed_Hz)
+    try:
+        resting = resting_over(family, first / last)
+    except Unreachable:
+        raise NotConverged(f"The static equilibria could not be followed over {key}.") from None
+    plan, lowest = make_plan(family.case_at(1.0)), first / last
+    meshes = tuple(
+        OtherMesh(Follower(family.on_mesh(number), lowest), other.share)
+        for number, other in enumerate(other_films(plan))
+    )
+    walk = Walk(resting, Follower(family, lowest), meshes, why_no_error(plan))
+    computed = with_hopf_errors(diagram(case, walk, observe, lambda: working_time().cpu_s - begun), walk)
+    return replace(computed, cost=replace(computed.cost, cpu_s=working_time().cpu_s - begun))
+
+
+def resting_over(family: Family, lowest: float) -> Resting:
+    """Static equilibria over the key, ascending, sought from the largest value on. Raises Unreachable, NotConverged."""
+    with advised(family.case):
+        near = at_rest(family.top, resting_position(family.system(1.0), family.speed))
+    points = []
+    for share in np.linspace(1.0, lowest, POINTS):
+        points.append(settled(family, near, float(share)))
+        near = points[-1].u
+    points.reverse()
+    return Resting(tuple(points), hopf_points(family, points), "")
 
 
 def limit_cycles(

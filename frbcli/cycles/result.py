@@ -126,7 +126,7 @@ class CycleBranch:
 class SpecialPoint:
     """kind: "hopf", "fold", "flip" or "torus"; branch: number of the branch, None if none was followed from a Hopf
     point; value: of the number that the diagram goes over; criticality: of a Hopf point, None of others and where it is
-    uncertain, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of criticality.py;
+    uncertain, with lyapunov and its uncertainty (1/s, for an amplitude over the clearance): Re c_1 of equilibria.py;
     eccentricity_max: (F,); value_uncertainty, frequency_uncertainty_Hz: of the value of Hopf points and folds and of
     the frequency, by the mesh of the films; eccentricity_max_uncertainty: of cycles, see CyclePoint; certain: whether a
     fold was found on films of another mesh, None of others and where it was not sought; synchronous: whether it is of

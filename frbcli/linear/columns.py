@@ -1,4 +1,4 @@
-"""The columns of static and linear results: bearing sheet, stability and unbalance response."""
+"""The columns of static and linear results: sheets of bearings, balls and collars, stability and unbalance response."""
 
 from __future__ import annotations
 
@@ -276,3 +276,113 @@ def point_columns(films: Sequence[str], columns: tuple[Column, ...] = FILM) -> t
 
 def _film(i: int) -> Callable[[Any], Any]:
     return lambda point: point.films[i] if point.films else None
+
+
+BALLS, STIFFNESSES, FREQUENCIES = "balls", "stiffness", "frequencies"
+BALL_TABLES = (BALLS, STIFFNESSES, FREQUENCIES)
+
+
+def _hours(life: float) -> str:
+    return f"{life:.3g} h"
+
+
+# Of a BallState
+BALL_SHEET = (
+    Column("bearing", "", "name of the ball bearing, empty of one alone"),
+    Column("status", "", "`resting` or `not-converged`"),
+    Column("problem", "", "why there is no state"),
+    Column("speed", "Hz", "rotor speed", shown=tuple(speed_shown(table=table) for table in BALL_TABLES)),
+    Column("load", "N", "load on the inner ring by one bearing", shape=(2,),
+           shown=(Shown(("Fx", "Fy"), ".4g", table=BALLS), Shown(("Fx", "Fy"), ".4g", table=STIFFNESSES))),
+    Column("axial_force", "N", "axial force on the balls of a row", shown=(Shown("Fa", ".4g", table=BALLS),),
+           more="the preload of a spring, or what rings bear that are held"),
+    Column("displacement", "m", "displacement of the inner ring", shape=(2,),
+           shown=(Shown(("x", "y"), ".3g", "um", STIFFNESSES),)),
+    Column("axial_displacement", "m", "axial displacement of the inner ring from its first contact",
+           shown=(Shown("z", ".3g", "um", STIFFNESSES),)),
+    Column("stiffness", "N/m", "stiffness `-dF/dD` of one bearing", shape=(2, 2), more="under a preload by a spring "
+           "with the rings free along the axis", shown=(Shown(ENTRIES, ".4g", "N/um", STIFFNESSES),)),
+    Column("damping", "N s/m", "damping `-dF/dD'` of one bearing, as given", shape=(2, 2)),
+    Column("axial_stiffness", "N/m", "axial stiffness with the ring held in x and y",
+           shown=(Shown("zz", ".4g", "N/um", STIFFNESSES),)),
+    Column("inner_angle", "deg", "contact angle at the inner ring of the ball with the largest load",
+           shown=(Shown("a_i", ".3g", table=BALLS),)),
+    Column("outer_angle", "deg", "contact angle there at the outer ring", shown=(Shown("a_o", ".3g", table=BALLS),)),
+    Column("inner_load", "N", "largest load of a ball at the inner ring", shown=(Shown("Q_i", ".4g", table=BALLS),)),
+    Column("outer_load", "N", "largest load of a ball at the outer ring", shown=(Shown("Q_o", ".4g", table=BALLS),)),
+    Column("inner_p_max", "Pa", "largest Hertz pressure at the inner ring",
+           shown=(Shown("p_i", ".4g", "MPa", BALLS),)),
+    Column("outer_p_max", "Pa", "largest Hertz pressure at the outer ring",
+           shown=(Shown("p_o", ".4g", "MPa", BALLS),)),
+    Column("balls_apart", "", "balls of a row without contact with the inner ring",
+           shown=(Shown("apart", "d", table=BALLS),)),
+    Column("cage_frequency", "Hz", "speed of the cage", shown=(Shown("cage", ".5g", table=FREQUENCIES),)),
+    Column("ball_pass_outer", "Hz", "passing of balls at the outer ring",
+           shown=(Shown("outer", ".5g", table=FREQUENCIES),)),
+    Column("ball_pass_inner", "Hz", "passing of balls at the inner ring",
+           shown=(Shown("inner", ".5g", table=FREQUENCIES),)),
+    Column("ball_spin", "Hz", "spin of a ball", shown=(Shown("spin", ".5g", table=FREQUENCIES),)),
+    Column("rating_life", "h", "basic rating life L10 by the loads of the balls, ISO/TS 16281", attrgetter("life_h"),
+           more="with `dynamic_rating`", shown=(Shown("life", _hours, table=FREQUENCIES),)),
+)  # fmt: skip
+
+
+TILT_STIFFNESS, TILT_DAMPING = "tilt stiffness", "tilt damping"
+PAD_TABLES = (FILMS, TILT_STIFFNESS, TILT_DAMPING)
+
+
+def _in_um(gap: float) -> str:
+    return f"{1e6 * gap:.3g} um"
+
+
+def _direct_and_cross(matrix: Any) -> str:
+    return f"{matrix[0, 0]:.3g} N m/rad, across {matrix[1, 0]:.3g} N m/rad"
+
+
+# Of a ThrustState
+THRUST = (
+    Column("bearing", "", "name of the thrust bearing, empty of one alone"),
+    Column("speed", "Hz", "rotor speed", shown=tuple(speed_shown(table=table) for table in PAD_TABLES)),
+    Column("gap", "m", "smallest gap of the runner without tilt",
+           shown=(*(Shown("gap", ".3g", "um", table) for table in PAD_TABLES), Shown("gap", _in_um, table=STABILITY)),
+           more="over the lands; with pads on both sides on the side that `load` presses on"),
+    Column("load", "N", "load that the film carries", shown=(Shown("load", ".4g", table=FILMS),),
+           more="with pads on both sides the difference of the two"),
+    Column("torque", "N m", "torque that resists the rotation"),
+    Column("power", "W", "power loss", more="torque times speed",
+           shown=(Shown("loss", ".4g", table=FILMS), Shown("loss", "{:.4g} W".format, table=STABILITY))),
+    Column("flow_inner", "m^3/s", "oil that leaves at the inner radius",
+           shown=(Shown("inner", ".3g", "mm^3/s", FILMS),)),
+    Column("flow_outer", "m^3/s", "oil that leaves at the outer radius",
+           shown=(Shown("outer", ".3g", "mm^3/s", FILMS),)),
+    Column("flow_leading", "m^3/s", "oil that enters at the leading edges of the pads"),
+    Column("p_max", "Pa", "largest absolute pressure", shown=(Shown("p", ".3g", "bar", FILMS),)),
+    Column("stiffness", "N/m", "axial stiffness `-dW/dz`", shown=(Shown("k", ".4g", "N/um", FILMS),)),
+    Column("damping", "N s/m", "axial damping `-dW/dz'`", shown=(Shown("c", ".3g", "N s/mm", FILMS),)),
+    Column("tilt_stiffness", "N m", "stiffness in tilt `-dM/dtilt`, per rad", shape=(2, 2),
+           shown=(Shown(ENTRIES, ".4g", table=TILT_STIFFNESS),
+                  Shown("stiffness in tilt", _direct_and_cross, table=STABILITY))),
+    Column("tilt_damping", "N m s", "damping in tilt `-dM/dtilt'`, per rad", shape=(2, 2),
+           shown=(Shown(ENTRIES, ".4g", table=TILT_DAMPING),)),
+    Column("viscosity", "Pa s", "viscosity of the oil", more="on the loaded side"),
+    Column("temperature", "K", "temperature of the oil, where the case gives one, or with heat",
+           more="on the loaded side"),
+    Column("load_error_relative", "", "relative error of the load, from another mesh", attrgetter("load_error"),
+           shown=(Shown("err.", ".0e", table=FILMS),), key="error.load_relative"),
+    Column("coefficient_error", "", "relative error of stiffness and damping, axial and in tilt",
+           attrgetter("coefficient_error"), key="error.coefficients_relative",
+           more="over the largest entry of each",
+           shown=tuple(Shown("err.", ".0e", table=table) for table in (TILT_STIFFNESS, TILT_DAMPING))),
+)  # fmt: skip
+
+# Of an AxialState
+AXIAL = (
+    Column("axial_load", "N", "load on the rotor along its axis", more="towards larger positions",
+           shown=(Shown("load", "{:.4g} N".format, table=STABILITY),)),
+    Column("axial_position", "m", "axial position of the collar", attrgetter("position"),
+           more="from the middle of the end play, or from the pads of the only side"),
+    Column("axial_frequency", "Hz", "frequency of the motion along the axis", attrgetter("frequency"),
+           more="0 where it does not oscillate"),
+    Column("axial_growth", "1/s", "growth", attrgetter("eigenvalue.real"), more="below 0 it decays"),
+    *named([column for column in THRUST if column.quantity not in ("bearing", "speed")], "", attrgetter("films")),
+)  # fmt: skip

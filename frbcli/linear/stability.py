@@ -20,10 +20,9 @@ from frbcli.case.schema import Case
 from frbcli.columns import Table, Tabular, named, table_of
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
 from frbcli.errors import Fault, InputError, NotConverged
-from frbcli.linear.columns import film_columns, point_columns
+from frbcli.linear.columns import AXIAL, film_columns, point_columns
 from frbcli.linear.stability_point import StabilityPoint, point_at_rest, with_errors
 from frbcli.linear.threshold import Threshold, deciding, find_threshold
-from frbcli.linear.thrust.columns import AXIAL
 from frbcli.scene.gate.gate import require
 from frbcli.scene.gate.rule import FILMS, RANGE, STABILITY
 from frbcli.scene.machine.system import System
@@ -249,7 +248,7 @@ def _point(
             machine = machines.at(2 * math.pi * speed, near, with_error)
             point = point_at_rest(machine, speed, frequency and frequency(machine.omega))
             if case.axial is not None:
-                from frbcli.linear.thrust.axial import axial_state  # films on pads take long to import
+                from frbcli.linear.sheets.thrust import axial_state  # films on pads take long to import
 
                 point = replace(point, axial=axial_state(case, machine.omega))
             return with_errors(point, machine) if with_error else point, machine

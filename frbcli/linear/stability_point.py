@@ -22,7 +22,7 @@ from frbcli.rotor.assembly import LinearRotor
 from frbcli.rotor.loads import fastest_first, ranks
 
 if TYPE_CHECKING:  # films on pads take long to import
-    from frbcli.linear.thrust.axial import AxialState
+    from frbcli.linear.sheets.thrust import AxialState
 
 HARDLY_KNOWN = 0.25  # error of coefficients of films that keep oil, relative, above which they are not shown
 UNKNOWN_WHIRL = 0.5  # over the rotor's speed: frequency of coefficients where no motion oscillates

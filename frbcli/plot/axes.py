@@ -9,21 +9,20 @@ from __future__ import annotations
 
 from matplotlib.axes import Axes
 
-from frbcli.analysis.spectra.spectrum import Direction
-from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
+from frbcli.analysis.spectrum import Direction
 from frbcli.linear.response import Response
+from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
 from frbcli.linear.stability import Stability
 from frbcli.plot.curves import Over, draw_curves, finish
 from frbcli.plot.machine.bearing import draw_coefficient
-from frbcli.plot.machine.campbell import draw_frequencies
+from frbcli.plot.machine.modes import draw_frequencies
 from frbcli.plot.machine.response import draw_amplitude
-from frbcli.plot.run.eccentricity import draw_eccentricity
-from frbcli.plot.run.orbit import LAST_s, draw_orbits
+from frbcli.plot.run.motion import LAST_s, draw_eccentricity, draw_orbits
 from frbcli.plot.run.quantities import draw_quantity
 from frbcli.plot.run.speeds import draw_spectrum_at
 from frbcli.plot.signals import ends
-from frbcli.plot.spectra.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.plot.style import NotebookFigure, legend_beside, styled
+from frbcli.plot.waterfall import DECIBELS, LevelScale, draw_levels, run_spectra
 from frbcli.results.store import Run
 
 

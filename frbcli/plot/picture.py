@@ -21,23 +21,23 @@ from frbcli.errors import input_error
 from frbcli.plot.style import Picture
 
 PICTURES = {  # class of a result: module in this room, and its function
-    "AccuracyLadder": "studies.accuracy:accuracy_figure",
-    "AgainstMeasured": "spectra.ridges:against_figure",
-    "BallSheet": "machine.ball:ball_figure",
+    "AccuracyLadder": "accuracy:accuracy_figure",
+    "AgainstMeasured": "compare:against_figure",
+    "BallSheet": "machine.bearing:ball_figure",
     "BearingSheet": "machine.bearing:bearing_figure",
-    "Comparison": "studies.compare:comparison_figure",
+    "Comparison": "compare:comparison_figure",
     "CriticalMap": "machine.response:critical_map_figure",
     "DampedModes": "machine.modes:shapes_figure",
-    "Fit": "spectra.ridges:fit_figure",
+    "Fit": "compare:fit_figure",
     "KinematicTest": "machine.film:kinematic_figure",
     "LimitCycles": "machine.limit_cycles:limit_cycles_figure",
     "Modes": "machine.modes:modes_figure",
     "Response": "machine.response:response_figure",
     "Run": "run.summary:summary_figure",
-    "Stability": "machine.campbell:campbell_figure",
+    "Stability": "machine.modes:campbell_figure",
     "StabilityMap": "machine.stability_map:stability_map_figure",
-    "Sweep": "studies.sweep:sweep_figure",
-    "ThrustSheet": "thrust:thrust_figure",
+    "Sweep": "sweep:sweep_figure",
+    "ThrustSheet": "machine.thrust:thrust_figure",
 }
 
 

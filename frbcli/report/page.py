@@ -17,24 +17,22 @@ from markupsafe import Markup
 from frbcli import __version__
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.analysis.signals import films
-from frbcli.case.course.run import given_speed_unit
+from frbcli.case.course.run import speed_unit_of
 from frbcli.case.reading.listing import values
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import FrbError, InputError, input_error, printable
-from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
+from frbcli.plot.run.motion import displacement_figure, eccentricity_figure
 from frbcli.plot.run.quantities import SUBJECTS, quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.speeds import speeds_figure, times_of_speeds
 from frbcli.plot.run.summary import FEWEST_SAMPLES
 from frbcli.plot.signals import bearing_of, clearance, ends, events, heading
-from frbcli.plot.spectra.levels import levels
-from frbcli.plot.spectra.waterfall import level_label, reading, run_spectra
 from frbcli.plot.style import Picture, narrowed, picture
+from frbcli.plot.waterfall import level_label, levels, reading, run_spectra
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.waterfall import Waterfall, page_waterfall
 from frbcli.results.columns import amplitude_text, event_name, frequency_text
-from frbcli.results.files.kinds import MARK, PAGE
-from frbcli.results.files.write import require_places, write
+from frbcli.results.files.write import MARK, PAGE, require_places, write
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
 from frbcli.runs.errors.account import about_certainty, account, grows_late
@@ -120,7 +118,7 @@ def report(
     """
     end = ends(run)[1]
     shown = with_whirl_names(events(run)[:MOST_EVENTS])
-    unit = replace(given_speed_unit(run.case_text), both=both_units)
+    unit = replace(speed_unit_of(run), both=both_units)
     spectra = run_spectra(run, signal, None, "x") if len(run) >= FEWEST_SAMPLES else None
     waterfall: Waterfall | None = None
     if spectra is not None and min(spectra.level_dB.shape) > 1:  # else it has no area

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.plot.spectra.levels import Levels, LOWEST_dB, STEP_dB, scale_colours, ticks
-from frbcli.plot.spectra.waterfall import LEVELS_dB
+from frbcli.plot.waterfall import Levels, LEVELS_dB, LOWEST_dB, STEP_dB, scale_colours, ticks
 from frbcli.report.svg import curve, drawing, element, line, text
 from frbcli.units import HERTZ, SpeedUnit
 

@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import IO, TYPE_CHECKING, Any
 
 from frbcli.errors import InputError, input_error
-from frbcli.results.files.kinds import MARK, ROSS, TABLES, mark_table
-from frbcli.results.files.write import harmless_text, write, written
-from frbcli.results.signals import Signal, pieces
+from frbcli.results.files.write import MARK, ROSS, TABLES, harmless_text, mark_table, write, written
+from frbcli.results.records import Signal, pieces
 from frbcli.results.store import Run
 
 if TYPE_CHECKING:

@@ -28,13 +28,17 @@ from frbcli.results.records import (
     MOST_EVENTS,
     MOST_SAMPLES,
     TIME,
+    RunPlace,
+    Signal,
+    Stored,
+    StoredArrays,
+    pieces,
     wrong_event,
     wrong_record,
     wrong_text,
     wrong_unit,
     wrong_values,
 )
-from frbcli.results.signals import RunPlace, Signal, Stored, StoredArrays, pieces
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,8 +12,7 @@ from frbcli.case.surroundings.over_time import first
 from frbcli.errors import NotConverged
 from frbcli.film.kinds.contract import Films
 from frbcli.results.store import Run
-from frbcli.runs.inputs import signal_of
-from frbcli.runs.record.film_numbers import FilmNumbers
+from frbcli.runs.inputs import FilmNumbers, signal_of
 from frbcli.runs.record.restored import WrongCheckpoint, array, number_of
 from frbcli.scene.films import film_places
 from frbcli.scene.machine.heat import Heat, heat_of, warm_system

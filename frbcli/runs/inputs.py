@@ -1,4 +1,5 @@
-"""The inputs over time of a run: what the time loop follows, and their signals."""
+"""The inputs over time of a run: what the time loop follows, and their signals; and the numbers of the films that heat
+and inputs over time change, at the samples of the run."""
 
 from __future__ import annotations
 
@@ -171,3 +172,31 @@ class RunInputs:
 def signal_of(form: str, film: str) -> str:
     """The name of a signal of a film, which may be the only one."""
     return form.format(film) if film else form.replace("{}_", "")
+
+
+@dataclass(frozen=True)
+class FilmNumbers:
+    """The numbers of films that heat and inputs change, at k samples, or once for all: (k, films) or (1, films) each.
+
+    clearances m; drags N m s; scales: 12 eta / psi^2 over its value for the films as they were made, over the share of
+    their gauge supply pressures.
+    """
+
+    clearances: Array
+    drags: Array
+    scales: Array
+
+
+def unchanged(system: System) -> FilmNumbers:
+    """The numbers of films without heat, with one row: clearances in m, drags in N m s, scales 1."""
+    clearances, drags = np.array([system.clearances]), np.array([system.drags])
+    return FilmNumbers(clearances, drags, np.ones_like(drags))
+
+
+def supplied(system: System, warm: FilmNumbers | None, shares: Array | None) -> FilmNumbers | None:
+    """The numbers `warm` with shares (k, films) of the gauge supply pressures; None where nothing changes."""
+    if shares is None:
+        return warm
+    films = warm or unchanged(system)
+    clearances, drags = (np.broadcast_to(each, shares.shape) for each in (films.clearances, films.drags))
+    return FilmNumbers(clearances, drags, films.scales / shares)

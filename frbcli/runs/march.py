@@ -15,13 +15,13 @@ from frbcli.compilation import compiled_s, working_time
 from frbcli.results.store import Run
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.drive import begin_to_turn, brakes, drive_signals, loop_drive, rotation_at, rotation_of
-from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import budget_of_segments, grows_from, quick_budget, summed
+from frbcli.runs.errors.error_budget import FewerCells, budget_of_segments, grows_from, quick_budget, summed
 from frbcli.runs.heat import RunHeat
-from frbcli.runs.inputs import RunInputs, films_change
-from frbcli.runs.record.film_numbers import FilmNumbers, supplied
-from frbcli.runs.record.film_signals import (
+from frbcli.runs.inputs import FilmNumbers, RunInputs, films_change, supplied
+from frbcli.runs.record.films import (
     OF_THE_STEPS,
+    KeptFilms,
+    RunWear,
     Samples,
     fillings,
     film_signals,
@@ -29,11 +29,17 @@ from frbcli.runs.record.film_signals import (
     tilt_signals,
 )
 from frbcli.runs.record.header import FLOW, named, pin_signals, recorded, ring_names
-from frbcli.runs.record.kept_films import KeptFilms
 from frbcli.runs.record.restored import WrongCheckpoint, array, check_samples, restored
-from frbcli.runs.record.wear import RunWear
-from frbcli.runs.start import control_of, first_state, in_turn, micro_cost, rotor_data
-from frbcli.runs.sudden_change import largest_eccentricity, with_clearances, with_unbalance
+from frbcli.runs.start import (
+    control_of,
+    first_state,
+    in_turn,
+    largest_eccentricity,
+    micro_cost,
+    rotor_data,
+    with_clearances,
+    with_unbalance,
+)
 from frbcli.scene.cost import expected_cost, film_error_s
 from frbcli.scene.coupling import coupling_named
 from frbcli.scene.course import expected_course

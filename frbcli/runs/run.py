@@ -1,4 +1,5 @@
-"""Run-up and run-down: from a case to a run file."""
+"""Run-up and run-down: from a case to a run file. A run that the file holds already is continued, returned, replaced or
+kept, by one rule."""
 
 from __future__ import annotations
 
@@ -8,21 +9,29 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from frbcli.analysis.events import find_events
+from frbcli.case.reading.load import describes
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
+from frbcli.elements.spring import LAWS, law_record
+from frbcli.errors import InputError, RunFileError, input_error
 from frbcli.linear.critical_speeds import linear_critical_speeds
 from frbcli.results.files.container import refuse
 from frbcli.results.files.lock import locked
-from frbcli.results.store import Header, Run, RunWriter, check_output
+from frbcli.results.records import untold
+from frbcli.results.store import Header, Run, RunWriter, check_output, read_run
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.runs.errors.error_budget import quiet_until
-from frbcli.runs.errors.fewer_cells import in_finer_steps, on_fewer_cells
-from frbcli.runs.errors.second_run import SECOND_RUN, SECOND_RUN_PREDICTED, with_second_run
+from frbcli.runs.errors.second_run import (
+    SECOND_RUN,
+    SECOND_RUN_PREDICTED,
+    in_finer_steps,
+    on_fewer_cells,
+    with_second_run,
+)
 from frbcli.runs.march import March, Progress
-from frbcli.runs.record.header import header
+from frbcli.runs.record.header import PROGRAM, header, version_of
 from frbcli.runs.record.interrupt import held_back
 from frbcli.runs.record.restored import WrongCheckpoint
-from frbcli.runs.record.wear import standing_run
 from frbcli.scene.cost import ExpectedCost
 from frbcli.scene.cost_limits import require_affordable
 from frbcli.scene.machine.system import Segment, make_segments
@@ -32,6 +41,8 @@ from frbcli.scene.planning.plan import make_plan
 from frbcli.scene.planning.planned import Plan
 from frbcli.solve.state import CONTACT, FINISHED, OVERHEATED, RUNNING, STANDSTILL
 
+INTERRUPTED = "interrupted"
+REPLACE = "Replace it with --force, or choose another --output."
 CHECKPOINT_EVERY_s = 2.0
 CHECKPOINT_SHARE = 0.05  # of the wall time that writing may take
 WAIT_s = 10.0  # CPU time for the error of a run that was interrupted
@@ -40,6 +51,71 @@ STATUS = {FINISHED: "finished", CONTACT: "contact", OVERHEATED: "overheated", ST
 STARVED = "starved"
 
 Observer = Callable[[Progress], None]
+
+
+def standing_run(command: str, case: Case, path: Path, resume: bool = False, force: bool = False) -> Run | None:
+    """The run in `path` that a `command` of a case goes on with, or returns if it has ended; None if it begins anew.
+
+    A run is replaced with `force` alone, unless it has no samples; it is gone on with by `resume` alone. Raises
+    InputError for any other one that would be lost, and for a file that cannot be resumed.
+    """
+    if resume and force:
+        raise _refused(path, "--force", "replaces the run, and --resume continues it.", "Give one of them.")
+    if resume:
+        return earlier_run(command, case, path)
+    if force or not path.exists():
+        return None
+    try:
+        run = read_run(path)
+    except RunFileError as error:
+        problem = f"holds a run that {error.faults[0].problem}"
+        raise _refused(path, "--output", problem, REPLACE) from error
+    if run.status == INTERRUPTED:
+        if not len(run):
+            return None
+        problem = "holds an interrupted run, which would be lost."
+        raise _refused(path, "--output", problem, "Continue it with --resume, or replace it with --force.")
+    if problem := _otherness(command, case, run):
+        raise _refused(path, "--output", problem, REPLACE)
+    if run.versions.get(PROGRAM) != version_of(PROGRAM) or untold(run.cost, run.error):
+        raise _refused(path, "--output", "holds a run of another version, which would be lost.", REPLACE)
+    return run
+
+
+def earlier_run(command: str, case: Case, path: Path) -> Run | None:
+    """The run in `path` if it is one of this case; None if there is no file yet. Raises InputError for another one."""
+    if not path.exists():
+        return None
+    run = read_run(path)
+    if problem := _otherness(command, case, run):
+        raise _refused(path, "--resume", problem, "Give the case and the --set of that run, or another --output.")
+    if run.status != INTERRUPTED and (missing := untold(run.cost, run.error)):
+        raise refuse(path, f"has no {missing}.", "Remove it, or give another --output.")
+    return run
+
+
+def is_interrupted(path: Path) -> bool:
+    """Whether a file is an interrupted run with samples. A damaged file is not one, since it cannot be resumed."""
+    if not path.exists():
+        return False
+    try:
+        run = read_run(path)
+    except RunFileError:
+        return False
+    return run.status == INTERRUPTED and len(run) > 0
+
+
+def _otherness(command: str, case: Case, run: Run) -> str:
+    """The way in which a run differs from a case; "" if it is of this one."""
+    if run.command != command or not describes(run.case_text, case):
+        return f"holds a {run.command} of another case ({run.case_name or 'unnamed'}) or of this one with other keys."
+    if run.versions.get(LAWS) != law_record(case).get(LAWS):
+        return "was made with other force laws of these names than this process has."
+    return ""
+
+
+def _refused(path: Path, option: str, problem: str, remedy: str) -> InputError:
+    return input_error(str(path), option, str(path), problem, remedy)
 
 
 def runup(

@@ -2,7 +2,7 @@
 
 Sudden changes have times, values and the case after each of them; inputs and the drive their lines in a plan, times and
 faults. The rotor keeps its displacement and velocity at a sudden change, a mass-conserving film its oil
-(runs/sudden_change.py). The motion of the gap while it changes is left out.
+(runs/start.py). The motion of the gap while it changes is left out.
 """
 
 from __future__ import annotations

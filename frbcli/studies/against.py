@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from frbcli.analysis.measured import events_at
+from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import bearing_clearance, joined, located
-from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
 from frbcli.arrays import Array
 from frbcli.columns import Column, Shown, Table, Tabular, named, spread_table
 from frbcli.errors import input_error

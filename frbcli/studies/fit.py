@@ -18,9 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from frbcli.analysis.ridges import Ridges, ridge_speeds, ridges
 from frbcli.analysis.signals import bearing_clearance
-from frbcli.analysis.spectra.ridges import Ridges, ridge_speeds, ridges
-from frbcli.analysis.spectra.spectrum import window_length
+from frbcli.analysis.spectrum import window_length
 from frbcli.arrays import Array, Truths
 from frbcli.case.reading.listing import machine_fault
 from frbcli.case.reading.listing import values as listed

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from frbcli.case.reading.load import load_case
-from frbcli.plot.studies.accuracy import accuracy_figure
+from frbcli.plot.accuracy import accuracy_figure
 from frbcli.plot.style import save_figure
 from frbcli.runs.run import runup
 from frbcli.scene.cost import expected_cost

@@ -25,7 +25,7 @@ from frbcli.runs.run import runup
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.error_runs import end_of_trial, planned_trial
 from frbcli.scene.planning.plan import expected_error, make_plan
-from frbcli.studies.differences import difference
+from frbcli.studies.accuracy import difference
 
 TARGETS = (1e-2, 3e-3, 1e-3)
 FINE = ("accuracy.mesh=[10, 144]", "accuracy.tolerance=2e-6")

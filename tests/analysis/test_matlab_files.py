@@ -16,7 +16,7 @@ from scipy.sparse import csc_array
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.plot.spectra.waterfall import waterfall_figure
+from frbcli.plot.waterfall import waterfall_figure
 from frbcli.results.measured.reading import read_columns
 
 RATE_Hz, SPEED_Hz = 4000.0, 120.0

@@ -13,7 +13,7 @@ from frbcli.analysis import signals
 from frbcli.analysis.events import find_events
 from frbcli.analysis.orders.order_tracking import order_track, order_tracks
 from frbcli.analysis.signals import SignalOf
-from frbcli.analysis.spectra.spectrum import waterfall
+from frbcli.analysis.spectrum import waterfall
 from frbcli.errors import InputError
 from frbcli.results.store import Run
 

@@ -9,9 +9,8 @@ from functools import partial
 import numpy as np
 import pytest
 
-from frbcli.analysis import signals
-from frbcli.analysis.spectra import spectrum
-from frbcli.analysis.spectra.spectrum import (
+from frbcli.analysis import signals, spectrum
+from frbcli.analysis.spectrum import (
     WINDOW,
     Direction,
     FLOOR_dB,
@@ -139,7 +138,7 @@ def test_spectra_are_those_of_scipy_to_round_off(direction: Direction, window_s:
 
 
 def test_spectra_do_without_scipy() -> None:
-    code = "import sys, frbcli.analysis.spectra.spectrum, frbcli.analysis.events;" \
+    code = "import sys, frbcli.analysis.spectrum, frbcli.analysis.events;" \
            " import frbcli.analysis.orders.order_tracking;" \
            "assert not {'scipy.special', 'scipy.linalg', 'scipy.signal'} & set(sys.modules)"  # fmt: skip
     subprocess.run([sys.executable, "-c", code], check=True)

@@ -10,8 +10,8 @@ import pytest
 from paths import DATA
 
 from frbcli import load_case, rotation, squeeze, whirl
+from frbcli.bearing_tests.history import whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
-from frbcli.bearing_tests.march import whirl_path
 from frbcli.film.cavitation.conditions import Reynolds
 from frbcli.film.cells.film import VolumeFilm, fitted_grid, reference_pressure, supplied
 from frbcli.film.cells.loads import loads

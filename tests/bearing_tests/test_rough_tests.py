@@ -14,7 +14,7 @@ from frbcli.case.schema import Case
 from frbcli.errors import InputError
 from frbcli.film.roughness.asperities import SLOW
 from frbcli.film.roughness.plain import plain_touch
-from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.scene.machine.system import rough_surfaces
 
 GROOVE = "bearing.supply={ kind = 'circumferential-groove', pressure = '1 bar' }"

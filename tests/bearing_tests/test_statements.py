@@ -14,9 +14,8 @@ import numpy as np
 import pytest
 
 from frbcli import load_case, rotation
-from frbcli.bearing_tests.history import History, film_course
+from frbcli.bearing_tests.history import History, film_course, squeeze_path, whirl_path
 from frbcli.bearing_tests.kinematic import KinematicResult
-from frbcli.bearing_tests.march import squeeze_path, whirl_path
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 
 FREQUENCY, PERIOD, STEPS, PERIODS = 10.0, 0.1, 100, 3

@@ -19,7 +19,7 @@ from frbcli.runs.run import rundown, runup
 from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.speeds import default_speeds
 from frbcli.studies.accuracy import accuracy
-from frbcli.studies.kernels.short_analyses import moment_of_run
+from frbcli.studies.warm_up import moment_of_run
 
 MACHINE = {
     "rotor": {"kind": "rigid", "mass": "6 kg", "gravity": 0.0, "unbalance": "3 g*mm"},

@@ -10,8 +10,8 @@ from rigid_cycles import UNIT_Hz, diagram, rigid
 import frbcli
 from frbcli.cli.main import run
 from frbcli.cycles.explain import explanations, threshold_kind
-from frbcli.cycles.over_key import limit_cycles_over
-from frbcli.plot.spectra.orders import run_tracks
+from frbcli.cycles.limit_cycles import limit_cycles_over
+from frbcli.plot.curves import run_tracks
 
 SHORT = ("--set", "film.theory=short")
 AROUND = ("--set", "speed.from=165 Hz", "--set", "speed.to=185 Hz")  # Hopf point and fold of the Jeffcott rotor

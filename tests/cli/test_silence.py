@@ -34,7 +34,7 @@ COMMANDS = {
                 ("jeffcott", *SHORT, "--cavitation", "half-sommerfeld,sommerfeld", "--set", "speed.duration=10 ms",
                  "--no-picture")),
     "report": ("frbcli.report.page", "write_report", ("run.h5",)),
-    "waterfall": ("frbcli.plot.spectra.waterfall", "run_spectra", ("run.h5",)),
+    "waterfall": ("frbcli.plot.waterfall", "run_spectra", ("run.h5",)),
     "accuracy": ("frbcli.studies.accuracy", "accuracy", ("jeffcott", *SHORT, "--until", "10 ms")),
     "sweep": ("frbcli.studies.sweep.sweep", "sweep",
               ("jeffcott", *SHORT, "--set", "oil.viscosity=9 mPa*s,10 mPa*s", "--stability")),

@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from frbcli.case.reading.load import load_case
@@ -75,3 +76,19 @@ def test_speeds_in_words() -> None:
     assert both.words(200.0) == "200.0 Hz, 12000 rpm"
     assert per_minute.span(10.0, 20.0) == "600 to 1200 rpm"
     assert per_minute.cell(None) == "-"
+
+
+def test_a_measurement_with_speeds_per_minute_is_shown_in_them(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    time = np.arange(20_000) * 2.5e-4
+    speed = 600.0 + 3000.0 * time
+    angle = np.cumsum(speed / 60.0) * 2.5e-4 * 2.0 * np.pi
+    whirl = np.where(time > 3.0, 15.0, 0.0)
+    x, y = (3.0 * of(angle) + whirl * of(0.48 * angle) for of in (np.cos, np.sin))
+    file = tmp_path / "measured.csv"
+    np.savetxt(file, np.c_[time, speed, x, y], delimiter=",", header="time_s,speed_rpm,x_um,y_um", comments="")
+    words = ["waterfall", str(file), "--x", "x_um", "--y", "y_um", "--time", "time_s", "--speed", "speed_rpm"]
+    assert frb([*words, "--clearance", "30 um", "-o", str(tmp_path / "w.svg")]) == 0
+    assert "speed, rpm" in capsys.readouterr().out
+    assert "rotor speed in rpm" in (tmp_path / "w.svg").read_text(encoding="utf-8")

@@ -10,14 +10,13 @@ import pytest
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
-from frbcli.cycles.family import check
 from frbcli.cycles.heat import WarmSpeed, warm_courses
-from frbcli.cycles.limit_cycles import limit_cycles
+from frbcli.cycles.limit_cycles import check, limit_cycles
 from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_equations
+from frbcli.cycles.unbalance import Synchronous, synchronous_equations
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.side_flow import outflow

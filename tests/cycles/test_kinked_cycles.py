@@ -11,7 +11,7 @@ import pytest
 from scipy.optimize import brentq
 
 import frbcli
-from frbcli.cycles.family import check
+from frbcli.cycles.limit_cycles import check
 from frbcli.cycles.result import CyclePoint, LimitCycles
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map, wet_at
 from frbcli.cycles.shooting.rest import settled

@@ -22,8 +22,8 @@ import frbcli
 from frbcli.case.reading.load import load_case_text
 from frbcli.cycles.method.balance import Balance, packed
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.parts.machine import film_loads, smooth_films, transfer
-from frbcli.cycles.parts.states import state_space
+from frbcli.cycles.method.machine import film_loads, smooth_films, transfer
+from frbcli.cycles.method.states import state_space
 from frbcli.equilibrium.resting import resting_position
 from frbcli.film.cells.motion import turned
 from frbcli.film.cells.steady_force import steady_force

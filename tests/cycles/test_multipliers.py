@@ -14,11 +14,10 @@ import frbcli
 from frbcli.cycles.branch import first_place, follow_branch
 from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
 from frbcli.cycles.method.floquet import multipliers
-from frbcli.cycles.method.follower import FoldFollower, Follower
-from frbcli.cycles.parts.states import reduced_space, state_space
+from frbcli.cycles.method.follower import Cycle, FoldFollower, Follower
+from frbcli.cycles.method.states import reduced_space, state_space
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

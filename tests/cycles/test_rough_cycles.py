@@ -14,9 +14,9 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.parts.machine import film_loads
+from frbcli.cycles.method.machine import film_loads
 from frbcli.film.roughness.asperities import rub
-from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.runs.run import runup
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

@@ -12,7 +12,7 @@ from known_flows import KnownFlow, round_cycles
 from numba import njit
 from rigid_cycles import CLEARANCE, GRAVITY, MASS, UNIT_Hz, diagram, rigid
 
-from frbcli.cycles.parts.machine import smooth_films
+from frbcli.cycles.method.machine import smooth_films
 from frbcli.cycles.shooting.branch import follow_shots
 from frbcli.cycles.shooting.fixed_point import SlowSpace
 from frbcli.cycles.shooting.other_cells import OtherCells, shot_errors

@@ -15,11 +15,11 @@ from scipy.interpolate import CubicSpline
 import frbcli
 from frbcli.case.reading.load import load_case_text
 from frbcli.cli.main import run
-from frbcli.cycles.maps.stability_map import Across, StabilityMap
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.cycle import Cycle
 from frbcli.cycles.method.equilibria import resting_curve
-from frbcli.cycles.unbalance.synchronous import Synchronous, synchronous_response
+from frbcli.cycles.method.follower import Cycle
+from frbcli.cycles.stability_map import Across, StabilityMap
+from frbcli.cycles.unbalance import Synchronous, synchronous_response
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -183,7 +183,7 @@ def test_files_of_the_page_of_equations_name_their_equations() -> None:
 
 
 def test_every_equation_that_the_code_names_is_on_the_page_of_equations() -> None:
-    elsewhere = {"(3.20)"}  # of Kuznetsov, in frbcli/cycles/method/criticality.py
+    elsewhere = {"(3.20)"}  # of Kuznetsov, in frbcli/cycles/method/equilibria.py
     listed = {number for numbers, _ in equation_rows() for number in expanded(numbers)} | elsewhere
     for file in sorted((ROOT / "frbcli").rglob("*.py")):
         named = re.findall(r"(?<!\w)\((?:[2-6]|B)\.[1-9]\d?\)", file.read_text(encoding="utf-8"))

@@ -15,7 +15,7 @@ from validation import chapter6, chapter6_rows, chapter_7, chapter_7_page, measu
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import shipped_names
-from frbcli.linear.rolling.sheet import ball_bearing_sheet
+from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.runs.run import runup
 from frbcli.scene.planning.kinematic_plan import kinematic_plan
 from frbcli.scene.planning.plan import make_plan, thrust_plan

@@ -18,7 +18,7 @@ from frbcli.case.reading.load import case_from_dict, load_case, load_case_text
 from frbcli.cycles.limit_cycles import limit_cycles
 from frbcli.errors import InputError
 from frbcli.linear.response import response
-from frbcli.plot.spectra.waterfall import load_lines
+from frbcli.plot.waterfall import load_lines
 from frbcli.report.sketch import rotor_sketch
 from frbcli.runs.run import runup
 from frbcli.scene.machine.rotor import make_rotor

@@ -17,7 +17,7 @@ from frbcli.elements.collar import NotCarried, collar_of
 from frbcli.elements.thrust import ThrustElement
 from frbcli.equilibrium.linearised import linearised, states
 from frbcli.errors import InputError
-from frbcli.linear.thrust.axial import axial_state
+from frbcli.linear.sheets.thrust import axial_state
 from frbcli.scene.machine.rotor import make_rotor, site_of
 
 SPEED, TOP = 2.0 * math.pi * 500.0, 500.0

@@ -17,7 +17,7 @@ from frbcli.errors import InputError
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.plot.machine.response import response_figure
-from frbcli.plot.spectra.waterfall import orders, run_spectra
+from frbcli.plot.waterfall import orders, run_spectra
 from frbcli.report.sketch import rotor_sketch
 from frbcli.rotor.loads import loads_at
 from frbcli.runs.run import runup

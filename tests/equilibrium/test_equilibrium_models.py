@@ -14,9 +14,8 @@ import pytest
 from paths import DATA
 
 from frbcli import load_case, rotation
-from frbcli.bearing_tests import resting
-from frbcli.bearing_tests.resting import resting_displacement
-from frbcli.bearing_tests.steady_film import film_force
+from frbcli.bearing_tests import steady_film as resting
+from frbcli.bearing_tests.steady_film import film_force, resting_displacement
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
 from frbcli.film.cells.motion import Motion

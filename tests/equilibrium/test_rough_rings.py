@@ -12,8 +12,8 @@ from marches import march, start
 
 import frbcli
 from frbcli.cycles.method.equilibria import at_rest
-from frbcli.cycles.parts.machine import film_loads, make_machine
-from frbcli.cycles.parts.states import state_space
+from frbcli.cycles.method.machine import film_loads, make_machine
+from frbcli.cycles.method.states import state_space
 from frbcli.equilibrium.coefficients import FilmsAtRest, films_at_rest
 from frbcli.equilibrium.linearised import linearised, rotor_at_rest, states
 from frbcli.equilibrium.resting import RestingPosition, resting_position

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from volume_films import ROTATION, polar_motion, section_of
 
-from frbcli.bearing_tests.march import march
+from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cells.film import VolumeFilm, supplied, supply_share

@@ -7,7 +7,7 @@ import tomllib
 
 import frbcli
 from frbcli.case.reading.shipped import find_shipped
-from frbcli.cycles.parts.machine import Machine, make_machine
+from frbcli.cycles.method.machine import Machine, make_machine
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

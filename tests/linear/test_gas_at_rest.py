@@ -17,8 +17,8 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.film.cells.film import VolumeSolution
 from frbcli.film.cells.loads import FilmLoads
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.linear.bearing_sheet import sommerfeld_chart
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.bearing import sommerfeld_chart
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.threshold import find_threshold
 

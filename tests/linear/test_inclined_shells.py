@@ -8,7 +8,7 @@ import math
 import pytest
 
 from frbcli import bearing_sheet, load_case, rotation, sommerfeld_chart
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import RUN, STABILITY

@@ -17,8 +17,8 @@ from frbcli.equilibrium.static_machine import StaticMachines
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.errors import InputError
 from frbcli.film.roughness.plain import plain_touch
-from frbcli.linear.bearing_sheet import bearing_sheet
-from frbcli.linear.film_state import FilmState, MixedFriction
+from frbcli.linear.sheets.bearing import bearing_sheet
+from frbcli.linear.sheets.film_state import FilmState, MixedFriction
 from frbcli.scene.gate.gate import faults, require
 from frbcli.scene.gate.rule import BEARING, SPEED_CYCLES, STABILITY
 from frbcli.scene.machine.system import make_system

@@ -15,8 +15,8 @@ from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
-from frbcli.linear.bearing_sheet import bearing_sheet
-from frbcli.linear.film_state import FilmState, MixedFriction
+from frbcli.linear.sheets.bearing import bearing_sheet
+from frbcli.linear.sheets.film_state import FilmState, MixedFriction
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan
 

@@ -22,7 +22,7 @@ from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
 from frbcli.linear.stability import stability
 from frbcli.plot.machine.response import critical_map_figure
-from frbcli.plot.moving.orbits import FRAMES, animate_orbits
+from frbcli.plot.moving import FRAMES, animate_orbits
 
 PLAIN = [  # a turbocharger in plain bearings, with all its modes
     "rotor.cutoff=1000 kHz", "rotor.modal_damping=0", "film.theory=short", "film.cavitation=half-sommerfeld",

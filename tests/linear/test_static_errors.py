@@ -11,10 +11,10 @@ from frbcli.case.reading.load import load_case
 from frbcli.equilibrium import static_films, static_machine
 from frbcli.equilibrium.resting import SEARCH
 from frbcli.equilibrium.static_machine import StaticMachines
-from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
 from frbcli.linear.damped_modes import damped_modes
-from frbcli.linear.film_state import FilmState
 from frbcli.linear.response import response
+from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability, stability_points
 from frbcli.linear.threshold import threshold_at
 

@@ -20,7 +20,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.loads import loads
 from frbcli.film.cells.tilted.steady_force import land_solution, tilted_force
 from frbcli.linear.columns import FILM, film_columns, point_columns
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability_points
 from frbcli.linear.stability_point import StabilityPoint
 from frbcli.rotor.body import COORDINATES

@@ -27,8 +27,8 @@ from output_options import CALLS, CASE, RUN, SHORT, TABLE, Option, output_option
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
 from frbcli.cli.main import run as frb
-from frbcli.results.files.kinds import MARK, PAGE, PICTURES, TABLES
-from frbcli.results.files.kinds import RUN as RUN_KIND
+from frbcli.results.files.write import MARK, PAGE, PICTURES, TABLES
+from frbcli.results.files.write import RUN as RUN_KIND
 from frbcli.runs.run import runup
 
 TRIALS = int(os.environ.get("FRB_TRIALS", "5000"))
@@ -36,7 +36,7 @@ OWN = MARK.encode()
 HEADS = {".png": b"\x89PNG", ".pdf": b"%PDF", ".svg": b"<?xml"}
 PICTURE = {suffix: head + OWN + bytes(500) for suffix, head in HEADS.items()}
 COMPUTED = (
-    "linear.bearing_sheet.bearing_sheet", "linear.response.response", "linear.stability.stability",
+    "linear.sheets.bearing.bearing_sheet", "linear.response.response", "linear.stability.stability",
     "studies.sweep.task.threshold_alone", "cycles.limit_cycles.limit_cycles", "cycles.explain.threshold_kind",
     "studies.fit.fit", "studies.accuracy.accuracy", "bearing_tests.kinematic.rotation", "report.page.report",
     "bearing_tests.kinematic.squeeze", "bearing_tests.kinematic.whirl",

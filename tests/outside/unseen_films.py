@@ -19,7 +19,7 @@ from frbcli.errors import FrbError
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 from frbcli.scene.planning.plan import expected_error, make_plan
-from frbcli.studies.differences import difference
+from frbcli.studies.accuracy import difference
 
 TARGETS = (1e-2, 3e-3)
 FINE, FINE_BESIDE_GROOVES = "[10, 192]", "[6, 384]"  # beside axial grooves the cells along hardly matter

@@ -30,7 +30,10 @@ from frbcli.cycles.columns import (
     whirl_columns,
 )
 from frbcli.equilibrium.columns import HEAT_BALANCE, WARM_FILMS, WARM_RINGS
+from frbcli.linear.balance_quality import COLUMNS as BALANCE_QUALITY
 from frbcli.linear.columns import (
+    AXIAL,
+    BALL_SHEET,
     DAMPED_MODES,
     FILM,
     MIXED_FRICTION,
@@ -44,17 +47,15 @@ from frbcli.linear.columns import (
     RESPONSE_FORCES,
     RESPONSE_POINTS,
     SHEET,
+    THRUST,
     TILTING,
 )
 from frbcli.linear.critical_map import CRITICAL_SPEEDS
-from frbcli.linear.rolling.columns import BALL_SHEET
-from frbcli.linear.standards.balance_quality import COLUMNS as BALANCE_QUALITY
-from frbcli.linear.standards.vibration import API_POINTS, ISO_POINTS, MARGINS
-from frbcli.linear.thrust.columns import AXIAL, THRUST
+from frbcli.linear.vibration import API_POINTS, ISO_POINTS, MARGINS
 from frbcli.results.columns import EVENTS, MACHINE_SIGNALS, PART_SIGNALS
 from frbcli.scene.machine.findings import FILM_LOADS, FILM_OPERATION, FILM_TILTS
 from frbcli.studies.against import DEVIATIONS, RIDGES
-from frbcli.studies.comparison_columns import HEAT, VARIANT
+from frbcli.studies.compare import HEAT, VARIANT
 from frbcli.studies.fit import FITTED
 from frbcli.studies.ladder import LADDER
 from frbcli.studies.sweep.sweep import point_columns

@@ -14,8 +14,8 @@ from printed_sheets import CASE, OMEGA, grooves, printed
 from rigid_cycles import UNIT_Hz, rigid
 
 import frbcli
-from frbcli.linear.bearing_sheet import bearing_sheet, sommerfeld_chart
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.linear.stability import stability
 from pages.textbook_rows import CLOSED, PRINTED, PROGRAM, Bench, Row
 

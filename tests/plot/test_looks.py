@@ -18,12 +18,12 @@ from PIL import Image
 from synthetic_run import Rotor, make_run
 
 import frbcli
-from frbcli.cli.looks import Size
 from frbcli.cli.main import frb
-from frbcli.plot.machine.campbell import campbell_figure
+from frbcli.cli.options import Size
+from frbcli.plot.machine.modes import campbell_figure
 from frbcli.plot.picture import fit
-from frbcli.plot.run.eccentricity import eccentricity_figure
-from frbcli.plot.spectra.waterfall import LevelScale, waterfall_figure
+from frbcli.plot.run.motion import eccentricity_figure
+from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 
 

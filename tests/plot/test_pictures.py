@@ -14,7 +14,8 @@ from synthetic_run import make_run
 from frbcli.analysis.orders.subsynchronous import with_whirl_names
 from frbcli.case.reading.load import load_case
 from frbcli.columns import table_of
-from frbcli.linear.thrust.sheet import thrust_sheet
+from frbcli.linear.sheets.thrust import thrust_sheet
+from frbcli.plot.machine.thrust import thrust_figure
 from frbcli.plot.run.summary import summary_figure
 from frbcli.plot.style import (
     legend_below,
@@ -24,7 +25,6 @@ from frbcli.plot.style import (
     styled,
     with_subscripts,
 )
-from frbcli.plot.thrust import thrust_figure
 from frbcli.results.columns import EVENTS
 
 

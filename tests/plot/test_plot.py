@@ -20,17 +20,15 @@ from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.picture import fit
-from frbcli.plot.run.eccentricity import displacement_figure, eccentricity_figure
-from frbcli.plot.run.envelope import DRAWN_POINTS, Envelope, at_times, curve
-from frbcli.plot.run.orbit import orbit_figure, visible_steps
+from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure
 from frbcli.plot.run.ring_speed import ring_speed_figure
 from frbcli.plot.run.summary import summary_figure
-from frbcli.plot.signals import clearance, labels, model
-from frbcli.plot.spectra.waterfall import LEVELS_dB, run_spectra, waterfall_figure
+from frbcli.plot.signals import DRAWN_POINTS, Envelope, at_times, clearance, curve, labels, model
 from frbcli.plot.style import new_figure, picture, save_figure, styled
-from frbcli.results.files.kinds import MARK
-from frbcli.results.signals import pieces
+from frbcli.plot.waterfall import LEVELS_dB, run_spectra, waterfall_figure
+from frbcli.results.files.write import MARK
+from frbcli.results.records import pieces
 from frbcli.results.store import Run
 
 FILM = '[film]\ntheory = "finite"\ncavitation = "{}"\n'
@@ -319,7 +317,7 @@ def test_drawing_leaves_matplotlib_as_it_was(run: Run) -> None:
 
 
 def test_drawing_does_not_import_pyplot() -> None:
-    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.orbit; sys.exit('matplotlib.pyplot' in sys.modules)"
+    code = "import sys, frbcli.plot.run.summary, frbcli.plot.run.motion; sys.exit('matplotlib.pyplot' in sys.modules)"
     assert subprocess.run([sys.executable, "-c", code], cwd=ROOT, check=False).returncode == 0
 
 
@@ -341,7 +339,7 @@ def test_letters_of_a_title_are_neither_mathematics_nor_orders_to_a_terminal(run
 def test_a_curve_is_the_same_however_it_is_read(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = curve(run, run.signal("eccentricity"), 100, 150_001)
     between = at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333))
-    monkeypatch.setattr("frbcli.plot.run.envelope.pieces", lambda first, last: pieces(first, last, 777))
+    monkeypatch.setattr("frbcli.plot.signals.pieces", lambda first, last: pieces(first, last, 777))
     for all_at_once, in_pieces in zip(whole, curve(run, run.signal("eccentricity"), 100, 150_001), strict=True):
         np.testing.assert_array_equal(all_at_once, in_pieces)
     np.testing.assert_array_equal(between, at_times(run, run.signal("speed_Hz"), np.linspace(0.0, 10.0, 333)))
@@ -359,7 +357,7 @@ def test_curves_over_speed_are_the_same_however_they_are_read(ringed: Run, monke
 
 def test_a_long_orbit_shows_all_that_can_be_seen(run: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     x, y = run.signal("journal_x_m"), run.signal("journal_y_m")
-    monkeypatch.setattr("frbcli.plot.run.orbit.ALL_DRAWN", 1000)
+    monkeypatch.setattr("frbcli.plot.run.motion.ALL_DRAWN", 1000)
     begins, ends, gaps = np.stack(visible_steps(x, y, 0, len(run))).reshape(2, -1, 3).T
     assert np.isnan(gaps).all()
     assert len(begins) < 0.1 * len(run)

@@ -24,11 +24,11 @@ from frbcli.cli.main import frb
 from frbcli.elements.table import ELEMENTS, symbols_at
 from frbcli.errors import InputError, RunFileError
 from frbcli.plot.run.speeds import between
-from frbcli.plot.spectra.levels import LOWEST_dB, STEP_dB
+from frbcli.plot.waterfall import LOWEST_dB, STEP_dB
 from frbcli.report.page import report
 from frbcli.report.sketch import film_sketches, rotor_sketch
 from frbcli.report.svg import SYMBOLS
-from frbcli.results.signals import Signal
+from frbcli.results.records import Signal
 from frbcli.results.store import Run
 
 SETTINGS = ["film.theory=short", "speed.to=250 Hz", "speed.duration=1 s", 'output.signals=["force"]']

@@ -26,10 +26,9 @@ from frbcli.cli.files import here
 from frbcli.cli.main import COMMANDS
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
-from frbcli.plot.moving.orbits import animate_orbits
-from frbcli.results.files.kinds import PAGE, TABLES, has_checksum, mark_table
+from frbcli.plot.moving import animate_orbits
 from frbcli.results.files.lock import locked
-from frbcli.results.files.write import write, written
+from frbcli.results.files.write import PAGE, TABLES, has_checksum, mark_table, write, written
 from frbcli.results.store import Header, Run, RunWriter, read_run
 from frbcli.runs.march import March
 from frbcli.runs.run import rundown, runup
@@ -64,7 +63,7 @@ def nothing_runs(monkeypatch: pytest.MonkeyPatch) -> None:
         raise AssertionError("computed")
 
     monkeypatch.setattr(March, "__init__", fail)
-    for place in ("linear.stability.stability", "linear.bearing_sheet.bearing_sheet", "linear.response.response",
+    for place in ("linear.stability.stability", "linear.sheets.bearing.bearing_sheet", "linear.response.response",
                   "cycles.limit_cycles.limit_cycles", "studies.fit.fit", "studies.accuracy.accuracy",
                   "studies.sweep.sweep.sweep", "bearing_tests.kinematic._test"):  # fmt: skip
         monkeypatch.setattr(f"frbcli.{place}", fail)
@@ -154,7 +153,7 @@ FOREIGN = {  # files of others of the kinds that frb writes, and the words that 
 def test_a_file_that_frb_did_not_write_is_replaced_by_force_alone(
     name: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("frbcli.plot.moving.orbits.FRAMES", 2)
+    monkeypatch.setattr("frbcli.plot.moving.FRAMES", 2)
     words, other = FOREIGN[name]
     if name.endswith(".parquet"):
         pytest.importorskip("pyarrow")

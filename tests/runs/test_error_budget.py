@@ -13,9 +13,8 @@ from frbcli.cli.main import run as frb
 from frbcli.errors import NotConverged
 from frbcli.runs import march
 from frbcli.runs.errors.account import grows_late
-from frbcli.runs.errors.cell_errors import FewerCells
-from frbcli.runs.errors.error_budget import FilmErrors, grows_from, summed
-from frbcli.runs.errors.fewer_cells import (
+from frbcli.runs.errors.error_budget import FewerCells, FilmErrors, grows_from, summed
+from frbcli.runs.errors.second_run import (
     on_fewer_cells,
 )
 from frbcli.runs.run import runup
@@ -24,7 +23,7 @@ from frbcli.scene.planning.eccentricity import run_up_profile
 from frbcli.scene.planning.plan import make_plan
 from frbcli.solve.state import ERROR_LARGEST, ERROR_SPANS, NUMBERS, RUN_END, TIME
 from frbcli.solve.step import ERROR_MEMORY, book_error
-from frbcli.studies.differences import difference, verify
+from frbcli.studies.accuracy import difference, verify
 
 SHORT_RUN = ("speed.duration=0.3 s", "speed.to=30 Hz", "output.step=1e-3 s")
 

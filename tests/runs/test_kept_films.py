@@ -14,7 +14,7 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.case.schema import Case
 from frbcli.errors import InputError, RunFileError
 from frbcli.film.cells.data import SHEARED
-from frbcli.plot.moving.films import MOMENTS, animate_films, film_moments_figure
+from frbcli.plot.moving import MOMENTS, animate_films, film_moments_figure
 from frbcli.results.kept_films import GAS, OIL, KeptFilm, kept_film
 from frbcli.results.store import Run
 from frbcli.runs import march

@@ -19,7 +19,7 @@ from frbcli.equilibrium import static_films
 from frbcli.equilibrium.resting import resting_position
 from frbcli.equilibrium.warm_machine import warm_machine
 from frbcli.film.roughness.asperities import LAST, touch
-from frbcli.linear.bearing_sheet import bearing_sheet
+from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.results.store import Run
 from frbcli.runs import march

@@ -26,8 +26,8 @@ from frbcli.results.files.container import seal
 from frbcli.runs.march import March
 from frbcli.runs.run import runup
 from frbcli.studies import accuracy as ladder
+from frbcli.studies.accuracy import verify
 from frbcli.studies.compare import compare
-from frbcli.studies.differences import verify
 from frbcli.studies.sweep.sweep import Workers, sweep
 from frbcli.thermal.exchange import HOT
 
@@ -221,7 +221,7 @@ def test_an_interrupted_verification_is_no_second_run(
     assert len(seen) == 1
     monkeypatch.undo()
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("frbcli.studies.differences.verify", ask_to_end)
+        patch.setattr("frbcli.studies.accuracy.verify", ask_to_end)
         assert frb(["runup", *QUICK, "-o", "again.h5", "--no-picture", "--verify", "--json"]) == 130
     found = json.loads(capsys.readouterr().out)
     assert (found["status"], found["error"]["verified"]) == ("finished", {"status": "interrupted"})

@@ -18,7 +18,7 @@ from frbcli.errors import InputError
 from frbcli.film.cells.data import VolumeFilms
 from frbcli.results.store import read_run
 from frbcli.runs.march import Progress, control_of
-from frbcli.runs.oil import oil_defect
+from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.course import STAGES
 from frbcli.scene.machine.system import System, make_system, settled_share

@@ -26,7 +26,7 @@ from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
 from frbcli.linear.stability import stability
 from frbcli.runs.march import control_of
-from frbcli.runs.oil import oil_defect
+from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.channels import coupled_channels
 from frbcli.scene.machine.system import System, make_system

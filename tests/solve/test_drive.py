@@ -16,7 +16,7 @@ from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
+from frbcli.studies.warm_up import machine_kernels, moment_of_run
 
 TURN = 2.0 * math.pi
 INERTIA, TORQUE, BRAKES = 2e-4, 0.05, 1e-4

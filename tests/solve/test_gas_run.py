@@ -13,7 +13,7 @@ from frbcli.film.cells.data import GAS, PASSED
 from frbcli.film.cells.linearised import linear_film, stiffness_at
 from frbcli.film.kinds.tilted import TiltedFilms
 from frbcli.runs.march import control_of
-from frbcli.runs.oil import oil_defect
+from frbcli.runs.record.films import oil_defect
 from frbcli.runs.start import first_state, rotor_data
 from frbcli.scene.machine.system import System
 from frbcli.scene.planning.eccentricity import run_up_profile

@@ -18,7 +18,7 @@ from frbcli.errors import InputError
 from frbcli.linear.stability import stability_points
 from frbcli.rotor.body import PLANE
 from frbcli.rotor.loads import SpeedProfile, speed_profile
-from frbcli.runs.record.film_signals import tilt_signals
+from frbcli.runs.record.films import tilt_signals
 from frbcli.runs.start import rotor_data, state_at
 from frbcli.scene.forms.tilted import TiltedForm
 from frbcli.scene.machine.rotor import make_rotor

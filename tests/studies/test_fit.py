@@ -16,12 +16,12 @@ from synthetic_run import CLEARANCE, Rotor, make_run
 
 import frbcli
 from frbcli.analysis.measured import Measurement, measured_run
-from frbcli.analysis.spectra.ridges import ridge_speeds, ridges
+from frbcli.analysis.ridges import ridge_speeds, ridges
 from frbcli.case.reading.listing import machine_fault, values
 from frbcli.cli.main import frb
-from frbcli.cycles.maps.stability_map import Across
+from frbcli.cycles.stability_map import Across
 from frbcli.errors import InputError
-from frbcli.plot.spectra.ridges import against_figure, fit_figure
+from frbcli.plot.compare import against_figure, fit_figure
 from frbcli.results.store import Run
 from frbcli.studies.against import against_measured
 from frbcli.studies.fit import Fit, fit

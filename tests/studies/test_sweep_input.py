@@ -13,8 +13,7 @@ from scipy.stats import norm, truncnorm
 
 from frbcli import InputError, load_case
 from frbcli.cli.main import run as frb
-from frbcli.studies.sweep.distributions import read_correlation, read_distribution, samples
-from frbcli.studies.sweep.points import linked, read_values
+from frbcli.studies.sweep.points import linked, read_correlation, read_distribution, read_values, samples
 from frbcli.studies.sweep.scatter import _wilson, scatter, whirl_speed
 from frbcli.studies.sweep.sweep import Sweep, SweepPoint, Workers, sweep
 from frbcli.studies.sweep.task import NO_WHIRL

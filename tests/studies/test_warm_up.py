@@ -20,8 +20,7 @@ from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data
 from frbcli.scene.machine.system import make_segments
 from frbcli.scene.planning.eccentricity import run_up_profile
-from frbcli.studies.kernels.short_analyses import ShortAnalysis, machine_kernels, short_analyses
-from frbcli.studies.kernels.warm_up import _compile
+from frbcli.studies.warm_up import ShortAnalysis, _compile, machine_kernels, short_analyses
 
 # A run-up in which nothing may be compiled
 RUN = """

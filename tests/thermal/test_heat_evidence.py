@@ -25,7 +25,7 @@ from frbcli.film.cells.data import (
 from frbcli.film.cells.loads import force
 from frbcli.film.cells.motion import Motion
 from frbcli.film.cells.solver import FilmSolver
-from frbcli.linear.bearing_sheet import sommerfeld_chart
+from frbcli.linear.sheets.bearing import sommerfeld_chart
 from frbcli.materials import OILS
 from frbcli.scene.machine.system import make_system
 from frbcli.scene.planning.plan import make_plan

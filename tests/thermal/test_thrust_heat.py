@@ -8,7 +8,7 @@ import pytest
 import frbcli
 from frbcli.case.schema import Case
 from frbcli.errors import NotConverged
-from frbcli.linear.thrust.state import ThrustState
+from frbcli.linear.sheets.thrust import ThrustState
 
 SPEED, SUPPLY = [2000.0], 343.15
 GRADE = "oil.viscosity={grade='SAE 10W-40'}"

@@ -17,9 +17,9 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from frbcli.analysis import signals
+from frbcli.analysis.peaks import local_maxima, summit
 from frbcli.analysis.signals import RunLike
-from frbcli.analysis.spectra.peaks import local_maxima, summit
-from frbcli.analysis.spectra.spectrum import fast_length, hann
+from frbcli.analysis.spectrum import fast_length, hann
 from frbcli.arrays import Array, Complex
 
 PERIODS = 32  # of a window, which is blind to what is a sixteenth of the frequency away

@@ -13,8 +13,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from frbcli.analysis.orders.revolutions import STEPS, Revolutions, Tracked
-from frbcli.analysis.spectra.peaks import Peak, intervals_above, prominent_peaks, swings
+from frbcli.analysis.orders.order_tracking import STEPS, Revolutions, Tracked
+from frbcli.analysis.peaks import Peak, intervals_above, prominent_peaks, swings
 from frbcli.arrays import Array, Complex
 
 REVOLUTIONS = 8  # of the window: a resonance is passed in many more

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from frbcli.analysis import signals
+from frbcli.analysis.peaks import crossing, local_maxima, summit
 from frbcli.analysis.signals import PIECE, RingSpeed, RunLike, SignalOf, steepest_ramp
-from frbcli.analysis.spectra.peaks import crossing, local_maxima, summit
-from frbcli.analysis.spectra.spectrum import fast_length, hann
+from frbcli.analysis.spectrum import fast_length, hann
 from frbcli.arrays import Array, Complex
 
 Side = Literal["inner", "outer"]

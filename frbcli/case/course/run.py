@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from pydantic import Field, model_validator
 
@@ -29,7 +29,11 @@ from frbcli.case.model import (
     with_default,
 )
 from frbcli.case.reading.text import TomlFault, parse
+from frbcli.results.records import PER_MINUTE
 from frbcli.units import NUMBER, SpeedUnit, is_per_minute
+
+if TYPE_CHECKING:
+    from frbcli.results.store import Run
 
 DEFAULT_HOLD = 0.5
 
@@ -76,6 +80,11 @@ def given_speed_unit(text: str) -> SpeedUnit:
     motion = tables.get("motion")
     of_motion = motion.get("speed") if isinstance(motion, Mapping) else None
     return SpeedUnit(_any_per_minute([tables.get("speed"), tables.get("drive"), of_motion]))
+
+
+def speed_unit_of(run: Run) -> SpeedUnit:
+    """The unit in which people read the rotor speeds of a run: of its case, or of the column of a measurement."""
+    return SpeedUnit(rpm=True) if PER_MINUTE in run.references else given_speed_unit(run.case_text)
 
 
 def _any_per_minute(given: object) -> bool:

@@ -24,8 +24,8 @@ from frbcli.case.rules.faults import MISSING, UNKNOWN, objections, with_nearest_
 from frbcli.case.schema import Case
 from frbcli.case.surroundings.places import machine_breaches
 from frbcli.errors import Fault, InputError
-from frbcli.results.files.kinds import RUN_BEGINS
 from frbcli.results.files.named import NoFile, NoText, Unreadable, begins_with, text_of
+from frbcli.results.files.write import RUN_BEGINS
 
 _Set = Callable[[Mapping[str, Any]], tuple[dict[str, Any], KeyPath]]  # sets one key; raises TomlFault
 

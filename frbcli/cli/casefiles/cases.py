@@ -7,8 +7,8 @@ from pathlib import Path
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.completion import complete_key
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, forced
+from frbcli.cli.options import complete_key
 
 
 @click.command()
@@ -70,8 +70,7 @@ def _list(terminal: Terminal) -> None:
 
 def _write(text: str, output: Path) -> None:
     """Write a case to a new file, with --force to any."""
-    from frbcli.results.files.kinds import NEW
-    from frbcli.results.files.write import write
+    from frbcli.results.files.write import NEW, write
 
     check_outputs((output, NEW))
     write(output, NEW, text, forced())

@@ -7,9 +7,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from frbcli.cli.bearings.heat import heat_document, show_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
-from frbcli.cli.machines.stability_table import reduction_document, show_reduction
+from frbcli.cli.machines.static_tables import heat_document, reduction_document, show_heat, show_reduction
 from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
@@ -102,7 +101,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
 
 def _check_thrust(case: Case, listed: Sequence[ListedValue], everything: bool, terminal: Terminal) -> None:
     """What `frb thrust` models of a case of thrust bearings alone."""
-    from frbcli.linear.thrust.faults import require_sheet
+    from frbcli.linear.sheets.thrust_faults import require_sheet
     from frbcli.scene.planning.plan import thrust_plan
 
     if everything:
@@ -129,8 +128,8 @@ def _check_balls(case: Case, listed: Sequence[ListedValue], everything: bool, te
 
 def _axial(case: Case) -> dict[str, object]:
     """The collar under its axial load at the top speed, for JSON; the plan shows it on the terminal."""
-    from frbcli.linear.thrust.axial import axial_state
-    from frbcli.linear.thrust.columns import AXIAL
+    from frbcli.linear.columns import AXIAL
+    from frbcli.linear.sheets.thrust import axial_state
     from frbcli.scene.gate.rule import run_omega
 
     return document(AXIAL, axial_state(case, run_omega(case)))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import click
 
 from frbcli.cli.common import SETTING, Terminal, output_options
-from frbcli.cli.completion import complete_case, complete_key
+from frbcli.cli.options import complete_case, complete_key
 from frbcli.cli.progress import display
 
 
@@ -23,7 +23,7 @@ def command(sources: tuple[str, ...], settings: tuple[str, ...], jobs: int | Non
     with display(terminal) as shown:
         shown.line("Looking for the kernels; those that are missing are compiled, once.")
         from frbcli.case.reading.load import load_case
-        from frbcli.studies.kernels.warm_up import warm_up
+        from frbcli.studies.warm_up import warm_up
 
         cases = [load_case(source, settings) for source in sources]
         built = warm_up(cases, jobs or -1, lambda what, number, count: shown.line(f"{number} of {count}: {what}"))

@@ -1,1 +1,1 @@
-"""Commands for the machine about its static equilibrium: stability, modes, response, limit cycles."""
+"""Commands for bearings, and for the machine about its static equilibrium: stability, modes, response, limit cycles."""

@@ -18,9 +18,9 @@ from frbcli.columns import document, documents, table_of
 
 if TYPE_CHECKING:
     from frbcli.case.schema import Case
-    from frbcli.cycles.maps.stability_map import StabilityMap
     from frbcli.cycles.result import CyclePoint, LimitCycles, UnbalancedWhirl
-    from frbcli.plot.spectra.orders import RunTrack
+    from frbcli.cycles.stability_map import StabilityMap
+    from frbcli.plot.curves import RunTrack
     from frbcli.plot.style import Picture
     from frbcli.scene.cost import Kernels
 
@@ -83,8 +83,7 @@ def command(
     Limit cycles, stable or not, are without unbalance. The synchronous response with unbalance is shown next to them,
     and with --with-unbalance the whirls that lock in with it.
     """
-    from frbcli.cycles.limit_cycles import limit_cycles
-    from frbcli.cycles.over_key import limit_cycles_over
+    from frbcli.cycles.limit_cycles import limit_cycles, limit_cycles_over
 
     _check_range(varied)
     over, key, low, high = varied.over, varied.key, varied.low, varied.high
@@ -138,7 +137,7 @@ def _map(
     places: Outputs,
 ) -> None:
     """Map over the speed or a first number (key, from, to, speed in Hz), and a second one (key, from, to, points)."""
-    from frbcli.cycles.maps.stability_map import Across, stability_map
+    from frbcli.cycles.stability_map import Across, stability_map
     from frbcli.scene.films import film_places
 
     across = None if first is None else Across(*first)
@@ -208,7 +207,7 @@ def _map_document(names: tuple[str, ...], chart: StabilityMap) -> dict[str, obje
 
 def _tracks(path: Path) -> tuple[RunTrack, ...]:
     """The way up of a run, and the way down if it has one."""
-    from frbcli.plot.spectra.orders import run_tracks
+    from frbcli.plot.curves import run_tracks
     from frbcli.results.store import read_run
 
     return run_tracks(read_run(path), path.stem)

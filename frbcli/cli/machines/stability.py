@@ -1,36 +1,48 @@
-"""`frb stability`: static equilibria, linear coefficients, eigenvalues over speed, threshold speed."""
+"""`frb stability`: static equilibria, linear coefficients, eigenvalues over speed, threshold speed; natural frequencies
+and damped mode shapes of a rotor."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import asdict
+from dataclasses import asdict, replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from frbcli.cli.bearings.heat import heat_document, show_heat
 from frbcli.cli.common import Terminal, case_argument, output_options
 from frbcli.cli.files import here
-from frbcli.cli.machines.modes import emit_modes, emit_shapes, modes_document, show_modes
-from frbcli.cli.machines.stability_table import (
+from frbcli.cli.machines.static_tables import (
+    heat_document,
     reduction_document,
     show_coefficient_error,
     show_collar,
+    show_heat,
+    show_largest_error,
     show_points,
     show_reduction,
 )
 from frbcli.cli.options import REST_OPTION, SPEED_OPTION, STIFFNESS_OPTION, speeds_option
-from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.outputs import OutputOptions, outputs_options, picture_of
 from frbcli.cli.progress import computing
+from frbcli.columns import document, documents, table_of
 from frbcli.units import PER_MINUTE, SpeedUnit
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from frbcli.case.schema import Case
+    from frbcli.cli.outputs import Outputs
     from frbcli.cycles.explain import ThresholdKind
+    from frbcli.linear.damped_modes import DampedMode
+    from frbcli.linear.modes import Mode, Modes
     from frbcli.linear.stability import Stability
     from frbcli.linear.stability_point import StabilityPoint
     from frbcli.linear.threshold import Threshold
     from frbcli.rotor.reduction import Reduction
+
+LONGEST_TABLE = 13  # rows of the text
+LISTED = 3  # slowest modes of each direction
 
 
 @click.command()
@@ -185,8 +197,7 @@ def _character(kind: ThresholdKind, unit: SpeedUnit) -> str:
 def _point(point: StabilityPoint) -> dict[str, Any]:
     """One point in JSON; a rotor with several films lists them, the first of them at the top as well."""
     from frbcli.columns import document, documents, keys
-    from frbcli.linear.columns import FILM, MODES, POINT, film_columns
-    from frbcli.linear.thrust.columns import AXIAL
+    from frbcli.linear.columns import AXIAL, FILM, MODES, POINT, film_columns
 
     row, films = document(POINT, point), documents(film_columns(point.films), point.films)
     errors = row.pop("error") | (films[0]["error"] if films else {})
@@ -204,3 +215,115 @@ def _point(point: StabilityPoint) -> dict[str, Any]:
         row["problem"] = point.problem
     row["modes"] = documents(MODES, point.modes_with_errors)
     return row | {"eigenvalues": [[value.real, value.imag] for value in point.eigenvalues.tolist()]}
+
+
+def emit_modes(terminal: Terminal, case: Case, stiffness: Any, speeds: Sequence[float], places: Outputs) -> None:
+    """Table, picture and JSON of the rotor, free at rest, then at speeds in Hz: "free", on its "bearings" or on springs
+    of a stiffness in N/m."""
+    from frbcli.linear.modes import natural_modes
+
+    on = None if stiffness == "free" else stiffness
+    tables = [natural_modes(case, None, [0.0]), natural_modes(case, on, speeds or None)]
+    show_free(terminal, tables[0])
+    show_held(terminal, tables[1])
+    drawn = natural_modes(case, on) if len(speeds) == 1 else tables[1]
+    written = places.write(terminal, tables[1], "Natural modes", partial(picture_of, drawn))
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [],
+            "threshold": None,
+            "natural_frequencies": [modes_document(modes) for modes in tables],
+            **written,
+        }
+    )
+
+
+def show_modes(terminal: Terminal, modes: Modes) -> None:
+    """The modes as text: of a free rotor its bending ones at rest, else a table."""
+    (show_held if modes.stiffness_N_m else show_free)(terminal, modes)
+
+
+def show_free(terminal: Terminal, modes: Modes) -> None:
+    """The bending modes of the free rotor at rest, and what is not listed of it."""
+    bending = ", ".join(f"{frequency:.4g}" for frequency in modes.free_Hz[:LISTED])
+    bending_modes = f"bending modes of {bending} Hz at rest" if bending else "it does not bend"
+    terminal.result(f"Free rotor of {modes.mass_kg:.4g} kg: {bending_modes}.")
+    rings = sum(1 for given in modes.case.bearings if len(given.films) > 1)
+    apart = f", and its {rings} rings are apart" if rings > 1 else ", and its ring is apart" if rings else ""
+    terminal.sentence(f"Not listed: {modes.points[0].still} rigid-body motions of 0 Hz{apart}.")
+
+
+def show_held(terminal: Terminal, modes: Modes) -> None:
+    """A table of the modes over the speed."""
+    from frbcli.units import display
+
+    springs = ", ".join(display(spring, "N/m") for spring in dict.fromkeys(modes.stiffness_N_m))
+    every = -(-len(modes.points) // LONGEST_TABLE)
+    rows = [
+        (terminal.speeds.number(point.speed_Hz),
+         *_cells(point.directed("forward")), *_cells(point.directed("backward")))
+        for point in modes.points[::every]
+    ]  # fmt: skip
+    columns = (terminal.speeds.name, *("forward",) * LISTED, *("backward",) * LISTED)
+    on = f"on {springs}" if springs else "of the free rotor"
+    title = f"Natural frequencies {on}: conical, cylindrical, bending"
+    terminal.table(title, columns, rows)
+    if modes.error is not None:
+        missing = 100 * modes.error.frequency
+        kept = f"{modes.kept} modes of each plane"
+        terminal.result(f"The reduction to {kept} changes these frequencies by {missing:.2g} %.")
+
+
+def _cells(modes: Sequence[Mode]) -> list[str]:
+    from frbcli.linear.columns import NATURAL_MODES
+
+    cells = [" ".join(row) for row in table_of(NATURAL_MODES, modes[:LISTED]).cells()]
+    return cells + [""] * (LISTED - len(cells))
+
+
+def modes_document(modes: Modes) -> dict[str, object]:
+    """The modes in JSON."""
+    from frbcli.linear.columns import NATURAL_MODES, REDUCTION
+
+    return {
+        "stiffness_N_m": modes.stiffness_N_m,
+        "mass_kg": modes.mass_kg,
+        "free_bending_Hz": modes.free_Hz,
+        "points": [
+            {"speed_Hz": point.speed_Hz, "modes": documents(NATURAL_MODES, point.modes)} for point in modes.points
+        ],
+        "reduction": document(REDUCTION, modes),
+    }
+
+
+def emit_shapes(terminal: Terminal, case: Case, speed_Hz: float, places: Outputs) -> None:
+    """Table, picture and JSON of the modes of a rotor in its films at a speed in Hz."""
+    from frbcli.linear.damped_modes import damped_modes
+
+    with computing(terminal, case, kernels="rest"):
+        shapes = damped_modes(case, speed_Hz)
+    terminal.show(f"Damped modes at {terminal.speeds.words(speed_Hz)}", shapes.table())
+    if not shapes.modes:
+        terminal.result("No mode oscillates.")
+        places = replace(places, picture=None)
+    show_largest_error(terminal, [(shapes.coefficient_error, speed_Hz)])
+    modes, motions = shapes.table().documents(), [_motion(shapes.points, mode) for mode in shapes.modes]
+    terminal.emit(
+        {
+            "command": "stability",
+            "case": case.name,
+            "points": [],
+            "threshold": None,
+            "speed_Hz": speed_Hz,
+            "error": {"coefficients_relative": shapes.coefficient_error},
+            "modes": [mode | {"motion": motion} for mode, motion in zip(modes, motions, strict=True)],
+            **places.write(terminal, shapes, "mode shapes"),
+        }
+    )
+
+
+def _motion(points: tuple[str, ...], mode: DampedMode) -> list[dict[str, object]]:
+    named = zip(points, mode.motion, strict=True)
+    return [{"point": name, "x": [x.real, x.imag], "y": [y.real, y.imag]} for name, (x, y) in named]

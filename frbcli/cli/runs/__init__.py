@@ -1,1 +1,1 @@
-"""Run-up and run-down: progress, compiling, memory."""
+"""Run-up and run-down; pictures, tables and pages of a run."""

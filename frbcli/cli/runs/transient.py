@@ -12,8 +12,7 @@ import click
 
 from frbcli.cli.common import Terminal, case_argument, output_options, wrapped
 from frbcli.cli.files import OUTPUT, check_outputs, force_option, here, next_to
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import gathered
+from frbcli.cli.options import gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, LONGEST_LEFT_s, computing, display, progress_line
 from frbcli.columns import table_of
@@ -94,8 +93,7 @@ def transient(command: str, run_case: Transient, case: Case, options: RunOptions
     """Run a case with progress on the terminal, report, and return the exit code."""
     from frbcli.results.store import check_output
     from frbcli.runs.errors.second_run import SECOND_RUN
-    from frbcli.runs.record.wear import INTERRUPTED, standing_run
-    from frbcli.runs.run import run_cost
+    from frbcli.runs.run import INTERRUPTED, run_cost, standing_run
 
     path = options.output or here(case.name, ".h5")
     check_output(path)
@@ -172,7 +170,7 @@ def _watch(terminal: Terminal, shown: Display) -> Observer:
 
 def _verified(case: Case, run: Run, terminal: Terminal) -> dict[str, Any]:
     """The change in a finer run, as text and as part of the JSON document."""
-    from frbcli.studies.differences import verify
+    from frbcli.studies.accuracy import verify
 
     try:
         with display(terminal) as shown:

@@ -85,15 +85,14 @@ def command(
     with the same columns; --x a,b takes several probes.
     """
     from frbcli.balancing.balance import TrialRun, balance
-    from frbcli.case.course.run import given_speed_unit
-    from frbcli.results.files.kinds import TABLES
+    from frbcli.case.course.run import speed_unit_of
+    from frbcli.results.files.write import TABLES
 
     check_outputs((csv, TABLES["csv"]))
     with display(terminal, READING):
         run = _recorded(run_file, measurement, terminal)
         tried = [TrialRun(plane, _recorded(file, measurement, terminal), *given) for plane, file, *given in trials]
-    if run.case_text:
-        terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
+    terminal = terminal.with_speeds_in(speed_unit_of(run))
     with _progress(terminal, run, tried):
         balancing = balance(run, planes, speeds or None, points or None, tried, triggered)
     _show(terminal, balancing)

@@ -78,8 +78,7 @@ def command(
     neither oil nor gas.
     """
     from frbcli.scene.planning.kinematic_plan import TESTS, with_model
-    from frbcli.studies.compare import compare
-    from frbcli.studies.comparison_columns import HEAT
+    from frbcli.studies.compare import HEAT, compare
 
     if isinstance(case, Path) or file is not None:
         if not isinstance(case, Path) or file is None or any(vars(models).values()) or test != "runup" or keep:
@@ -112,7 +111,7 @@ def command(
 
 def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, terminal: Terminal) -> int:
     """A kinematic test with several models; their films all have finite length."""
-    from frbcli.cli.bearings.kinematic import run_test
+    from frbcli.cli.machines.kinematic import run_test
     from frbcli.film.cavitation.table import laws, names
 
     for option, given, problem in (
@@ -127,9 +126,9 @@ def _kinematic(case: Case, test: str, wanted: Models, outputs: OutputOptions, te
 
 
 def _report(comparison: Comparison, couplings: bool, terminal: Terminal) -> None:
-    from frbcli.studies.comparison_columns import COUPLINGS, MODELS
+    from frbcli.studies.compare import COUPLING_TABLE, MODELS
 
-    name, table = COUPLINGS if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
+    name, table = COUPLING_TABLE if couplings else MODELS, comparison.table().with_speeds_in(terminal.speeds)
     rows = table.cells(name)
     if couplings and len({(result.variant.cavitation, result.variant.theory) for result in comparison.results}) > 1:
         rows = [(f"{result.variant.cavitation}\n{result.variant.theory}\n{coupling}", *rest)
@@ -148,7 +147,7 @@ def beside_measured(
     outputs: OutputOptions,
 ) -> None:  # fmt: skip
     """Tables, picture and JSON of a run and a measurement."""
-    from frbcli.case.course.run import given_speed_unit
+    from frbcli.case.course.run import speed_unit_of
     from frbcli.results.store import read_run
     from frbcli.studies.against import DEVIATIONS, against_measured
 
@@ -156,7 +155,7 @@ def beside_measured(
     with display(terminal):
         run = read_run(run_file)
         comparison = against_measured(run, run_of(file, measurement, terminal), signal)
-    terminal = terminal.with_speeds_in(given_speed_unit(run.case_text))
+    terminal = terminal.with_speeds_in(speed_unit_of(run))
     _show(terminal, comparison)
     terminal.emit(
         {

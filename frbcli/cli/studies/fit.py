@@ -53,7 +53,7 @@ def command(
     """Find numbers of CASE with which its run-up agrees with a measured one: synchronous amplitudes, frequency and
     amplitude of the whirl, its onset."""
     from frbcli.case.reading.listing import values as listed
-    from frbcli.results.files.kinds import NEW
+    from frbcli.results.files.write import NEW
     from frbcli.studies.fit import fit
     from frbcli.units import display as with_unit
 

@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from frbcli.cli.common import Terminal, output_options
-from frbcli.cli.completion import complete_case
 from frbcli.cli.files import INPUT, OUTPUT_FOLDER, check_outputs, force_option, forced, here
-from frbcli.cli.looks import look_options
-from frbcli.cli.options import SPEED_OPTION, gathered
+from frbcli.cli.options import SPEED_OPTION, complete_case, gathered, look_options
 from frbcli.cli.outputs import draw, picture_switch
 from frbcli.cli.progress import Display, display
 from frbcli.cli.runs.transient import ENDED_EARLY, EXIT_CODES
@@ -25,7 +23,7 @@ from frbcli.units import SpeedUnit
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-    from frbcli.studies.sweep.distributions import Distribution
+    from frbcli.studies.sweep.points import Distribution
     from frbcli.studies.sweep.sweep import Sweep, SweepPoint
 
 LONGEST_TABLE = 40  # points of the printed table; its file and JSON have all
@@ -61,7 +59,7 @@ class Machines:
     def points(self, distributions: Sequence[Distribution], others: object) -> Sequence[Mapping[str, str]]:
         """The machines. others: keys with several values, or a list of points, with which nothing can scatter. Raises
         InputError."""
-        from frbcli.studies.sweep.distributions import read_correlation, samples
+        from frbcli.studies.sweep.points import read_correlation, samples
 
         if others:
             problem, remedy = "gives several values while other keys scatter.", "Sweep each of its values by itself."
@@ -145,7 +143,7 @@ def command(
 
 def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
     """Other settings, and the distributions of the keys that scatter."""
-    from frbcli.studies.sweep.distributions import read_distribution
+    from frbcli.studies.sweep.points import read_distribution
 
     others: list[str] = []
     distributions: dict[str, Distribution] = {}
@@ -164,7 +162,7 @@ def _scattered(settings: Sequence[str]) -> tuple[list[str], list[Distribution]]:
 def _check_places(table: Path, picture: Path | None) -> None:
     """Raises InputError if the results of a sweep cannot be written into a directory that is there already."""
     if table.parent.is_dir():  # else it is made, or that is refused
-        from frbcli.results.files.kinds import TABLES
+        from frbcli.results.files.write import TABLES
 
         check_outputs((table, TABLES[table.suffix[1:]]), picture=picture)
 
@@ -248,7 +246,7 @@ def _report(swept: Sweep, terminal: Terminal) -> None:
 
 
 def _picture(swept: Sweep, target: Path, terminal: Terminal) -> Path | None:
-    from frbcli.plot.studies.sweep import can_draw, sweep_figure
+    from frbcli.plot.sweep import can_draw, sweep_figure
 
     if not can_draw(swept):
         terminal.remark("No picture: it needs one or two keys with several values, and a point with a whirl.")
@@ -284,7 +282,7 @@ def of_machines(
         terminal.result(f"{seen.left_out} machines without a known result are left out.")
     drawn = None
     if target is not None:
-        from frbcli.plot.studies.sweep import scatter_figure
+        from frbcli.plot.sweep import scatter_figure
 
         drawn = draw(terminal, lambda: scatter_figure(swept.case.heading, seen), target)
     percentiles = [{"percent": percent, "speed_Hz": speed} for percent, speed in seen.percentiles]

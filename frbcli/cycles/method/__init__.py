@@ -1,1 +1,1 @@
-"""Equations of equilibria and cycles, their continuation and stability."""
+"""The machine, its equations of equilibria and cycles, their continuation and stability."""

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from frbcli.arrays import Array, Complex
-from frbcli.cycles.parts.machine import Loads, Machine, film_loads, transfer
+from frbcli.cycles.method.machine import Loads, Machine, film_loads, transfer
 
 SAMPLES_PER_HARMONIC, FEWEST_SAMPLES = 6, 64
 

@@ -15,8 +15,8 @@ from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import unpacked
 from frbcli.cycles.method.continuation import Equations
 from frbcli.cycles.method.floquet import Multipliers
-from frbcli.cycles.parts.machine import Machine
-from frbcli.cycles.parts.states import StateSpace, reduced_space, state_space
+from frbcli.cycles.method.machine import Machine
+from frbcli.cycles.method.states import StateSpace, reduced_space, state_space
 from frbcli.cycles.result import SPEED, hertz
 
 EquationsOf = Callable[[Machine], Equations]  # of one machine, y ending with the speed of its rotor over the pace

@@ -14,8 +14,8 @@ import numpy as np
 
 from frbcli.arrays import Array, Complex
 from frbcli.cycles.method.balance import loads_along, unpacked
-from frbcli.cycles.parts.machine import Machine, film_loads
-from frbcli.cycles.parts.states import StateSpace
+from frbcli.cycles.method.machine import Machine, film_loads
+from frbcli.cycles.method.states import StateSpace
 from frbcli.rotor.loads import largest_first
 
 NODES = np.array([(4.0 - 6.0**0.5) / 10.0, (4.0 + 6.0**0.5) / 10.0, 1.0])

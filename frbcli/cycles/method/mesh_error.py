@@ -25,10 +25,9 @@ from frbcli.cycles.method.continuation import (
     unit_vector,
 )
 from frbcli.cycles.method.courses import MachineCourse
-from frbcli.cycles.method.cycle import FOLD, Cycle, eccentricities, passed_rest
 from frbcli.cycles.method.equilibria import HopfPoint, settled
-from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.parts.machine import Machine
+from frbcli.cycles.method.follower import FOLD, Cycle, Follower, eccentricities, passed_rest
+from frbcli.cycles.method.machine import Machine
 from frbcli.equilibrium.coefficients import LEAST
 from frbcli.equilibrium.static_films import other_plans, share_of_cells
 from frbcli.film.grid import Mesh

@@ -14,7 +14,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.cycles.branch import AT_REST, LEFT
 from frbcli.cycles.method.continuation import halved_until
-from frbcli.cycles.method.cycle import ASKED, FLIP, FOLD, TORUS
+from frbcli.cycles.method.follower import ASKED, FLIP, FOLD, TORUS
 from frbcli.cycles.shooting.shots import Rest, Shooting, Shot
 
 FIRST, SHORTEST, LONGEST = 0.05, 1e-3, 0.1  # steps along a branch

@@ -18,7 +18,7 @@ import numpy as np
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable, unit_vector
-from frbcli.cycles.method.cycle import FOLD
+from frbcli.cycles.method.follower import FOLD
 from frbcli.cycles.shooting.fixed_point import NOISE, SlowSpace
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map
 from frbcli.cycles.shooting.shots import Shooting, Shot, both, largest

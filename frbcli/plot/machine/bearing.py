@@ -1,4 +1,5 @@
-"""The sheet of a bearing over rotor speed or eccentricity: position, coefficients, loss and flow, pressure."""
+"""The sheet of a bearing over rotor speed or eccentricity: position, coefficients, loss and flow, pressure; the sheet
+of ball bearings: stiffness and largest pressures over speed, or over the load."""
 
 from __future__ import annotations
 
@@ -10,8 +11,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.linear.bearing_sheet import ECCENTRICITY, BearingSheet
-from frbcli.linear.film_state import FilmState
+from frbcli.linear.sheets.ball import BallSheet, BallState
+from frbcli.linear.sheets.bearing import ECCENTRICITY, BearingSheet
+from frbcli.linear.sheets.film_state import FilmState
 from frbcli.plot.style import COLOURS, legend_above, new_figure, plain_numbers, styled
 
 Reading = Callable[[FilmState], float]
@@ -20,6 +22,7 @@ MARKERS = ("o", "s", "^", "D")  # likewise, of a sheet of one point, through whi
 ZERO_CELSIUS = 273.15
 AXES = ("xx", "xy", "yx", "yy")
 UNLIKE = 30.0  # ratio of the largest coefficients of two films from which on no even scale shows both
+PRESSURES = (("inner ring", "inner_p_max"), ("outer ring", "outer_p_max"))
 
 
 def bearing_figure(sheet: BearingSheet) -> Figure:
@@ -117,3 +120,30 @@ def _entry(name: str, index: int, scale: float) -> Reading:
         return scale * float(np.ravel(getattr(state, name))[index])
 
     return read
+
+
+def ball_figure(sheet: BallSheet) -> Figure:
+    """Stiffness and Hertz pressure of the first bearing over the number of which the sheet has several values."""
+    states = [state for state in sheet.of(sheet.bearings[0]) if state.stiffness is not None]
+    over_load = len({state.speed_Hz for state in states}) == 1 < len(states)
+    along = [_load(state) if over_load else state.speed_Hz for state in states]
+    name = " ".join(filter(None, ("ball bearing", sheet.bearings[0])))
+    with styled():
+        figure = new_figure(sheet.case.heading, name, width=9.6, height=4.6)
+        stiffness, pressure = figure.subplots(1, 2)
+        radial = np.array([state.stiffness for state in states]).reshape(-1, 2, 2)
+        axial = np.array([state.axial_stiffness for state in states])
+        curves = {"xx": radial[:, 0, 0], "yy": radial[:, 1, 1], "axial": axial}
+        for number, (label, values) in enumerate(curves.items()):
+            stiffness.plot(along, 1e-6 * values, color=COLOURS[number], marker=".", label=label)
+        for number, (label, quantity) in enumerate(PRESSURES):
+            pressures = [1e-6 * getattr(state, quantity) for state in states]
+            pressure.plot(along, pressures, color=COLOURS[number], marker=".", label=label)
+        for panel, label in ((stiffness, "stiffness in N/µm"), (pressure, "largest pressure in MPa")):
+            panel.set(xlabel="load in N" if over_load else "rotor speed in Hz", ylabel=label, ylim=(0.0, None))
+            panel.legend(loc="lower right" if panel is pressure else "best")
+    return figure
+
+
+def _load(state: BallState) -> float:
+    return math.hypot(*state.load)

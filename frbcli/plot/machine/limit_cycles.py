@@ -12,7 +12,7 @@ from scipy.interpolate import PchipInterpolator
 
 from frbcli.arrays import Array, Truths
 from frbcli.cycles.result import SPEED, CycleBranch, CyclePoint, LimitCycles, SpecialPoint
-from frbcli.plot.spectra.orders import RunTrack
+from frbcli.plot.curves import RunTrack
 from frbcli.plot.style import (
     BAND,
     BLACK,

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from frbcli.cycles.maps.stability_map import BAUTIN, CUSP, MapCurve, StabilityMap
 from frbcli.cycles.result import SPEED, SUBCRITICAL, SUPERCRITICAL
+from frbcli.cycles.stability_map import BAUTIN, CUSP, MapCurve, StabilityMap
 from frbcli.plot.style import (
     BLACK,
     BLUE,

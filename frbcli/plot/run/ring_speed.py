@@ -15,12 +15,10 @@ from frbcli.case.reading.load import load_case_text
 from frbcli.equilibrium.ring_speed import concentric_ratios
 from frbcli.errors import InputError
 from frbcli.plot.curves import Over, curves_figure, draw_curves
-from frbcli.plot.run.envelope import extremes
-from frbcli.plot.signals import case_tables, ends
+from frbcli.plot.signals import case_tables, ends, extremes
 from frbcli.plot.style import GREY
 from frbcli.results.files.container import refuse
-from frbcli.results.records import SPEED
-from frbcli.results.signals import Signal
+from frbcli.results.records import SPEED, Signal
 from frbcli.results.store import Run
 
 SLOWEST = 0.02  # share of the highest rotor speed below which the ratio is not drawn

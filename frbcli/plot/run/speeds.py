@@ -13,12 +13,11 @@ from numpy.typing import NDArray
 from scipy.signal import resample_poly
 
 from frbcli.analysis.signals import located, speed_at
-from frbcli.analysis.spectra.spectrum import Spectrogram
+from frbcli.analysis.spectrum import Spectrogram
 from frbcli.plot.signals import MICRO, bearing_of, cut, ends, motion, shell
-from frbcli.plot.spectra.waterfall import orders
 from frbcli.plot.style import BLUE, GREY, NotebookFigure, styled
-from frbcli.results.records import SPEED
-from frbcli.results.signals import Signal, pieces
+from frbcli.plot.waterfall import orders
+from frbcli.results.records import SPEED, Signal, pieces
 from frbcli.results.store import Run
 
 Values = NDArray[np.float64]

@@ -11,11 +11,9 @@ from matplotlib.ticker import MaxNLocator
 
 from frbcli.analysis.orders.subsynchronous import whirl_names
 from frbcli.analysis.signals import films, joined, points
-from frbcli.case.course.run import given_speed_unit
-from frbcli.plot.run.eccentricity import draw_distances, draw_eccentricity
-from frbcli.plot.run.envelope import curve
-from frbcli.plot.signals import ends, events, heading, is_searchable, uncertain_times
-from frbcli.plot.spectra.waterfall import draw_levels, level_label, reading, run_spectra
+from frbcli.case.course.run import speed_unit_of
+from frbcli.plot.run.motion import draw_distances, draw_eccentricity
+from frbcli.plot.signals import curve, ends, events, heading, is_searchable, uncertain_times
 from frbcli.plot.style import (
     BAND,
     BLACK,
@@ -29,6 +27,7 @@ from frbcli.plot.style import (
     set_title,
     styled,
 )
+from frbcli.plot.waterfall import draw_levels, level_label, reading, run_spectra
 from frbcli.results.columns import touching_name
 from frbcli.results.records import SPEED
 from frbcli.results.store import Run
@@ -60,7 +59,7 @@ def summary_figure(run: Run) -> Figure:
     """
     begin, end = ends(run)
     title, subtitle = heading([run])
-    marked = _marks(events(run), given_speed_unit(run.case_text))
+    marked = _marks(events(run), speed_unit_of(run))
     words = [subtitle]
     if not run.events and not is_searchable(run):
         words.append("too long for a search for events")

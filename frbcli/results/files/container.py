@@ -21,8 +21,7 @@ from pathlib import Path
 from typing import BinaryIO
 
 from frbcli.errors import Fault, RunFileError
-from frbcli.results.files.kinds import RUN, RUN_BEGINS
-from frbcli.results.files.write import written, wrong_place
+from frbcli.results.files.write import RUN, RUN_BEGINS, written, wrong_place
 
 MAGIC = RUN_BEGINS + b"1 "
 REMEDY = "Free some space and continue with --resume, or choose another place with -o."

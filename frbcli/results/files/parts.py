@@ -16,7 +16,7 @@ import h5py
 import numpy as np
 from h5py import h5d, h5l
 
-from frbcli.results.signals import RunPlace, Stored
+from frbcli.results.records import RunPlace, Stored
 
 LARGEST_TEXT = 2 * 1024**2  # characters
 MOST_PARTS = 500  # of a group

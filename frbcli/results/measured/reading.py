@@ -15,9 +15,8 @@ from frbcli.arrays import Array
 from frbcli.errors import InputError, printable
 from frbcli.results.files.named import Unreadable, require_file
 from frbcli.results.measured.columns import LARGEST_FILE, Columns, is_interval, wrong_file
-from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table
+from frbcli.results.measured.delimited import MOST_COLUMNS, DelimitedTable, NoTable, read_table, seconds
 from frbcli.results.measured.mat import read_mat
-from frbcli.results.measured.time_stamps import seconds
 from frbcli.results.records import MOST_SAMPLES
 
 READABLE = (ValueError, OSError, NotImplementedError, Warning)  # whose words a reader of the file is meant to read

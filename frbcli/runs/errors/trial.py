@@ -53,7 +53,7 @@ def tried_error(case: Case, trial: Trial) -> TriedError | None:
 
 def _difference(case: Case, trial: Trial) -> float:
     """Largest difference of the eccentricities of both runs; NaN if one of them does not reach the end."""
-    from frbcli.runs.errors.cell_errors import FewerCells  # a difference that is kept on disk needs no time loop
+    from frbcli.runs.errors.error_budget import FewerCells  # a difference that is kept on disk needs no time loop
     from frbcli.runs.march import March
     from frbcli.scene.machine.system import make_segments
 

@@ -11,7 +11,7 @@ from frbcli.arrays import Array
 from frbcli.results.files.container import refuse
 from frbcli.results.records import SPEED as SPEED_SIGNAL
 from frbcli.results.records import TIME as TIME_SIGNAL
-from frbcli.results.signals import pieces
+from frbcli.results.records import pieces
 from frbcli.results.store import Run
 from frbcli.rotor.loads import SpeedProfile
 from frbcli.solve.state import NUMBERS, OUTPUTS, PIECE, RUN_END, STEP, STEP_DONE, TIME, State

@@ -21,16 +21,24 @@ from frbcli import __version__
 from frbcli.case.schema import Case
 from frbcli.columns import Column, Shown, Table, Tabular, table_of
 from frbcli.errors import InputError
-from frbcli.results.files.kinds import MARK, TABLES
 from frbcli.results.files.lock import locked
+from frbcli.results.files.write import MARK, TABLES, written
 from frbcli.results.files.write import write_table as write_csv
-from frbcli.results.files.write import written
 from frbcli.scene.planning.plan import make_plan
-from frbcli.studies.kernels.short_analyses import machine_kernels, moment_of_run
-from frbcli.studies.sweep.log import append, open_log
 from frbcli.studies.sweep.points import Settings, checked, grid, refused
-from frbcli.studies.sweep.task import INPUT_ERROR, INTERRUPTED, METHODS, SweepPoint, Task, one_line, solve
+from frbcli.studies.sweep.task import (
+    INPUT_ERROR,
+    INTERRUPTED,
+    METHODS,
+    SweepPoint,
+    Task,
+    append,
+    one_line,
+    open_log,
+    solve,
+)
 from frbcli.studies.sweep.workers import Workers, check_workers, solved
+from frbcli.studies.warm_up import machine_kernels, moment_of_run
 from frbcli.units import HERTZ, SpeedUnit
 
 __all__ = ["Observer", "Sweep", "SweepPoint", "Workers", "check_table_format", "sweep", "write_table"]

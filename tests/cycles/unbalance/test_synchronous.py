@@ -12,7 +12,7 @@ from cycle_machines import machine_of
 
 import frbcli
 from frbcli.cli.main import run as frb
-from frbcli.cycles.parts.machine import driven_motions
+from frbcli.cycles.method.machine import driven_motions
 
 SHORT = "film.theory=short"
 

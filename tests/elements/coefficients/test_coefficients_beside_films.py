@@ -124,7 +124,7 @@ def test_a_table_of_ross_2_and_3_is_read(key: str, tmp_path: Path) -> None:
 
 
 def test_the_file_of_a_bearing_sheet_and_a_csv_give_the_same(tmp_path: Path) -> None:
-    from frbcli.linear.bearing_sheet import bearing_sheet
+    from frbcli.linear.sheets.bearing import bearing_sheet
     from frbcli.results.export import write_ross
 
     sheet = bearing_sheet(in_film(), [40.0, 80.0, 120.0])
@@ -210,7 +210,7 @@ def test_what_is_of_films_alone_is_refused_without_films(tables: dict[str, Any],
 
 
 def test_studies_of_films_are_refused_without_films() -> None:
-    from frbcli.linear.bearing_sheet import bearing_sheet
+    from frbcli.linear.sheets.bearing import bearing_sheet
 
     case = rigid(bearing())
     for asked in (frbcli.limit_cycles, bearing_sheet):

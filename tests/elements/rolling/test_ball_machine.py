@@ -16,7 +16,7 @@ from frbcli.case.reading.load import case_from_dict
 from frbcli.elements.rolling.ball import BallBearingElement, BallForce
 from frbcli.elements.rolling.plain import solve_plain
 from frbcli.errors import InputError
-from frbcli.linear.rolling.sheet import ball_bearing_sheet
+from frbcli.linear.sheets.ball import ball_bearing_sheet
 from frbcli.linear.stability import stability
 from frbcli.rotor.loads import speed_profile
 from frbcli.rotor.port import ANSWER

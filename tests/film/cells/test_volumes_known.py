@@ -11,7 +11,7 @@ from scipy.integrate import quad, solve_ivp
 from scipy.optimize import brentq
 from volume_films import AMBIENT, ROTATION, section_of
 
-from frbcli.bearing_tests.march import march
+from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.conditions import Elrod, Reynolds, Sommerfeld
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import TwoPhase

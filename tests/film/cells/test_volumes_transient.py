@@ -10,8 +10,8 @@ import pytest
 from paths import DATA
 from volume_films import AMBIENT, CLEARANCE, RADIUS, VISCOSITY, WIDTH, section_of
 
-from frbcli.bearing_tests import march as marching
-from frbcli.bearing_tests.march import Moment, march
+from frbcli.bearing_tests import history as marching
+from frbcli.bearing_tests.history import Moment, march
 from frbcli.errors import NotConverged
 from frbcli.film.cavitation.conditions import Elrod, HalfSommerfeld, Reynolds
 from frbcli.film.cavitation.law import Law

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from frbcli import load_case
-from frbcli.bearing_tests.march import march, whirl_path
+from frbcli.bearing_tests.history import march, whirl_path
 from frbcli.case.schema import Case
 from frbcli.film.cells.balance.boundaries import ALL, RESPONSE, supply_line
 from frbcli.film.cells.film import VolumeFilm

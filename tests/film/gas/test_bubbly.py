@@ -10,7 +10,7 @@ import pytest
 from volume_films import ROTATION, section_of
 
 import frbcli
-from frbcli.bearing_tests.march import Moment, march, squeeze_path
+from frbcli.bearing_tests.history import Moment, march, squeeze_path
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.compiled import CARRIED_GAS, LAW_NUMBERS, TURNOVER
 from frbcli.film.cavitation.conditions import Elrod

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from volume_films import section_of
 
-from frbcli.bearing_tests.march import march
+from frbcli.bearing_tests.history import march
 from frbcli.film.cavitation.bubbly import Bubbly
 from frbcli.film.cavitation.law import Law
 from frbcli.film.cavitation.two_phase import Peeken

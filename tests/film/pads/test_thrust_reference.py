@@ -11,7 +11,7 @@ from paths import DATA
 
 from frbcli.case.reading.load import case_from_dict
 from frbcli.case.schema import Case
-from frbcli.linear.thrust.sheet import thrust_sheet
+from frbcli.linear.sheets.thrust import thrust_sheet
 
 REFERENCE_ERROR = 3e-4
 ROWS = list(csv.DictReader((DATA / "thrust-tapered-land.csv").read_text(encoding="utf-8").splitlines()))

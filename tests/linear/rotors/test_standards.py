@@ -13,8 +13,8 @@ import pytest
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
-from frbcli.linear.standards.balance_quality import balance_quality, permissible_unbalance
-from frbcli.linear.standards.vibration import api_limit, required_margin, vibration_limits, zone_limits
+from frbcli.linear.balance_quality import balance_quality, permissible_unbalance
+from frbcli.linear.vibration import api_limit, required_margin, vibration_limits, zone_limits
 
 TURN = 2.0 * math.pi
 

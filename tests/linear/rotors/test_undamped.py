@@ -13,7 +13,7 @@ import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.main import run as frb
 from frbcli.linear.stability import stability
-from frbcli.plot.machine.campbell import campbell_figure
+from frbcli.plot.machine.modes import campbell_figure
 
 SPEED = {"from": "1 Hz", "to": "80 Hz", "duration": "1 s"}
 

@@ -1,1 +1,0 @@
-"""Tests of films that are not solved on cells: the short bearing."""

@@ -1,1 +1,0 @@
-"""Commands for bearings and their films."""

@@ -1,0 +1,238 @@
+"""`frb bearing`: the sheet of a bearing over rotor speed or eccentricity; of a case whose bearings have balls and no
+film the sheet of these."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from frbcli.cli.common import Terminal, case_argument, output_options
+from frbcli.cli.files import OUTPUT, forced, here
+from frbcli.cli.options import LOAD_OPTION, REST_OPTION, speeds_option
+from frbcli.cli.outputs import OutputOptions, outputs_options
+from frbcli.cli.progress import computing, display
+from frbcli.errors import NotConverged
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from frbcli.case.schema import Case
+    from frbcli.linear.sheets.ball import BallSheet
+    from frbcli.linear.sheets.bearing import BearingSheet
+    from frbcli.linear.sheets.film_state import FilmState
+
+FEW_POINTS, SCREEN_ROWS = 2, 8  # points that are always shown in full; rows of all films on one screen
+EXPLANATION = (
+    "{}. Errors of stiffness and damping are over their largest entry. The rise is with {:.4g} kg/m^3 and "
+    "{:.4g} J/(kg K). All per bearing."
+)
+SETTLED = "Coefficients of mass-conserving films are of oil that has settled; they do not determine stability."
+
+PRESSED = (
+    "{} is pressed into its shell, which keeps a gap of {:.2g} um. Damping in so narrow a gap comes from an arc "
+    "shorter than an element: hence its error, and real surfaces are rougher than this gap. Let them touch earlier: "
+    "contact.eccentricity is {:g}, and 0.99 leaves errors of a few per cent."
+)
+
+
+@click.command()
+@case_argument
+@click.option("--over", type=click.Choice(["speed", "eccentricity"]), default="speed", show_default=True,
+              help="Number that is varied; over the eccentricity the load is computed.")  # fmt: skip
+@speeds_option("20 over the range; with --over eccentricity the highest", REST_OPTION)
+@click.option("--load", "loads", type=LOAD_OPTION, multiple=True, metavar="LOAD",
+              help='Load along -y on a single film, e.g. "30 N"; repeatable, on each of ball bearings. '
+              "[the rotor's]")  # fmt: skip
+@click.option("--ross", metavar="FILE", type=OUTPUT,
+              help="Write stiffness and damping over speed as ROSS reads them, a file per film.")  # fmt: skip
+@click.option("--film", metavar="FILM", default=None, help="Show this film alone, with all of its numbers.")
+@click.option("--all", "everything", is_flag=True, help="Show K, C and all speeds of all films. [a short sheet]")
+@outputs_options("CASE-bearing.png, here")
+@output_options
+def command(
+    case: Case,
+    over: str,
+    speeds: tuple[float, ...],
+    loads: tuple[float, ...],
+    ross: Path | None,
+    film: str | None,
+    everything: bool,
+    outputs: OutputOptions,
+    terminal: Terminal,
+) -> int | None:
+    """Static equilibrium, coefficients, power loss, oil flow and pressure of every film of CASE."""
+    from frbcli.errors import NotConverged
+    from frbcli.linear.sheets.bearing import bearing_sheet, sommerfeld_chart
+    from frbcli.linear.sheets.film_state import heat_capacity
+    from frbcli.results.files.write import ROSS
+
+    if not case.bearings and any(bearing.kind == "ball" for bearing in case.elements):
+        if over == "eccentricity" or film is not None:
+            raise click.UsageError("A ball bearing has no film: --over eccentricity and --film are of films.")
+        return ball_sheet(case, speeds, loads, ross, outputs, terminal)
+    if len(loads) > 1:
+        raise click.UsageError("A film has one --load; several are of ball bearings.")
+    if speeds and min(speeds) == 0.0:
+        raise click.UsageError("--speed is 0: a film carries nothing there.")
+    load = loads[0] if loads else None
+    _check_options(over, speeds, load, ross)
+    _check_film(case, film)
+    elements = _ross_files(case, ross)
+    places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
+    with computing(terminal, case, kernels="rest") as shown:
+        if over == "speed":
+            sheet = bearing_sheet(case, speeds or None, load, shown.counting())
+        else:
+            sheet = sommerfeld_chart(case, speed_Hz=speeds[0] if speeds else None, observe=shown.counting())
+    _show(terminal, sheet, (film,) if film is not None else sheet.films, everything or film is not None)
+    _write_ross(terminal, sheet, elements)
+    terminal.emit(
+        {
+            "command": "bearing",
+            "case": case.name,
+            "over": over,
+            "oil_density_kg_m3": case.oil.density,
+            "oil_heat_capacity_J_kg_K": heat_capacity(case),
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
+            "ross": list(elements.values()) or None,
+        }
+    )
+    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
+
+
+def _check_options(over: str, speeds: tuple[float, ...], load: float | None, ross: Path | None) -> None:
+    if over == "eccentricity" and (load is not None or len(speeds) > 1):
+        raise click.UsageError("Over eccentricity there is one --speed and no --load: the load follows from the films.")
+    if over == "eccentricity" and ross is not None:
+        raise click.UsageError("--ross is a table over speed.")
+
+
+def _check_film(case: Case, film: str | None) -> None:
+    from frbcli.errors import did_you_mean
+    from frbcli.scene.films import bearing_films
+
+    names = [place.name for place in bearing_films(case)]
+    if film is not None and film not in names:
+        known = did_you_mean(film, names) if any(names) else "It has one film, without a name."
+        raise click.UsageError(f"--film {film} is not a film of {case.name}. {known}")
+
+
+def _ross_files(case: Case, ross: Path | None) -> dict[str, Path]:
+    """The file for ROSS of each film, if they are asked for."""
+    if ross is None:
+        return {}
+    from frbcli.results.export import ross_files
+    from frbcli.scene.films import bearing_films
+
+    return ross_files(ross, [place.name for place in bearing_films(case)])
+
+
+def _write_ross(terminal: Terminal, sheet: BearingSheet, elements: dict[str, Path]) -> None:
+    from frbcli.results.export import write_ross
+
+    table = sheet.to_pandas()
+    for film, path in elements.items():
+        write_ross(table[table["film"] == film], path, forced())
+        terminal.result(f"ROSS: {path}")
+
+
+def _show(terminal: Terminal, sheet: BearingSheet, films: Sequence[str], full: bool) -> None:
+    """The sheets of some films; not full: without matrices, at so many of the points as fill a screen, unless there are
+    few of them."""
+    from frbcli.columns import legend, table_of, with_speeds_in
+    from frbcli.film.cavitation.table import law_named
+    from frbcli.linear.columns import FILMS, MATRICES, MIXED, WARM
+    from frbcli.linear.sheets.film_state import heat_capacity
+
+    columns, points = with_speeds_in(terminal.speeds, sheet.columns), len(sheet.of(films[0]))
+    full = full or points <= FEW_POINTS
+    rows = points if full else max(FEW_POINTS, SCREEN_ROWS // len(films))
+    for film, label in zip(sheet.films, sheet.labels, strict=True):
+        if film not in films:
+            continue
+        name = " ".join(filter(None, (sheet.case.heading, film)))
+        warm = {} if sheet.case.heat is None else {WARM: "film when everything is warm"}
+        mixed = {MIXED: "mixed friction"} if sheet.case.contact.rough else {}
+        matrices = dict(zip(MATRICES, ("stiffness K in N/um", "damping C in N s/mm"), strict=True))
+        states = table_of(columns, _spread(sheet.of(film), rows))
+        for table, title in ({FILMS: f"{name}, {label}"} | mixed | (warm | matrices if full else {})).items():
+            terminal.show(title, states, table)
+    terminal.sentence(EXPLANATION.format(legend(columns, FILMS), sheet.case.oil.density, heat_capacity(sheet.case)))
+    if sheet.case.contact.rough:
+        terminal.sentence(f"{legend(columns, MIXED)}.")
+    if not full:
+        one = f", --film {films[0]} one film" if len(films) > 1 else ""
+        terminal.sentence(f"--all shows stiffness K, damping C and all {points} points{one}.")
+    if any(law_named(law).keeps_oil for law in sheet.laws):
+        terminal.sentence(SETTLED)
+    if sheet.pressed:
+        state = max(sheet.pressed, key=lambda each: each.error)
+        film = f"The film {state.film}" if state.film else "The film"
+        terminal.sentence(PRESSED.format(film, 1e6 * state.film_thickness_min, sheet.case.contact.eccentricity))
+    problems = [point for point in sheet.points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+
+
+def _spread(states: Sequence[FilmState], rows: int) -> list[FilmState]:
+    """At most so many of the states, evenly spread, with the first and the last one."""
+    if len(states) <= rows:
+        return list(states)
+    return [states[round(number * (len(states) - 1) / (rows - 1))] for number in range(rows)]
+
+
+def ball_sheet(
+    case: Case, speeds: Sequence[float], loads: Sequence[float], ross: Path | None, outputs: OutputOptions,
+    terminal: Terminal,
+) -> int | None:  # fmt: skip
+    """Compute, show and write the sheet; the exit code."""
+    from frbcli.linear.sheets.ball import ball_bearing_sheet
+    from frbcli.results.export import ross_files
+    from frbcli.results.files.write import ROSS
+
+    if ross is not None and len(loads) > 1:
+        raise click.UsageError("--ross is a table over speed, at one load.")
+    names = [bearing.name for bearing in case.elements if bearing.kind == "ball"]
+    elements = ross_files(ross, names) if ross is not None else {}
+    places = outputs.check(here(case.name, "-bearing.png"), *((file, ROSS) for file in elements.values()))
+    with display(terminal) as shown:
+        sheet = ball_bearing_sheet(case, speeds or None, loads, shown.counting())
+    _show_balls(terminal, sheet)
+    _write_ball_ross(terminal, sheet, elements)
+    terminal.emit(
+        {
+            "command": "bearing",
+            "case": case.name,
+            "points": sheet.table().documents(),
+            **places.write(terminal, sheet),
+            "ross": list(elements.values()) or None,
+        }
+    )
+    return None if any(not point.problem for point in sheet.points) else NotConverged.exit_code
+
+
+def _show_balls(terminal: Terminal, sheet: BallSheet) -> None:
+    from frbcli.columns import legend, table_of
+    from frbcli.linear.columns import BALL_SHEET, BALLS, FREQUENCIES, STIFFNESSES
+
+    for bearing in sheet.bearings:
+        name, states = " ".join(filter(None, (sheet.case.heading, bearing))), sheet.of(bearing)
+        titles = {BALLS: f"{name}, balls", STIFFNESSES: "rings, um and N/um", FREQUENCIES: "frequencies, Hz"}
+        for table, title in titles.items():
+            terminal.show(title, table_of(BALL_SHEET, states), table)
+    terminal.sentence(f"{legend(BALL_SHEET, BALLS)}. All per bearing, with one ball in the line of the load.")
+    problems = [point for point in sheet.points if point.problem]
+    if problems:
+        terminal.result(f"No state at {len(problems)} of {len(sheet.points)} points. The first: {problems[0].problem}")
+
+
+def _write_ball_ross(terminal: Terminal, sheet: BallSheet, elements: dict[str, Path]) -> None:
+    from frbcli.results.export import write_ross
+
+    table = sheet.to_pandas().rename(columns={"bearing": "film"})
+    for name, path in elements.items():
+        write_ross(table[table["film"] == name], path, forced())
+        terminal.result(f"ROSS: {path}")

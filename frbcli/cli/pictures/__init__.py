@@ -1,1 +1,0 @@
-"""Commands that make pictures, tables and pages of a run."""

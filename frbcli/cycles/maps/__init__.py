@@ -1,1 +1,0 @@
-"""Stability maps: curves of Hopf points and folds over two numbers."""

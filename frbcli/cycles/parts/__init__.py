@@ -1,1 +1,0 @@
-"""The machine as the equations of cycles take it."""

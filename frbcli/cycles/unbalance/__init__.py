@@ -1,1 +1,0 @@
-"""Motions with unbalance near the branches of limit cycles: synchronous ones, and whirls that lock in."""

@@ -1,1 +1,0 @@
-"""Spectra over time and speed."""

@@ -1,1 +1,0 @@
-"""The kernels of cases, compiled before they are needed."""
