@@ -18,9 +18,10 @@ from unittest.mock import patch
 from frbcli.case.reading.load import load_case
 from frbcli.case.schema import Case
 from frbcli.equilibrium.static_machine import MachineAtRest, StaticMachines
+from frbcli.linear import stability, threshold
 from frbcli.linear.damped_modes import damped_modes
 from frbcli.linear.response import response
-from frbcli.linear.sheets import film_state, stability, threshold
+from frbcli.linear.sheets import film_state
 from frbcli.linear.sheets.bearing import bearing_sheet
 from frbcli.linear.stability_point import point_at_rest
 

@@ -113,7 +113,7 @@ class Field:
 def test_what_cannot_be_named_exactly_is_refused() -> None:
     """The `repr` of a long array leaves numbers out: two would have one name."""
     with pytest.raises(TypeError, match="ndarray"):
-        kept._told((Field(np.zeros(3)),))
+        kept._exact((Field(np.zeros(3)),))
 
 
 def test_a_kept_table_is_that_of_the_solver(folder: Path) -> None:

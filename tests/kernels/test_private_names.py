@@ -27,7 +27,7 @@ def test_numba_reads_a_kernel_without_preparing_itself() -> None:
 
 def test_numba_says_where_the_index_of_a_kernel_is() -> None:
     """Without _cache_file._index_path kernels are kept in memory alone."""
-    cache = FunctionCache(compiled._told)
+    cache = FunctionCache(compiled._composed)
     assert compiled._index_of(cache) is not None
     assert compiled._index_of(object()) is None
 
