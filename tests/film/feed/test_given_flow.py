@@ -152,7 +152,7 @@ def test_the_balance_of_heat_and_the_sheet_have_the_flow_that_is_given() -> None
     ("settings", "analysis", "told"),
     [
         (("film.cavitation=reynolds",), ROTATION, "reynolds does not conserve the oil"),
-        (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without a tilt"),
+        (("film.cavitation=elrod", "motion.tilt=['0.1 mrad', '0 mrad']"), ROTATION, "without tilt"),
         (("film.cavitation=elrod", "bearing.supply.pressure=1 bar"), ROTATION, "not above 1 bar"),
     ],
 )
