@@ -25,6 +25,7 @@ Over = Literal["time", "speed"]
 Span = tuple[float | None, float | None]
 
 HEIGHT = 4.4  # inches of a picture
+APART = 10.0  # ratio of amplitudes by order of which the smaller one is not seen on a common axis
 STANDS = 1e-6  # of the highest speed per sample: less is no change of speed
 MANY = 200_000  # samples; of more, each may change the speed by less
 OVERLAID = 0.75  # opacity of curves that lie upon each other
@@ -124,7 +125,8 @@ def _changes(run: Run, shown: tuple[int, int]) -> Iterator[tuple[int, int, Array
 def orders_figure(
     run: Run, tracks: Sequence[OrderTrack], over: Over = "speed", direction: Direction = "x", log: bool = False
 ) -> Figure:
-    """The peak amplitude of each order of a point, a curve each; a run that goes up and down is drawn to and fro.
+    """The peak amplitude of each order of a point, with a panel each where they differ by more than APART;
+    a run that goes up and down is drawn to and fro.
 
     tracks: of the same point, by `frbcli.analysis.orders.order_tracking.order_tracks`; log: logarithmic amplitude.
     """
@@ -132,20 +134,26 @@ def orders_figure(
     point = joined(*located(run, tracks[0].signal)).replace("_", " ")
     moves = f"forward motion of the {point}" if direction == "forward" else f"{direction} of the {point}"
     what = f"{moves} by order, windows of {tracks[0].revolutions} revolutions"
+    curves = [MICRO * track.amplitude(direction) for track in tracks]
+    heights = [float(np.nanmax(curve, initial=0.0)) for curve in curves]
+    parted = not log and max(heights) > APART * min(heights)
     with styled():
-        figure = new_figure(title, f"{subtitle}\n{what}" if subtitle else what)
-        axes = figure.subplots()
-        for track in tracks:
+        count = len(tracks) if parted else 1
+        figure = new_figure(title, ", ".join(word for word in (subtitle, what) if word), height=3.0 + 1.6 * count)
+        panels = list(figure.subplots(count, 1, sharex=True, squeeze=False)[:, 0])
+        for number, (track, curve) in enumerate(zip(tracks, curves, strict=True)):
+            axes = panels[number if parted else 0]
             across = track.time_s if over == "time" else track.speed_Hz
-            axes.plot(across, MICRO * track.amplitude(direction), label=named(track.order))
-        axes.set_xlabel("time in s" if over == "time" else "rotor speed in Hz")
-        axes.set_ylabel("amplitude in µm")
-        axes.margins(x=0.0)
-        if log:
-            axes.set_yscale("log")
-        else:
-            axes.set_ylim(bottom=0.0)
-        legend_below(figure, axes)
+            axes.plot(across, curve, color=COLOURS[number % len(COLOURS)], label=named(track.order))
+            axes.set_ylabel(f"{named(track.order)} in µm" if parted else "amplitude in µm")
+            axes.margins(x=0.0)
+            if log:
+                axes.set_yscale("log")
+            else:
+                axes.set_ylim(bottom=0.0)
+        panels[-1].set_xlabel("time in s" if over == "time" else "rotor speed in Hz")
+        if not parted:
+            legend_below(figure, panels[0])
     return figure
 
 

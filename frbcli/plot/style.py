@@ -19,6 +19,7 @@ from cycler import cycler
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import QuadMesh
 from matplotlib.figure import Figure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
@@ -136,8 +137,9 @@ def mark_times(panels: Sequence[Axes], times_s: Sequence[float], labels: Sequenc
     label; returns the number of these lines.
     """
     for axes in panels:
+        on_map = any(isinstance(each, QuadMesh) for each in axes.collections)
         for time in times_s:
-            axes.axvline(time, color=GREY, linewidth=0.9, linestyle=(0, (4, 3)))
+            axes.axvline(time, color="white" if on_map else GREY, linewidth=0.9, linestyle=(0, (4, 3)))
     figure = panels[0].get_figure()
     if not times_s or not isinstance(figure, Figure):
         return 0

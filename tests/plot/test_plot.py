@@ -17,8 +17,10 @@ from matplotlib.figure import Figure
 from paths import ROOT
 from synthetic_run import CLEARANCE, Rotor, as_run, make_run, signals
 
+from frbcli.analysis.orders.order_tracking import order_tracks
 from frbcli.case.reading.load import load_case
 from frbcli.errors import InputError, RunFileError
+from frbcli.plot.curves import orders_figure
 from frbcli.plot.picture import fit
 from frbcli.plot.run.motion import displacement_figure, eccentricity_figure, orbit_figure, visible_steps
 from frbcli.plot.run.quantities import quantity_figure
@@ -108,6 +110,16 @@ def test_a_run_up_is_drawn_over_speed_with_the_time_above_and_its_events_by_numb
     over_time = waterfall_figure(run, "time")
     fit(over_time, rpm=True)
     assert over_time.axes[0].child_axes[0].get_xlabel() == "rotor speed in rpm"
+
+
+def test_orders_of_which_one_would_not_be_seen_have_a_panel_each(run: Run) -> None:
+    figure = orders_figure(run, order_tracks(run, [1.0, 0.5], "journal"))
+    assert [axes.get_ylabel() for axes in figure.axes] == ["1X in µm", "0.5X in µm"]
+    for axes in figure.axes:
+        (line,) = axes.get_lines()
+        assert np.nanmax(line.get_ydata()) > 0.3 * axes.get_ylim()[1]
+    (together,) = orders_figure(run, order_tracks(run, [1.0, 0.5], "journal"), log=True).axes
+    assert len(together.get_lines()) == 2
 
 
 def test_waterfall_over_speed_at_constant_speed_is_refused() -> None:
