@@ -79,7 +79,9 @@ def _forces(
     address: int, numbers: Array, memory: Array, motions: Array, answer: Array, forces: Array, left: Array
 ) -> None:
     for k in range(len(motions)):
-        call_force(address, len(numbers), len(memory), numbers, memory, motions[k], answer)
+        # what a law leaves lies an iteration behind its force: again, so that it does not depend on where it began
+        for _ in range(2 if len(memory) > 0 else 1):
+            call_force(address, len(numbers), len(memory), numbers, memory, motions[k], answer)
         forces[k, 0], forces[k, 1] = answer[F_X], answer[F_Y]
         for i in range(len(memory)):
             left[k, i] = memory[i]
