@@ -62,6 +62,9 @@ class GrowingSignal:
         values[count:] = self._joined()[: len(values) - count]
         return values
 
+    def __reduce__(self) -> tuple[type[GrowingSignal], tuple[Array]]:
+        return GrowingSignal, (self[:],)  # for another process, which does not have the file
+
     def until(self, count: int) -> GrownSignal:
         """The first `count` values as they are now."""
         return GrownSignal(self, count)

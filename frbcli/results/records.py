@@ -163,6 +163,10 @@ class Signal:
     def __getitem__(self, part: slice) -> Array:
         return self.source[part]
 
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        """All values, for functions of numpy."""
+        return np.asarray(self.values, dtype=dtype)
+
 
 def pieces(first: int, last: int, size: int = PIECE) -> Iterator[tuple[int, int]]:
     """The samples from `first` to before `last` in spans of at most `size`."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import os
+import pickle
 import random
 import signal
 import subprocess
@@ -334,6 +335,7 @@ def test_a_run_that_is_too_long_for_memory_is_the_same(tmp_path: Path, monkeypat
         np.testing.assert_array_equal(read_run(path)[name], values)
         np.testing.assert_array_equal(run.read(name, 36, 44), values[36:44])
         np.testing.assert_array_equal(early[name], values[:40])
+        np.testing.assert_array_equal(np.asarray(pickle.loads(pickle.dumps(run)).signals[name]), values)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["run.h5"]
 
 

@@ -34,7 +34,7 @@ def test_the_speed_follows_its_closed_form(tmp_path: Path) -> None:
 
 
 def test_a_given_and_a_free_speed_exclude_each_other() -> None:
-    with pytest.raises(InputError, match="beside"):
+    with pytest.raises(InputError, match="is given with"):
         case_from_dict(MACHINE | {"speed": {"from": 0, "to": 1, "duration": 1}}, "both")
 
 
