@@ -73,34 +73,35 @@ def _draw_lines(figure: Any, solved: list[KinematicResult]) -> None:
 
 
 def _draw_maps(figure: Any, solved: list[KinematicResult]) -> None:
-    rows = figure.subplots(len(solved), 2, sharex=True, sharey=True, squeeze=False)
+    """A map of pressure for each model, and one of the oil fraction for those whose film is not full everywhere."""
     fields = [result.field for result in solved if result.field is not None]
-    ranges = [
-        (min(float(f.pressure.min()) for f in fields) / BAR, max(float(f.pressure.max()) for f in fields) / BAR),
-        (_lowest_fraction(fields), 1.0),
-    ]
-    meshes: list[Any] = []
-    for (left, right), result, field in zip(rows, solved, fields, strict=True):
-        for axes, values, (low, high) in zip(
-            (left, right), (field.pressure / BAR, field.fraction), ranges, strict=True
-        ):
-            phi, turned = _turn(field, values)
-            axes.grid(visible=False)
-            high = high if high > low else low + 1.0
-            mesh = axes.pcolormesh(
-                phi, field.z, turned.T, cmap=LEVEL_MAP, vmin=low, vmax=high, shading="nearest", rasterized=True
-            )
-            meshes.append(mesh)
-        for axes, what in zip((left, right), ("pressure", "oil fraction"), strict=True):
-            axes.set_title(f"{label_of(result.cavitation)}, {what}", fontsize=9.0)
-        left.set_ylabel("z", fontsize=8.0)
-    for column, label in ((0, "pressure in bar"), (1, "oil fraction")):
-        bar = figure.colorbar(meshes[column], ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)
+    cavitated = [number for number, field in enumerate(fields) if float(field.fraction.min()) < FULL]
+    rows = figure.subplots(len(solved), 2 if cavitated else 1, sharex=True, sharey=True, squeeze=False)
+    maps = [("pressure", "pressure in bar", [field.pressure / BAR for field in fields], list(range(len(fields))))]
+    if cavitated:
+        maps.append(("oil fraction", "oil fraction", [field.fraction for field in fields], cavitated))
+    for column, (what, label, values, shown) in enumerate(maps):
+        low, high = (float(of([of(values[number]) for number in shown])) for of in (np.min, np.max))
+        for number, (axes, result, field) in enumerate(zip(rows[:, column], solved, fields, strict=True)):
+            axes.set_visible(number in shown)
+            if number in shown:
+                phi, turned = _turn(field, values[number])
+                axes.grid(visible=False)
+                mesh = axes.pcolormesh(
+                    phi, field.z, turned.T, cmap=LEVEL_MAP, vmin=low, vmax=high if high > low else low + 1.0,
+                    shading="nearest", rasterized=True,
+                )  # fmt: skip
+                axes.set_title(f"{label_of(result.cavitation)}, {what}", fontsize=9.0)
+        bar = figure.colorbar(mesh, ax=rows[:, column], location="bottom", shrink=0.8, aspect=35)
         bar.set_label(label)
         bar.outline.set_visible(False)
-        rows[-1][column].set_xlim(0.0, 360.0)
-        rows[-1][column].set_xticks(range(0, 361, 90))
-        rows[-1][column].set_xlabel("φ in °; z from 0 to 1 along the section")
+        lowest = rows[shown[-1], column]
+        lowest.tick_params(labelbottom=True)
+        lowest.set_xlim(0.0, 360.0)
+        lowest.set_xticks(range(0, 361, 90))
+        lowest.set_xlabel("φ in °; z from 0 to 1 along the section")
+    for axes in rows[:, 0]:
+        axes.set_ylabel("z", fontsize=8.0)
 
 
 def _draw_friction(figure: Any, solved: list[KinematicResult], speed: float) -> None:
@@ -124,12 +125,6 @@ def _look(number: int, count: int) -> dict[str, Any]:
     """Colour, dashes and width of the curve of a model, by its number."""
     width = NARROWEST + WIDER * (count - 1 - number)
     return {"color": COLOURS[number % len(COLOURS)], "linestyle": LINES[number % len(LINES)], "linewidth": width}
-
-
-def _lowest_fraction(fields: list[FilmField]) -> float:
-    """The lower end of the scale of oil fractions: the lowest one, or 0 where all films are full."""
-    lowest = min(float(field.fraction.min()) for field in fields)
-    return lowest if lowest < FULL else 0.0
 
 
 def mid_line(field: FilmField, values: Array, far: str) -> tuple[Array, Array]:

@@ -61,7 +61,7 @@ def response_figure(motion: Response, tracks: Sequence[OrderTrack] = ()) -> Figu
             _polar(polar, motion, number, colour, dash)
         sizes = larger_semi_axis(motion.forces)
         for number, name in enumerate(motion.bearings):
-            _line(force, motion, sizes[:, number], *_line_of(number), name or "bearing")
+            _line(force, motion, sizes[:, number], *_line_of(number), name.replace("_", " ") or "bearing")
         for track in tracks:
             size = np.abs(track.forward) + np.abs(track.backward)
             amplitude.plot(track.speed_Hz, MICRO * size, color=BLACK, linewidth=0.6, label=f"{track.signal} in the run")
@@ -114,9 +114,10 @@ def draw_amplitude(axes: Axes, motion: Response) -> None:
         factor = "" if peak.amplification_factor is None else f", factor {peak.amplification_factor:.3g}"
         top = 1.0 - LABEL_LENGTH * (lower % LEVELS)
         at = motion.case.speed_unit.words(peak.speed_Hz)
-        axes.annotate(f"{at}, {peak.direction}{factor}", (peak.speed_Hz, top), (-2, -3),
-                      xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=6,
-                      ha="right", va="top", color=GREY)  # fmt: skip
+        axes.annotate(f"{at}, {peak.direction}{factor}", (peak.speed_Hz, top), (3, -3),
+                      xycoords=("data", "axes fraction"), textcoords="offset points", rotation=90, fontsize=7,
+                      ha="left", va="top", bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5}
+                      )  # fmt: skip
     if set(motion.validity) != {SOUND}:
         _doubts(axes, motion, labelled=True)
         for number, clearance in enumerate(np.unique(motion.clearances, axis=1).T):
