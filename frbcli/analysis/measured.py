@@ -25,7 +25,7 @@ from frbcli.arrays import Array
 from frbcli.errors import did_you_mean
 from frbcli.results.measured.columns import Columns, is_interval, wrong_file
 from frbcli.results.measured.reading import read_columns
-from frbcli.results.records import LARGEST, PER_MINUTE, SMALLEST, Signal, wrong_values
+from frbcli.results.records import LARGEST, SMALLEST, Signal, wrong_values
 from frbcli.results.store import Run
 from frbcli.units import SPEED, ValueFault, quantity
 
@@ -167,7 +167,7 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         raise wrong_file(
             path, f"cannot refer to a clearance of {given.clearance:g} m.", 'Give e.g. --clearance "35 um".'
         )
-    signals, remarks, references = _signals(columns, given)
+    signals, remarks, references, per_minute = _signals(columns, given)
     run = Run(
         path=path,
         title=f"{path.stem}, {MEASURED}",
@@ -184,6 +184,7 @@ def measured_run(path: str | Path, given: Measurement) -> Run:
         references=references | ({} if given.clearance is None else {"clearance_m": given.clearance}),
         checkpoint=None,
         remarks=remarks,
+        per_minute=per_minute,
     )
     if given.y is not None and given.clearance is not None:
         lines = constant_lines(run, given.clearance)
@@ -229,8 +230,11 @@ def events_at(run: Run, point: str, clearance: float) -> list[dict[str, Any]]:
     return [asdict(replace(event, point=seen)) for event in find_events(alone)]
 
 
-def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], tuple[str, ...], dict[str, float]]:
-    """(the signals of a run at even steps, what is to be said of them, its references)."""
+def _signals(
+    columns: Columns, given: Measurement
+) -> tuple[dict[str, Signal], tuple[str, ...], dict[str, float], bool]:
+    """(the signals of a run at even steps, what is to be said of them, its references, whether its speeds are in
+    revolutions per minute)."""
     units = _Units(columns)
     x = units.column(given.x, given.unit_m, "m", "--unit")
     y = np.zeros_like(x) if given.y is None else units.column(given.y, given.unit_m, "m", "--unit")
@@ -249,8 +253,7 @@ def _signals(columns: Columns, given: Measurement) -> tuple[dict[str, Signal], t
     if wrong:
         raise wrong_file(columns.path, f"gives a {wrong} that no machine has.", "Check the units of its columns.")
     references = {} if tacho is None or tacho.mark is None else {MARK: tacho.mark}
-    references |= {PER_MINUTE: 1.0} if units.per_minute else {}
-    return signals, tuple(filter(None, (units.sentence(), pulses, rolled))), references
+    return signals, tuple(filter(None, (units.sentence(), pulses, rolled))), references, units.per_minute
 
 
 def _without_slow_roll(

@@ -144,11 +144,16 @@ def cut(run: Run, from_time: float | None, to_time: float | None) -> tuple[int, 
 def clearance(run: Run, bearing: str = "") -> float:
     """How far in m a journal can move in a bearing: its clearance, of a floating ring C_i + C_o; of a machine without
     films the length that replaces it. Raises RunFileError where the run does not state it."""
-    known = [length for name, length in run.references.items() if name.startswith(("clearance_m", "length_m"))]
+    known = [length for name, length in run.references.items() if is_length(name)]
     length = bearing_clearance(run, bearing) or next(iter(known), 0.0)
     if length > 0.0:
         return length
     raise refuse(run.path, "lacks the clearance to which amplitudes refer.", NO_CLEARANCE)
+
+
+def is_length(reference: str) -> bool:
+    """Whether a reference of a run is a length that amplitudes refer to."""
+    return reference.startswith(("clearance_m", "length_m"))
 
 
 def shell(run: Run, bearing: str = "") -> float | None:

@@ -1,6 +1,5 @@
-"""The waterfall: spectra of a run over time or rotor speed, with lines of its harmonic loads; its older,
-three-dimensional form, the cascade: spectra as curves behind each other; and its levels as a bare image and as numbers,
-for pages that draw the axes themselves."""
+"""The waterfall: spectra of a run over time or rotor speed, with lines of its harmonic loads and its events; and its
+levels as a bare image and as numbers, for pages that draw the axes themselves."""
 
 from __future__ import annotations
 
@@ -9,7 +8,7 @@ import itertools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, Literal, NamedTuple
+from typing import Any, NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -29,11 +28,22 @@ from frbcli.arrays import Array
 from frbcli.case.course.run import speed_unit_of
 from frbcli.case.reading.load import load_case_text
 from frbcli.errors import InputError
-from frbcli.plot.signals import MICRO, at_times, bearing_of, case_tables, clearance, ends, extremes, heading, motion
+from frbcli.plot.cascade import draw_cascade
+from frbcli.plot.curves import WORDS, Over
+from frbcli.plot.signals import (
+    MICRO,
+    at_times,
+    bearing_of,
+    case_tables,
+    clearance,
+    ends,
+    extremes,
+    heading,
+    is_length,
+    motion,
+)
 from frbcli.plot.style import (
     BLACK,
-    BLUE,
-    GREY,
     LEGEND_ROW,
     LEVEL_MAP,
     new_figure,
@@ -48,8 +58,6 @@ from frbcli.results.store import Run
 from frbcli.scene.machine.rotor import harmonics_of
 from frbcli.units import SpeedUnit
 
-Over = Literal["time", "speed"]
-AXES: dict[Over, str] = {"time": "time in s", "speed": "rotor speed in Hz"}
 FEWEST_BOTH = 3  # spectra of a picture with an axis of the time and one of the speed
 
 LEVELS_dB = (-60.0, 0.0)  # a thousandth of the clearance, and the clearance
@@ -70,11 +78,6 @@ PANEL_pt = (400.0, 220.0)  # size of a panel, about
 LISTED = 2  # columns of the list of events
 ONE_WAY = 0.8  # share of the spectra of a run that only rises or only falls, which is drawn over its speed
 
-CURVES = 60
-HEIGHT = 0.25  # of a curve from the lowest to the highest level, relative to the depth of the stack
-SHEAR = 0.22  # how far the last curve stands to the right, relative to the frequency axis
-NICE = [1, 2, 5, 10]  # steps of the ticks
-ABOVE_CURVES = 10 + CURVES
 IMAGE = 720, 900  # rows and columns of the bare image, at most
 LOWEST_dB, STEP_dB = -120.0, 0.5  # of a level as one byte
 
@@ -210,7 +213,7 @@ def _draw_other_axis(axes: Axes, part: Spectrogram, over: Over) -> None:
     if not (np.all(np.diff(time) > 0.0) or np.all(np.diff(time) < 0.0)):
         return
     here, there = (time, speed) if over == "time" else (speed, time)
-    name = AXES["speed" if over == "time" else "time"]
+    name = WORDS["speed" if over == "time" else "time"]
     axes.secondary_xaxis("top", functions=(_along(here, there), _along(there, here))).set_xlabel(name)
 
 
@@ -242,7 +245,7 @@ def run_spectra(run: Run, signal: str, window_s: float | None, direction: Direct
     length_s = max(window_s, step)  # shorter ones are refused below
     highest = max(ABOVE_SYNCHRONOUS * max([fastest, *loads]), FEWEST_LINES / length_s)
     most = max(FEWEST_COLUMNS, min(COLUMNS, int(MOST_VALUES / (PADDING * highest * length_s))))
-    length = clearance(run, bearing_of(run, signal)) if run.references else UNKNOWN_m
+    length = clearance(run, bearing_of(run, signal)) if any(map(is_length, run.references)) else UNKNOWN_m
     return spectra(time_s, x, y, speed, length, window_s, max_frequency_Hz=highest, direction=direction, most=most)
 
 
@@ -302,7 +305,7 @@ def draw_levels(
         axes.plot(across, frequency, color="white", linewidth=0.8, linestyle=(0, (2, 3)))
         _label_line(axes, across, frequency, label, (bottom, float(found.frequency_Hz[-1])))
     axes.grid(False)
-    axes.set_xlabel(AXES[over])
+    axes.set_xlabel(WORDS[over])
     axes.set_ylabel("frequency in Hz")
     return mesh
 
@@ -363,65 +366,6 @@ def _parts(run: Run, found: Spectrogram) -> list[tuple[str, Spectrogram]]:
     if not parts:
         raise refuse(run.path, "was made at constant speed.", "Draw its waterfall over time.")
     return [("", parts[0][1])] if len(parts) == 1 else parts
-
-
-def draw_cascade(
-    axes: Axes,
-    found: Spectrogram,
-    over: Over,
-    values: Array,
-    limits: tuple[float, float],
-    unit: str,
-    lines: list[tuple[str, Array]],
-) -> None:
-    """Curves over frequency, shifted up and to the right with time or speed; those in front hide those behind.
-
-    values (k, m) and their limits in a unit: heights of the curves; lines: label and frequency (m,) in Hz of each line
-    to draw on the floor, e.g. the rotor speed.
-    """
-    depth = found.time_s if over == "time" else found.speed_Hz
-    span = float(np.ptp(depth)) or 1.0
-    width = float(found.frequency_Hz[-1])
-    shift = SHEAR * width * (depth - depth[0]) / span
-    height = HEIGHT * span / (limits[1] - limits[0])
-    chosen = np.unique(np.linspace(0, len(depth) - 1, min(CURVES, len(depth))).round().astype(int))
-    for layer, place in enumerate(chosen[::-1], start=10):
-        curve = depth[place] + height * (np.clip(values[:, place], *limits) - limits[0])
-        frequency = found.frequency_Hz + shift[place]
-        axes.fill_between(frequency, depth[place], curve, facecolor="white", edgecolor="none", zorder=layer)
-        axes.plot(frequency, curve, color=BLUE, linewidth=0.7, zorder=layer)
-    for label, frequency in lines:
-        axes.plot(frequency + shift, depth, color="black", linewidth=0.8, linestyle=(0, (2, 3)), zorder=ABOVE_CURVES)
-        axes.annotate(
-            label,
-            (frequency[-1] + shift[-1], depth[-1]),
-            xytext=(4, 1),
-            textcoords="offset points",
-            zorder=ABOVE_CURVES,
-            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.5},
-        )
-    _draw_frame(axes, depth, shift, width, span)
-    right = width + shift[-1]
-    axes.plot([right] * 2, [depth[-1], depth[-1] + HEIGHT * span], color="black", linewidth=1.5)
-    axes.annotate(f"{limits[1] - limits[0]:.3g} {unit}", (right, depth[-1] + HEIGHT * span / 2), (-4, 0),
-                  textcoords="offset points", ha="right", va="center")  # fmt: skip
-    axes.set_xlabel("frequency in Hz")
-    axes.set_ylabel(AXES[over])
-
-
-def _draw_frame(axes: Axes, depth: Array, shift: Array, width: float, span: float) -> None:
-    """Slanting lines of equal frequency: the ticks below belong to the foremost curve."""
-    ticks = [tick for tick in MaxNLocator(8, steps=NICE).tick_values(0.0, width) if 0.0 <= tick <= width]
-    for tick in ticks:
-        axes.plot([tick, tick + shift[-1]], [depth[0], depth[-1]], color=GREY, linewidth=0.4, alpha=0.6)
-    axes.grid(False)
-    axes.set_xticks(ticks)
-    bottom, top = depth[0], depth[0] + (1.02 + HEIGHT) * span
-    axes.set_ylim(bottom, top)
-    depths = MaxNLocator(7, steps=NICE).tick_values(bottom, bottom + span)
-    axes.set_yticks([tick for tick in depths if bottom <= tick <= bottom + span])
-    axes.set_xlim(0.0, (width + shift[-1]) * 1.02)
-    axes.margins(0.0)
 
 
 class LoadLine(NamedTuple):

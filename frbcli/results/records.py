@@ -31,7 +31,6 @@ SIZE = 0  # its position in a stamp
 COMMANDS = ("runup", "rundown")
 STATUSES = ("finished", "standstill", "contact", "starved", "overheated", "not-converged", "interrupted")
 WHOLE = STATUSES[:2]  # of a run that nothing has cut short
-PER_MINUTE = "speed_per_minute"  # among the references of a measurement whose speeds are in revolutions per minute
 TIME, SPEED = "time_s", "speed_Hz"
 LONGEST_LABEL = 200  # characters
 MOST_ENTRIES = 500  # of a table

@@ -79,7 +79,8 @@ class Run:
 
     Of a run that was read from a file they are read when they are asked for, and a long run is better read in pieces:
     `run.read("eccentricity", 0, 1000)`. checkpoint: the state from which the run can go on, or None;
-    checkpoint_samples: how many samples there were then; remarks: what a reader has to know of it.
+    checkpoint_samples: how many samples there were then; remarks: what a reader has to know of it;
+    per_minute: whether the speeds of a measurement were given in revolutions per minute.
     """
 
     path: Path
@@ -98,6 +99,7 @@ class Run:
     checkpoint: Mapping[str, NDArray[Any]] | None
     checkpoint_samples: int = 0
     remarks: tuple[str, ...] = ()
+    per_minute: bool = False
 
     def __getitem__(self, name: str) -> Array:
         """All values (n,) of a signal. Raises RunFileError if there is no such signal, or its file has changed."""

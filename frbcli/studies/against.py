@@ -118,7 +118,7 @@ def against_measured(run: Run, measurement: Run, signal: str = "journal") -> Aga
     >>> given = frbcli.Measurement("x", clearance=35e-6, y="y", time="t", speed="n", unit_m=1e-6)
     >>> found = frbcli.against_measured(run, frbcli.measured_run("measured.csv", given))  # doctest: +SKIP
     """
-    clearance = bearing_clearance(run, signal.partition("_")[2]) or next(iter(measurement.references.values()))
+    clearance = bearing_clearance(run, signal.partition("_")[2]) or measurement.references["clearance_m"]
     speeds = ridge_speeds(measurement)
     mine = np.abs(run[SPEED])
     speeds = speeds[(speeds >= mine.min()) & (speeds <= mine.max())]

@@ -171,7 +171,7 @@ class _Trial:
             problem = f"has {common} speeds in common with the case, which are too few."
             remedy = "Run the case up as it was measured."
             raise input_error(case.name, "--measured", "", problem, remedy)
-        length = next(iter(measurement.references.values()))
+        length = measurement.references["clearance_m"]
         self.measured = ridges(measurement, self._speeds, length)
         self.count = 0
         self._known: dict[tuple[float, ...], Ridges] = {}

@@ -92,3 +92,4 @@ def test_a_measurement_with_speeds_per_minute_is_shown_in_them(
     assert frb([*words, "--clearance", "30 um", "-o", str(tmp_path / "w.svg")]) == 0
     assert "speed, rpm" in capsys.readouterr().out
     assert "rotor speed in rpm" in (tmp_path / "w.svg").read_text(encoding="utf-8")
+    assert frb([*words, "--linear", "-o", str(tmp_path / "linear.svg")]) == 0  # amplitudes refer to no clearance

@@ -29,7 +29,6 @@ from frbcli.case.model import (
     with_default,
 )
 from frbcli.case.reading.text import TomlFault, parse
-from frbcli.results.records import PER_MINUTE
 from frbcli.units import NUMBER, SpeedUnit, is_per_minute
 
 if TYPE_CHECKING:
@@ -84,7 +83,7 @@ def given_speed_unit(text: str) -> SpeedUnit:
 
 def speed_unit_of(run: Run) -> SpeedUnit:
     """The unit in which people read the rotor speeds of a run: of its case, or of the column of a measurement."""
-    return SpeedUnit(rpm=True) if PER_MINUTE in run.references else given_speed_unit(run.case_text)
+    return SpeedUnit(rpm=True) if run.per_minute else given_speed_unit(run.case_text)
 
 
 def _any_per_minute(given: object) -> bool:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from frbcli.analysis.measured import Measurement
     from frbcli.analysis.orders.order_tracking import OrderTrack
     from frbcli.analysis.spectrum import Direction
-    from frbcli.plot.waterfall import Over
+    from frbcli.plot.curves import Over
     from frbcli.results.store import Run
 
 MICRO = 1e6
