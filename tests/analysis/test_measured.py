@@ -14,9 +14,12 @@ from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.orders.order_tracking import order_track
+from frbcli.analysis.orders.tacho import MARK
 from frbcli.case.reading.load import load_case
 from frbcli.cli.main import run as frb
 from frbcli.errors import InputError
+from frbcli.plot.signals import clearance
+from frbcli.plot.waterfall import LevelScale, waterfall_figure
 from frbcli.results.store import Run
 from frbcli.runs.run import runup
 
@@ -231,6 +234,16 @@ def running_out(rate: float = 5000.0) -> tuple[pd.DataFrame, np.ndarray]:
 
 
 TURNING = Measurement("x", CLEARANCE, "y", time="t", tacho="key", unit_m=1e-6)
+
+
+def test_the_mark_of_a_tacho_is_no_length(tmp_path: Path) -> None:
+    """Amplitudes refer to the clearance alone, and without one to none."""
+    path, (table, _) = tmp_path / "run.csv", running_out()
+    table.to_csv(path, index=False)
+    measured = measured_run(path, TURNING)
+    assert clearance(replace(measured, references={MARK: 0.25} | measured.references)) == CLEARANCE
+    bare = replace(measured_run(path, replace(TURNING, clearance=None)), references={MARK: 0.25})
+    assert waterfall_figure(bare, scale=LevelScale(linear=True)).axes[0].get_ylabel() == "frequency in Hz"
 
 
 def test_a_resonance_is_right_without_the_slow_roll(tmp_path: Path) -> None:
