@@ -100,8 +100,9 @@ def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
     assert [event["kind"] for event in computed] == ["critical-speed", "onset"]
     for own, other in zip(computed, measured, strict=True):
         assert (own["kind"], own["point"]) == (other["kind"], other["point"]) == (own["kind"], point)
+        # the top of a flat peak is known to the root of what reading a table rounds
         assert other["t_s"] == pytest.approx(own["t_s"], abs=1e-6)
-        assert other["speed_Hz"] == pytest.approx(own["speed_Hz"], abs=1e-6)
+        assert other["speed_Hz"] == pytest.approx(own["speed_Hz"], abs=1e-5)
         assert other["frequency_Hz"] == pytest.approx(own["frequency_Hz"], rel=1e-6)
     assert frb(["waterfall", str(path), *columns_of(point), "-o", str(tmp_path / "a.png"), "--json"]) == 0
     seen = {event["kind"]: event["speed_Hz"] for event in json.loads(capsys.readouterr().out)["events"]}

@@ -274,7 +274,7 @@ def _cones(system: System) -> tuple[Cone, ...]:
     rotor, cones = system.rotor, []
     seen = rotor.journals.reshape(-1, rotor.size)
     for spin, cone in rotor.cones:
-        x, y = np.linalg.lstsq(seen.T, cone.T)[0].T
+        x, y = np.linalg.lstsq(seen.T, cone.T, rcond=None)[0].T
         pulls = np.outer(x, y) - np.outer(y, x)
         moved, many = np.repeat(system.clearances, 2), np.repeat(rotor.multiplicity, 2)[:, None]
         cones.append(Cone(spin - system.spins[0], pulls * moved / many))

@@ -52,10 +52,10 @@ def solve_plain(of: BallNumbers, displacement: Array, omega: float, cage: float 
     ).x  # fmt: skip
     for _ in range(3):  # beyond what differences of energies resolve
         _, gradient, matrix = at(scaled)
-        scaled = scaled - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free])[0] / MICROMETRE
+        scaled = scaled - np.linalg.lstsq(matrix[np.ix_(free, free)], gradient[free], rcond=None)[0] / MICROMETRE
     energy, gradient, matrix = at(scaled)
     inner, coupled = matrix[np.ix_(free, free)], matrix[free, :2]
-    stiffness = matrix[:2, :2] - coupled.T @ np.linalg.lstsq(inner, coupled)[0]
+    stiffness = matrix[:2, :2] - coupled.T @ np.linalg.lstsq(inner, coupled, rcond=None)[0]
     start[free] += MICROMETRE * scaled
     return PlainRings(start[:3], start[3:].reshape(-1, 2), -gradient[:2], stiffness, energy)
 
