@@ -148,7 +148,7 @@ class _Zero:
         """The zero of the growth of eigenvalues (N,) in 1/s at speeds (N,)."""
         middle = float(speeds.mean())
         line = np.stack([np.ones(len(speeds)), speeds - middle], axis=1)
-        here, slope = np.linalg.lstsq(line.astype(complex), values)[0].tolist()
+        here, slope = np.linalg.lstsq(line.astype(complex), values, rcond=None)[0].tolist()
         off = -here.real / slope.real
         square = float(np.sum(np.abs(values - line @ [here, slope]) ** 2)) / 2.0  # of growth or frequency alone
         spread = 2.0 * math.sqrt(square / (len(speeds) - 2) / len(speeds)) / abs(slope.real)

@@ -147,7 +147,7 @@ def steady_heat(
         change = _balanced(model, names, temperatures, viscosities, clearances, films) - temperatures
         if rounds > 0 and (size := float(step @ step)) > LEAST_CHANGE**2:
             slope = slope + np.outer(change - before - slope @ step, step) / size
-        step = np.asarray(np.linalg.lstsq(slope, -change)[0])
+        step = np.asarray(np.linalg.lstsq(slope, -change, rcond=None)[0])
         left, speeds = float(np.abs(step).max()), films.speeds
         if left < SETTLED and rounds > 0:
             return _with_losses(model, temperatures, viscosities, clearances, films, slope)

@@ -153,7 +153,7 @@ def test_a_run_at_constant_speed_has_the_motion_of_the_response(
     columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
     for number, name in enumerate(found.points):
         for axis, letter in enumerate("xy"):
-            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late])[0]
+            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late], rcond=None)[0]
             expected = found.motion[0, number, axis]
             assert abs(real + 1j * imaginary - expected) < 1e-4 * abs(expected), name
 

@@ -260,7 +260,7 @@ def test_a_run_in_an_elastic_housing_has_the_motion_of_the_response(tmp_path: Pa
     columns = np.column_stack([np.ones(len(turn)), turn.real, -turn.imag])
     for number, name in enumerate(found.points):
         for axis, letter in enumerate("xy"):
-            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late])[0]
+            _, real, imaginary = np.linalg.lstsq(columns, run[f"{name}_{letter}_m"][late], rcond=None)[0]
             amplitude = real + 1j * imaginary
             assert abs(amplitude - found.motion[0, number, axis]) < 1e-3 * abs(found.motion[0, number, axis]), name
 

@@ -88,7 +88,7 @@ def test_a_run_grows_and_decays_as_its_eigenvalues(share: float, tmp_path: Path)
     forward, backward = sorted(np.roots([MASS, external + internal, stiffness]), key=lambda root: -root.imag)
     assert point.critical == pytest.approx(forward, rel=1e-6)
     swings = np.exp(np.outer(time, [forward, backward]))
-    shares, *_ = np.linalg.lstsq(swings, z)
+    shares, *_ = np.linalg.lstsq(swings, z, rcond=None)
     assert np.abs(swings @ shares - z).max() < 1e-5 * np.abs(z).max()
     assert min(abs(shares)) > 0.1 * np.abs(z).max()
 
