@@ -79,8 +79,7 @@ def waterfall(
     x, y : array_like
         The motion (n,) in m.
     speed_Hz : array_like
-        Rotor speed (n,) in Hz. All four may be anything with a length that gives slices; no more than some windows are
-        held at a time.
+        Rotor speed (n,) in Hz. All four may be anything with a length that gives slices.
     clearance : float
         Length in m that is 0 dB.
     window_s : float, optional

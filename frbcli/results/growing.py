@@ -58,7 +58,9 @@ class GrowingSignal:
         count = min(last, self._moved) - first
         assert self._file is not None
         self._file.seek(first * values.itemsize)
-        self._file.readinto(values[:count].view(np.uint8).data)  # type: ignore[attr-defined]
+        there = values[:count].view(np.uint8).data
+        if self._file.readinto(there) != len(there):  # type: ignore[attr-defined]
+            raise OSError("the temporary file of a signal was cut short")
         values[count:] = self._joined()[: len(values) - count]
         return values
 

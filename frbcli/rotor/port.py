@@ -1,7 +1,7 @@
 """Forces at ports: what acts between two nodes of a machine and is not linear, such as a stop or a ball bearing.
 
 The force on the first node is F(d, v, Omega, alpha) with the displacement d and velocity v of this node against the
-second, or the ground, and the speed and angle of the rotor. Rest, small motions, time steps and limit cycles ask for it
+second, or the ground, and the speed and angle of the rotor. Rest, small motions and time steps ask for it
 and for its derivatives alone: they know no kinds of forces.
 
 Force laws that were added from Python: a [[spring]] of this process takes them by their names.
@@ -27,6 +27,11 @@ if TYPE_CHECKING:
 
 Rest = TypeVar("Rest")
 STEP, SLOW = 1e-4, 60.0  # of differences, over the length; rad/s of a vibration of a rotor that hardly turns
+# Motions at which a law is tried: displacements and velocities over its length, speeds in rad/s, an angle
+PLACES = ((0.0, 0.0), (0.1, 0.2), (0.5, -1.2), (-2.0, 0.7))
+SPEEDS, TRIED_ANGLE = (0.0, 600.0), 0.3
+WRONG = 1e-2  # share of the largest derivative by which a given one may differ from differences of the force
+_NAME = re.compile("[a-z][a-z0-9-]{0,39}")
 ITERATIONS = 60  # of Newton's method; from half of them on its steps are halved
 D_X, D_Y, V_X, V_Y, SPEED, ANGLE, MOTION = range(7)  # what a force follows: m, m/s, rad/s and rad
 F_X, F_Y, XX, XY, YX, YY, V_XX, V_XY, V_YX, V_YY, ANSWER = range(11)  # force, derivatives by d (XX: dF_x / d_x) and v
@@ -233,12 +238,7 @@ def tangent(rotor: LinearRotor, omega: float, q: Array, compiled: bool = True) -
     )
 
 
-_NAME = re.compile("[a-z][a-z0-9-]{0,39}")
-_own: dict[str, type[ForceLaw]] = {}
-# Motions at which a law is tried: displacements and velocities over its length and a speed in rad/s
-PLACES = ((0.0, 0.0), (0.1, 0.2), (0.5, -1.2), (-2.0, 0.7))
-SPEEDS, TRIED_ANGLE = (0.0, 600.0), 0.3
-WRONG = 1e-2  # share of the largest derivative by which a given one may differ from differences of the force
+_own: dict[str, type[ForceLaw]] = {}  # the laws of this process that were added from Python
 
 
 def add_force_law(name: str, law: type[ForceLaw]) -> None:
@@ -333,7 +333,7 @@ def _motions(law: ForceLaw) -> list[Array]:
     found = []
     for speed in SPEEDS:
         for (d_x, d_y), (v_x, v_y) in zip(PLACES, PLACES[1:] + PLACES[:1], strict=True):
-            moved = law.length * np.array([d_x, d_y]), law.length * max(speed, 60.0) * np.array([v_x, v_y])
+            moved = law.length * np.array([d_x, d_y]), law.length * max(speed, SLOW) * np.array([v_x, v_y])
             found.append(np.concatenate([*moved, [speed, TRIED_ANGLE]]))
     return found
 

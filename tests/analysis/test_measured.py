@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
+from parser_error import parser_error
 from synthetic_run import CLEARANCE, Rotor, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
@@ -93,6 +94,7 @@ def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
 ) -> None:
     """README says so of `frb waterfall`; the critical speed of the journal is not that of the disk."""
     run, path = exported
+    close = 1e-5 if parser_error() else 1e-6  # Hz: the top of a flat peak follows the root of what reading rounds
     words = ["--measured", str(path), *columns_of(point), "--signal", point, "-o", str(tmp_path / "a.png"), "--json"]
     assert frb(["compare", str(run.path), *words]) == 0
     document = json.loads(capsys.readouterr().out)
@@ -100,17 +102,16 @@ def test_a_run_and_its_own_table_have_the_same_events_at_the_same_point(
     assert [event["kind"] for event in computed] == ["critical-speed", "onset"]
     for own, other in zip(computed, measured, strict=True):
         assert (own["kind"], own["point"]) == (other["kind"], other["point"]) == (own["kind"], point)
-        # the top of a flat peak is known to the root of what reading a table rounds
         assert other["t_s"] == pytest.approx(own["t_s"], abs=1e-6)
-        assert other["speed_Hz"] == pytest.approx(own["speed_Hz"], abs=1e-5)
+        assert other["speed_Hz"] == pytest.approx(own["speed_Hz"], abs=close)
         assert other["frequency_Hz"] == pytest.approx(own["frequency_Hz"], rel=1e-6)
     assert frb(["waterfall", str(path), *columns_of(point), "-o", str(tmp_path / "a.png"), "--json"]) == 0
     seen = {event["kind"]: event["speed_Hz"] for event in json.loads(capsys.readouterr().out)["events"]}
-    assert seen == pytest.approx({event["kind"]: event["speed_Hz"] for event in computed}, abs=1e-5)
+    assert seen == pytest.approx({event["kind"]: event["speed_Hz"] for event in computed}, abs=close)
     told = {event["kind"]: event for event in run.events if event["point"] == point}
     assert set(told) == {"disk": {"critical-speed"}, "journal": {"onset"}}[point]
     for kind, event in told.items():  # the run's own events at this point
-        assert seen[kind] == pytest.approx(event["speed_Hz"], abs=1e-5)
+        assert seen[kind] == pytest.approx(event["speed_Hz"], abs=close)
 
 
 def test_a_unit_against_the_name_of_an_exported_column_is_refused(exported: tuple[Run, Path]) -> None:
