@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 import pytest
-from parser_error import parser_error
-from synthetic_run import CLEARANCE, Rotor, signals
+from synthetic_run import CLEARANCE, Rotor, parser_error, signals
 
 from frbcli.analysis.measured import Measurement, measured_run
 from frbcli.analysis.orders.order_tracking import order_track

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import io
 from dataclasses import dataclass, field
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from scipy.special import expit
 
 from frbcli.results.store import Run, Signal
@@ -87,3 +90,12 @@ def as_run(columns: dict[str, np.ndarray], status: str = "finished", title: str 
         references={"clearance_m": CLEARANCE},
         checkpoint=None,
     )
+
+
+@cache
+def parser_error() -> float:
+    """The largest relative error of pandas in 10 000 numbers of all sizes: none since version 3, before some 1e-13."""
+    random = np.random.default_rng(0)
+    values = random.normal(size=10_000) * 10.0 ** random.integers(-12, 4, 10_000)
+    text = "\n".join(["a", *map(repr, values.tolist())])
+    return float(np.abs(pd.read_csv(io.StringIO(text))["a"].to_numpy() / values - 1.0).max())

@@ -17,9 +17,8 @@ import numpy as np
 import pandas as pd
 import pytest
 from output_options import CALLS, CASE, RUN, SETTINGS, SHORT, TABLE, Option, other_paths, output_options
-from parser_error import parser_error
 from paths import ROOT
-from synthetic_run import Rotor, signals
+from synthetic_run import Rotor, parser_error, signals
 
 from frbcli.case.reading.load import load_case
 from frbcli.case.reading.shipped import find_shipped
@@ -82,9 +81,7 @@ def test_every_path_of_a_command_is_read_or_written() -> None:
 
 @pytest.mark.usefixtures("nothing_runs")
 @pytest.mark.parametrize("option", [o for o in OPTIONS if not o.folder], ids=lambda o: f"{o.command} {o.name}")
-def test_no_result_replaces_a_case_a_run_or_a_measurement(
-    option: Option, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_no_result_replaces_a_case_a_run_or_a_measurement(option: Option, capsys: pytest.CaptureFixture[str]) -> None:
     before = {name: Path(name).read_bytes() for name in (CASE, RUN, TABLE)}
     suffix = {"--csv": ".csv", "--save": ".toml", "--ross": ".toml"}.get(option.name, ".png")
     Path(f"run{suffix}").symlink_to(RUN)
@@ -479,6 +476,7 @@ def test_a_run_of_no_time_at_all_has_a_page_or_is_refused(
 
 def test_locks_of_a_file_system_without_them_stop_nobody(monkeypatch: pytest.MonkeyPatch) -> None:
     Path("there").mkdir()
+
     def unknown(_: int) -> None:
         raise OSError(95, "Operation not supported")
 
