@@ -313,7 +313,7 @@ def problem_of(law: ForceLaw) -> str:
     worst = ""
     for motion in _motions(law):  # a force that has a corner at one of them is not wrong
         given, differences = law.plainly(motion), np.zeros(ANSWER)
-        by_differences(_force, law, law.length, motion, differences)
+        by_differences(_law_force, law, law.length, motion, differences)
         off = [_off(given[part], differences[part]) for part in (slice(XX, V_XX), slice(V_XX, ANSWER))]
         if max(off) <= WRONG:
             return ""
@@ -338,7 +338,7 @@ def _motions(law: ForceLaw) -> list[Array]:
     return found
 
 
-def _force(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, law: ForceLaw) -> tuple[float, float]:
+def _law_force(d_x: float, d_y: float, v_x: float, v_y: float, omega: float, law: ForceLaw) -> tuple[float, float]:
     f_x, f_y = law.plainly(np.array([d_x, d_y, v_x, v_y, omega, TRIED_ANGLE]))[:XX]
     return float(f_x), float(f_y)
 

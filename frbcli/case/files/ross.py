@@ -98,7 +98,7 @@ def shaft_of_file(elements: Sequence[RossElement]) -> tuple[list[RossElement], l
 STEP, MOST_CYLINDERS = 0.025, 80  # of a cone: relative change of the diameter from one cylinder to the next
 DISK = ("DiskElement", "DiskElement6DoF")
 HEAVY = ("GearElement", "GearElementTVMS", "CouplingElement")  # have mass, but are no disks on the shaft
-MASS = "PointMass"  # that bearings stand on
+POINT_MASS = "PointMass"  # that bearings stand on
 SUPPORTED = ("L", "idl", "odl", "idr", "odr", "material", "n", "alpha", "beta")
 DAMPINGS = {"mass_damping": "alpha", "stiffness_damping": "beta"}  # C = alpha M + beta K of an element
 LABELS = ("tag", "color", "scale_factor", "kwargs")
@@ -161,9 +161,9 @@ def _rotor(elements: Sequence[RossElement], carried: bool) -> tuple[list[dict[st
             )
     shaft, positions = shaft_of_file(elements)
     for element in elements:
-        if element.kind == MASS and element.node <= len(shaft):
+        if element.kind == POINT_MASS and element.node <= len(shaft):
             raise Refused(f'has "{element.name}" on the shaft, which has disks.', "Replace it by a disk in ROSS.")
-        if element.kind == MASS and not carried:
+        if element.kind == POINT_MASS and not carried:
             problem = f'has "{element.name}", which bearings stand on, and the case has no housing and no supports.'
             raise Refused(problem, "Give housing.file = this file, too, or [bearing.support].")
     cylinders = [cylinder for element in shaft for cylinder in _cylinders(element)]

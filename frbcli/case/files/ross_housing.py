@@ -21,9 +21,8 @@ from scipy.sparse.csgraph import connected_components
 from frbcli.arrays import Array
 from frbcli.case.elements import AXES
 from frbcli.case.files.number_table import Refused
-from frbcli.case.files.ross import REMEDY, RossElement, ross_elements, shaft_of_file
+from frbcli.case.files.ross import POINT_MASS, REMEDY, RossElement, ross_elements, shaft_of_file
 
-MASS = "PointMass"
 COUPLED = 1e-6  # of the largest damping of the modes of a housing: that between two of them
 LOOSE = 1e-12  # of the largest square of a frequency
 SAME_PLACE = 1e-6  # of the length of the shaft
@@ -56,10 +55,10 @@ def ross_housing(path: Path, bearings: Sequence[tuple[str, float]]) -> dict[str,
     springs = [element for element in elements if "kxx" in element.values]
     masses = _masses(elements, springs, len(positions))
     under = {name: _under(name, position, positions, springs, masses) for name, position in bearings}
-    named = {f"{MASS}-{node}": node for node in masses.nodes if node not in under.values()}
+    named = {f"{POINT_MASS}-{node}": node for node in masses.nodes if node not in under.values()}
     places = {name: node for name, node in under.items() if node is not None}
     if not places:
-        raise Refused(f"has no {MASS} under a bearing of the case.", "Remove housing.file.")
+        raise Refused(f"has no {POINT_MASS} under a bearing of the case.", "Remove housing.file.")
     alike = bool(np.all(masses.mass[::2] == masses.mass[1::2]))  # a mass in kg is one of both directions
     carrying = [masses.rows(node) for node in places.values()]
     places |= named if alike else {}
@@ -78,14 +77,14 @@ def _masses(elements: Sequence[RossElement], springs: Sequence[RossElement], nod
     """The point masses of a file with what holds them; nodes: of the shaft."""
     by_node: dict[int, Array] = {}
     for element in elements:
-        if element.kind == MASS:
+        if element.kind == POINT_MASS:
             mass = element.values.get("m")
             both = np.array([element.number(key, mass) for key in ("mx", "my")])
             if np.any(both <= 0.0):
                 raise Refused(f'has no mass in x or y in "{element.name}".', REMEDY)
             by_node[int(element.node)] = by_node.get(int(element.node), np.zeros(2)) + both
     if not by_node:
-        problem = f"has no {MASS}: its bearings stand on the ground."
+        problem = f"has no {POINT_MASS}: its bearings stand on the ground."
         raise Refused(problem, "Remove housing.file, or give the bearings in ROSS an n_link with a PointMass.")
     size = 2 * len(by_node)
     masses = _Masses(tuple(by_node), np.concatenate(list(by_node.values())), *np.zeros((2, size, size)))
@@ -95,7 +94,7 @@ def _masses(elements: Sequence[RossElement], springs: Sequence[RossElement], nod
             seen = np.zeros((2, size))
             for sign, end in zip((1.0, -1.0), ends, strict=False):
                 if end not in by_node:
-                    raise Refused(f'has "{element.name}" at node {end}, which has no {MASS}.', "Add it in ROSS.")
+                    raise Refused(f'has "{element.name}" at node {end}, which has no {POINT_MASS}.', "Add it in ROSS.")
                 seen[:, masses.rows(end)] += sign * np.eye(2)
             masses.stiffness[:] += seen.T @ _matrix(element, "k") @ seen
             masses.damping[:] += seen.T @ _matrix(element, "c") @ seen
@@ -114,14 +113,15 @@ def _constant(element: RossElement, key: str) -> float:
     values = given if isinstance(given, list) else [given]
     numbers = {RossElement(element.name, element.kind, {key: value}).number(key) for value in values}
     if len(numbers) != 1:
-        raise Refused(f'has a {key} over the frequency in "{element.name}", which holds a {MASS}.', "Give one value.")
+        problem = f'has a {key} over the frequency in "{element.name}", which holds a {POINT_MASS}.'
+        raise Refused(problem, "Give one value.")
     return numbers.pop()
 
 
 def _matrix(element: RossElement, letter: str) -> Array:
     """(2, 2) coefficients of what holds a mass: constant and symmetric, as of springs and dampers."""
     if any(_constant(element, f"m{axes}") for axes in AXES):
-        raise Refused(f'has a mass in "{element.name}", which holds a {MASS}.', "Add it to that in ROSS.")
+        raise Refused(f'has a mass in "{element.name}", which holds a {POINT_MASS}.', "Add it to that in ROSS.")
     matrix = np.array([_constant(element, f"{letter}{axes}") for axes in AXES]).reshape(2, 2)
     if matrix[0, 1] != matrix[1, 0]:
         problem = f'has {letter}xy and {letter}yx in "{element.name}" that differ: no spring or damper holds a mass so.'
@@ -147,7 +147,8 @@ def _under(
         raise Refused(problem, "Let both have the same positions.")
     linked = carriers - {None}
     if len(linked) > 1 or not linked <= set(masses.nodes):
-        raise Refused(f"has bearings at {1e3 * position:.6g} mm that do not stand on one {MASS}.", "Link them to one.")
+        problem = f"has bearings at {1e3 * position:.6g} mm that do not stand on one {POINT_MASS}."
+        raise Refused(problem, "Link them to one.")
     return next(iter(linked), None)
 
 
@@ -173,7 +174,7 @@ def _coupled(stiffness: Array, damping: Array, own: NDArray[np.intp]) -> Iterato
     squares, vectors = eigh(stiffness[np.ix_(own, own)])
     if squares[0] <= LOOSE * squares[-1]:
         raise Refused(
-            f"has a {MASS} that no spring holds.", "Add a BearingElement from its node to the ground in ROSS."
+            f"has a {POINT_MASS} that no spring holds.", "Add a BearingElement from its node to the ground in ROSS."
         )
     modal = vectors.T @ damping[np.ix_(own, own)] @ vectors
     if np.abs(modal - np.diag(np.diag(modal))).max() > COUPLED * np.abs(modal).max():

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 # Expected error over the difference of both runs. The true error is 0.5 to 2.1 times the difference on the machines
 # that this number was chosen on, 0.5 to 1.7 times on 12 others (docs/accuracy-measured.md).
-SAFETY = 2.2
+SAFETY_OF_TRIALS = 2.2
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def tried_error(case: Case, trial: Trial) -> TriedError | None:
     if not (math.isfinite(difference) and difference > 0.0):
         return None
     speed = abs(float(trial.profile.speeds[-1])) / (2.0 * math.pi)
-    return TriedError(SAFETY * difference, trial.profile.end, speed, (cells[2], cells[3]))
+    return TriedError(SAFETY_OF_TRIALS * difference, trial.profile.end, speed, (cells[2], cells[3]))
 
 
 def _difference(case: Case, trial: Trial) -> float:

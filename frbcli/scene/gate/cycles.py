@@ -26,7 +26,7 @@ CONSTANT = "these limit cycles are computed for one rotor with constant coeffici
 HEAT_REMEDY = 'Write thermal.model = "none", and as temperature of each film the one of frb check or frb stability.'
 
 
-def coefficient_faults(case: Case) -> Iterator[Fault]:
+def given_coefficient_faults(case: Case) -> Iterator[Fault]:
     """Coefficients of bearings that depend on the speed are followed where films have neither heat nor oil of their
     own."""
     if case.heat is not None or (case.films and by_shooting(case)):

@@ -113,7 +113,7 @@ RULES = (
     Rule(elements.linear_faults, (STABILITY, *EVERY_CYCLE)),
     Rule(static.coefficient_faults, (STABILITY,)),
     Rule(static.range_faults, (RANGE,)),
-    Rule(cycles.coefficient_faults, (SPEED_CYCLES, WHIRLS)),
+    Rule(cycles.given_coefficient_faults, (SPEED_CYCLES, WHIRLS)),
     Rule(cycles.cartridge_faults, EVERY_CYCLE),
     Rule(lambda case: speed_dependent(case, cycles.CONSTANT), (CYCLES,)),
     Rule(cycles.cycle_heat_faults, (SPEED_CYCLES, WHIRLS)),
