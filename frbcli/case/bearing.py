@@ -12,6 +12,7 @@ from pydantic import BeforeValidator, Field
 from frbcli.case.elements import WITHOUT_FILM, BallBearingKeys, CoefficientsBearing, Element
 from frbcli.case.film import FilmGeometry, RingFilm
 from frbcli.case.model import (
+    ONE_OR_MANY,
     AlsoAs,
     Damping,
     Expansion,
@@ -276,7 +277,6 @@ class CartridgeBearing(BearingWalls):
 FilmBearing = SingleFilmBearing | FloatingRingBearing
 GivenBearing = SingleFilmBearing | FloatingRingBearing | CartridgeBearing | CoefficientsBearing | BallBearingKeys
 Bearing = Annotated[GivenBearing, Field(discriminator="kind")]
-ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
 
 
 def _as_list(given: object) -> object:

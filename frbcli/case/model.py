@@ -82,6 +82,9 @@ class AlsoAs:
         return {"anyOf": self.forms(handler(schema))}
 
 
+ONE_OR_MANY = AlsoAs(lambda many: [many["items"], many])  # [bearing] or [[bearing]]
+
+
 def altered(record: Record, values: Mapping[str, Any]) -> Record:
     """`record` with values that the program has computed, in SI, by their attributes. They are not checked; values of a
     user are set by `Case.with_settings`. Raises KeyError for an attribute that is no field."""

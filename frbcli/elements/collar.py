@@ -339,11 +339,13 @@ def collar_at_rest(collar: Collar, omega: float) -> CollarRest:
 
 
 def uncarried_faults(case: Case) -> list[Fault]:
-    """The fault of an axial load that no film carries at the slowest speed of a case."""
+    """The fault of an axial load that no film carries at the slowest speed of a case, or where a drive begins: a rotor
+    that slows down by itself runs until its collar touches."""
     collar = collar_of(case)
     if collar is None or not collar.top:
         return []
-    slowest = 2.0 * math.pi * min(map(abs, collar.course[1]))
+    speeds = collar.course[1] if case.drive is None else collar.course[1][:1]
+    slowest = 2.0 * math.pi * min(map(abs, speeds))
     try:
         collar.rest(slowest)
     except NotCarried as error:

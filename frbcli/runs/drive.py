@@ -13,7 +13,7 @@ from frbcli.arrays import Array
 from frbcli.case.course.drive import GOVERNED
 from frbcli.case.schema import Case
 from frbcli.results.columns import DRIVE_SIGNALS, FRICTION_SIGNAL
-from frbcli.rotor.loads import SpeedProfile
+from frbcli.rotor.loads import LinearPart, SpeedProfile
 from frbcli.scene.machine.system import System
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.solve.drive import NOW, DrivenRotor, driving_along
@@ -105,11 +105,33 @@ def loop_drive(case: Case, system: System) -> DrivenRotor | tuple[()]:
         drive.duration,
         (highest if drive.end is None else (1.0 - GOVERNED) * highest, highest),
         np.array([drive.load.constant, drive.load.linear, drive.load.square]),
+        _thrust(case),
+        _internal(case),
         drive.reaction,
         _weight(case) if drive.reaction else (0.0, 0.0),
         SLOW * TURN * max(case.speed.start, case.speed.end),
         np.zeros(NOW),
     )
+
+
+def _thrust(case: Case) -> Array:
+    """(2, k) speeds in rad/s with the torques in N m that a thrust bearing under the axial load has at rest there."""
+    if case.axial is None:
+        return np.zeros((2, 1))
+    from frbcli.elements.collar import collar_of, rests_over_speed  # films on pads take a second to import
+
+    collar = collar_of(case)
+    rests = () if collar is None else rests_over_speed(collar)
+    return np.array([[0.0, 0.0], *([rest.omega, rest.torque] for rest in rests)]).T.copy()
+
+
+def _internal(case: Case) -> Array:
+    """(2, m, m): see DrivenRotor."""
+    damping = shaft_of(case).body().internal
+    if damping is None:
+        return np.zeros((2, 0, 0))
+    turning, fixed, _ = LinearPart.turning(damping).at(1.0)
+    return np.array([fixed, -turning])
 
 
 def _weight(case: Case) -> tuple[float, float]:

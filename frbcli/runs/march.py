@@ -292,7 +292,7 @@ class March:
         kinds, warm = recorded(self._case), self._numbers(times)
         self._wear.add(system, warm, samples)
         signals |= self._inputs.signals(system, times, fillings(system, samples))
-        signals |= {} if self._axis is None else self._axis.signals(times, q)
+        signals |= {} if self._axis is None else self._axis.signals(times, speeds, q)
         signals |= drive_signals(self._rotor.drive, times, speeds)
         return signals | film_signals(system, self._control, samples, kinds, self._ends, warm)
 

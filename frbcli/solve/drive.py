@@ -1,15 +1,18 @@
 """A rotor whose speed is free, in a stage of the time loop. Compiled. Two kinds:
 
-- an empty tuple: the rotor turns as its speed profile says, and nothing is computed; - DrivenRotor: its rotation is one
-more degree of freedom, which a stage solves with the rings,
+- an empty tuple: the rotor turns as its speed profile says, and nothing is computed;
+- DrivenRotor: its rotation is one more degree of freedom, which a stage solves with the rings,
 
-      J alpha = torque(omega, t) - load(omega) + friction of the films + reaction of the whirl.
+      J alpha = torque(omega, t) - load(omega) + friction of the films + internal damping + reaction of the whirl.
 
 Which of them a function means is decided by the type of the drive when the loop is compiled, as in heat.py.
 
 The force of the unbalance is d^2/dt^2 (C sin phi - S cos phi) on the displacements q, with C and S of LinearRotor. Both
 follow from one kinetic energy, whose coupling of q' with phi' gives the reaction q'' (C cos phi + S sin phi) on phi; of
 a disk with the unbalance U it is U (x'' cos phi + y'' sin phi), and its weight adds g U sin phi.
+
+Internal damping has the force -C (q' - omega R q) on the displacements, where R q is q a quarter turn ahead: it damps
+what a shaft sees that turns with the rotor. The torque of these forces on the rotation is (R q)^T C (q' - omega R q).
 
 Source: Dimentberg et al.: Dynamics of an unbalanced shaft interacting with a limited power supply. Nonlinear Dynamics
 13 (1997), 171-187.
@@ -37,8 +40,10 @@ class DrivenRotor(NamedTuple):
     """place: the degree of freedom of the rotation; inertia: kg m^2; points (2, k): speeds in rad/s, or times in s
     where over_time, with torques in N m, constant beyond them; end: s, from which on there is no torque; governed:
     speeds in rad/s at which a governor begins to take a torque above 0 away, and has done so; load (3,): N m, N m s, N
-    m s^2; reaction: whether the whirl acts on the rotation; weight: N m, its torque is that times sin phi; slow: rad/s
-    that count as standstill; now (NOW,): of a stage."""
+    m s^2; thrust (2, k): speeds in rad/s with the torques in N m that brake the collar; internal (2, m, m): C and C R
+    in N s/m on the first m degrees of freedom, m = 0 without internal damping; reaction: whether the whirl acts on the
+    rotation; weight: N m, its torque is that times sin phi; slow: rad/s that count as standstill; now (NOW,): of a
+    stage."""
 
     place: int
     inertia: float
@@ -47,6 +52,8 @@ class DrivenRotor(NamedTuple):
     end: float
     governed: tuple[float, float]
     load: Array
+    thrust: Array
+    internal: Array
     reaction: bool
     weight: tuple[float, float]
     slow: float
@@ -70,18 +77,8 @@ def torque(drive: DrivenRotor, since: float, t: float, omega: float) -> tuple[fl
     the speed."""
     if since >= drive.end:
         return 0.0, 0.0
-    points, last, place = drive.points, drive.points.shape[1] - 1, t if drive.over_time else omega
-    if place <= points[0, 0]:
-        value, slope = points[1, 0], 0.0
-    elif place >= points[0, last]:
-        value, slope = points[1, last], 0.0
-    else:
-        row = 0
-        while points[0, row + 1] < place:
-            row += 1
-        slope = (points[1, row + 1] - points[1, row]) / (points[0, row + 1] - points[0, row])
-        value = points[1, row] + slope * (place - points[0, row])
-        slope = 0.0 if drive.over_time else slope
+    value, slope = _interpolated(drive.points, t if drive.over_time else omega)
+    slope = 0.0 if drive.over_time else slope
     begins, ends = drive.governed
     if omega <= begins or value <= 0.0:
         return value, slope
@@ -92,10 +89,43 @@ def torque(drive: DrivenRotor, since: float, t: float, omega: float) -> tuple[fl
 
 
 @compiled()
+def _interpolated(points: Array, place: float) -> tuple[float, float]:
+    """Value and slope at a place, of points (2, k) that are linear between and constant beyond."""
+    last = points.shape[1] - 1
+    if place <= points[0, 0]:
+        return float(points[1, 0]), 0.0
+    if place >= points[0, last]:
+        return float(points[1, last]), 0.0
+    row = 0
+    while points[0, row + 1] < place:
+        row += 1
+    slope = (points[1, row + 1] - points[1, row]) / (points[0, row + 1] - points[0, row])
+    return float(points[1, row] + slope * (place - points[0, row])), float(slope)
+
+
+@compiled()
 def load_of(drive: DrivenRotor, omega: float) -> tuple[float, float]:
-    """The load in N m at a speed in rad/s, and its slope."""
+    """The load and the torque of a thrust bearing in N m at a speed in rad/s, and their slope."""
     constant, linear, square = drive.load[CONSTANT], drive.load[LINEAR], drive.load[SQUARE]
-    return constant + (linear + square * omega) * omega, linear + 2.0 * square * omega
+    thrust, rise = _interpolated(drive.thrust, omega)
+    return constant + (linear + square * omega) * omega + thrust, linear + 2.0 * square * omega + rise
+
+
+@compiled()
+def internal_torque(
+    drive: DrivenRotor, at: Array, stage_v: Array, s: int, g: float, omega: float
+) -> tuple[float, float]:
+    """The torque in N m of the internal damping on the rotation in stage s, and by how much it falls with the speed."""
+    still, falls = 0.0, 0.0
+    for i in range(drive.internal.shape[1]):
+        across, along = 0.0, 0.0
+        for j in range(drive.internal.shape[2]):
+            q = at[Q, j] + g * stage_v[j, s]
+            across += drive.internal[1, i, j] * q
+            along += drive.internal[0, i, j] * q
+        still += stage_v[i, s] * across
+        falls += (at[Q, i] + g * stage_v[i, s]) * along
+    return still - omega * falls, falls
 
 
 def speed_now(drive: Any, v: Array, times: Array, speeds: Array, angles: Array, piece: int, t: float) -> float:
@@ -165,7 +195,8 @@ def turn_on(
     loads, journal, alpha, omega = scratch.loads, scratch.journal, now[ALPHA], now[OMEGA]
     driving, slope = torque(drive, since, t, omega)
     braking, rise = load_of(drive, omega)
-    net, falls = driving - braking + now[FRICTION], g * (rise - slope + now[GRIP])
+    inside, softens = internal_torque(drive, at, stage_v, s, g, omega)
+    net, falls = driving - braking + now[FRICTION] + inside, g * (rise - slope + now[GRIP] + softens)
     sine, cosine = math.sin(now[ANGLE]), math.cos(now[ANGLE])
     if drive.reaction:
         for k in range(at.shape[1]):

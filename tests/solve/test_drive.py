@@ -12,10 +12,13 @@ from scipy.integrate import cumulative_simpson, solve_ivp
 import frbcli
 from frbcli.case.reading.load import case_from_dict
 from frbcli.cli.runs.transient import exit_code
+from frbcli.elements.collar import collar_of
 from frbcli.errors import InputError
 from frbcli.scene.gate.gate import faults
 from frbcli.scene.gate.rule import CYCLES, LADDER, RUN
+from frbcli.scene.machine.rotor import make_rotor
 from frbcli.scene.planning.plan import make_plan
+from frbcli.scene.shafts.table import shaft_of
 from frbcli.studies.warm_up import machine_kernels, moment_of_run
 
 TURN = 2.0 * math.pi
@@ -166,3 +169,79 @@ def test_oil_brakes_a_coasting_rotor_by_the_law_of_petroff(tmp_path: Path) -> No
     # beside it, 1 and 0.1 N s/m of damping take nothing from the rotation
     gone = case.polar_inertia * (omega[0] - omega[-1])
     assert gone == pytest.approx(np.trapezoid(run["friction_torque_N_m"], run["time_s"]), rel=1e-4)
+
+
+# A Jeffcott rotor on springs whose shaft is damped inside and outside of it; its speed is free
+INSIDE = {
+    "rotor": {"kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.5 kg", "shaft_stiffness": "2e6 N/m", "gravity": 0.0,
+              "unbalance": "60 g*mm", "internal_damping": "40 N*s/m", "external_damping": "60 N*s/m",
+              "polar_inertia": "0.002 kg*m^2"},
+    "bearing": {"kind": "coefficients", "stiffness": "4e6 N/m", "damping": "200 N*s/m"},
+    "drive": {"torque": "2 N*m", "load": "1e-3 N*m*s", "start": "60 Hz", "duration": "0.4 s", "reaction": True},
+    "accuracy": {"tolerance": 1e-8},
+}  # fmt: skip
+
+
+def test_internal_damping_acts_on_the_rotation(tmp_path: Path) -> None:
+    """Against an integration of all equations, in which no energy is lost but in the dampers: what the rotation gives
+    to the whirl through the shaft is the damping seen on the shaft."""
+    case = case_from_dict(INSIDE, "inside")
+    rotor = make_rotor(case, free_speed=True)
+    inside = shaft_of(case).body().internal
+    n = rotor.size - 1
+    fixed, quarter = np.kron(np.eye(2), inside), np.kron([[0.0, -1.0], [1.0, 0.0]], np.eye(n // 2))
+    at_rest = rotor.over_speed.at(0.0)
+    mass, stiffness = rotor.mass[:n, :n], rotor.stiffness[:n, :n] + at_rest[0][:n, :n]
+    outer = rotor.damping[:n, :n] + at_rest[1][:n, :n] - fixed
+    cos, sin = rotor.unbalance_cos[:n], rotor.unbalance_sin[:n]
+    inertia, torque, load = 0.002, 2.0, 1e-3
+
+    def rate(_: float, state: np.ndarray) -> np.ndarray:
+        q, v, angle, omega = state[:n], state[n : 2 * n], state[2 * n], state[2 * n + 1]
+        arm, ahead = np.cos(angle) * cos + np.sin(angle) * sin, np.cos(angle) * sin - np.sin(angle) * cos
+        slip = v - omega * quarter @ q
+        # the unbalance pulls with d2/dt2 (C sin - S cos), and its arm is pulled by the acceleration in turn
+        matrix = np.block([[mass, -arm[:, None]], [-arm[None], np.array([[inertia]])]])
+        force = -outer @ v - fixed @ slip - stiffness @ q + omega**2 * ahead
+        on_rotation = torque - load * omega + (quarter @ q) @ fixed @ slip
+        a = np.linalg.solve(matrix, np.append(force, on_rotation))
+        losses = v @ outer @ v + slip @ fixed @ slip
+        return np.concatenate([v, a[:n], [omega, a[n], (torque - load * omega) * omega - losses]])
+
+    start = np.zeros(2 * n + 3)
+    start[2 * n + 1] = TURN * 60.0
+    end = solve_ivp(rate, (0.0, 0.4), start, "DOP853", rtol=1e-10, atol=1e-14)
+    q, v, angle, omega, work = np.split(end.y[:, -1], [n, 2 * n, 2 * n + 1, 2 * n + 2])
+    arm = np.cos(angle) * cos + np.sin(angle) * sin
+    energy = 0.5 * (v @ mass @ v + q @ stiffness @ q) - omega[0] * (arm @ v)
+    energy += 0.5 * inertia * (omega[0] ** 2 - start[2 * n + 1] ** 2)
+    assert energy == pytest.approx(work[0], rel=1e-7)
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    assert TURN * run["speed_Hz"][-1] == pytest.approx(omega[0], rel=1e-6)
+
+
+def test_a_thrust_bearing_brakes_a_coasting_rotor(tmp_path: Path) -> None:
+    """J omega' = -T(omega) with the torque of the sheet, down to the speed at which no film carries the load."""
+    inertia = 5e-6
+    thrust = {"inner_radius": "6 mm", "outer_radius": "12 mm", "pads": 4, "pad_angle": "70 deg", "taper_angle": "50 deg",
+              "taper": "30 um", "side": "right"}  # fmt: skip
+    case = case_from_dict(
+        {
+            "rotor": MACHINE["rotor"] | {"polar_inertia": f"{inertia} kg*m^2"},
+            "bearing": MACHINE["bearing"],
+            "oil": {"viscosity": "10 mPa*s", "density": "850 kg/m^3"},
+            "thrust_bearing": [thrust],
+            "axial": {"load": "20 N"},
+            "drive": {"start": "800 Hz", "duration": "0.5 s"},
+        },
+        "thrust",
+    )
+    run = frbcli.runup(case, tmp_path / "run.h5")
+    collar = collar_of(case)
+    assert collar is not None
+    exact = solve_ivp(lambda _, omega: [-collar.rest(float(omega[0])).torque / inertia], (0.0, run.t_end_s),
+                      [TURN * 800.0], rtol=1e-8)  # fmt: skip
+    assert TURN * run["speed_Hz"][-1] == pytest.approx(float(exact.y[0, -1]), rel=1e-4)
+    assert run["speed_Hz"][-1] < 600.0
+    rest = collar.rest(TURN * run["speed_Hz"][-1])
+    assert run["thrust_film_thickness_m"][-1] == pytest.approx(rest.gap, rel=1e-3)

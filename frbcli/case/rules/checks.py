@@ -98,11 +98,11 @@ def _oil(data: Mapping[str, Any]) -> Iterator[Breach]:
 
 
 def _ring(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
-    for (at, inside), (_, outside) in ring_films(bearing):
+    for (film, inside), (_, outside) in ring_films(bearing):
         inner, outer = number(inside, "diameter", "m"), number(outside, "diameter", "m")
         if inner and outer and inner >= outer:
             problem = f"is {display(inner, 'm')}, not below the outer film's, {display(outer, 'm')}."
-            yield Breach((*path, *at, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
+            yield Breach((*path, *film, "diameter"), problem, "Exchange inner and outer, or correct the diameters.")
     ring = bearing.get("ring")
     yield from pin_breaches(path, bearing)
     if bearing.get("kind") == "cartridge":
@@ -179,10 +179,10 @@ def _on_shaft(data: Mapping[str, Any], bearings: list[tuple[Path, dict[str, Any]
     total = sum(length for length in lengths if length is not None)
     for path, part in (*bearings, *tables(data, "thrust_bearing"), *tables(data, "disk")):
         places = [((*path, "position"), number(part, "position", "m")), *positions(path, part)]
-        for at, position in places:
+        for key, position in places:
             if position is not None and not 0 <= position <= total * (1 + 1e-9):
                 problem = f"is {display(position, 'm')}, not on the shaft of {display(total, 'm')}."
-                yield Breach(at, problem, "Positions count from the start of the first section.")
+                yield Breach(key, problem, "Positions count from the start of the first section.")
 
 
 def _run(data: Mapping[str, Any]) -> Iterator[Breach]:

@@ -7,8 +7,18 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 
 from pydantic import BeforeValidator, Field
 
-from frbcli.case.bearing import ONE_OR_MANY
-from frbcli.case.model import Angle, Damping, Identifier, Label, Length, Quantity, SignedSpeed, Speed, Stiffness
+from frbcli.case.model import (
+    ONE_OR_MANY,
+    Angle,
+    Damping,
+    Identifier,
+    Label,
+    Length,
+    Quantity,
+    SignedSpeed,
+    Speed,
+    Stiffness,
+)
 from frbcli.case.reading.tables import Breach, Path
 from frbcli.case.surroundings.over_time import OverTime
 from frbcli.case.surroundings.places import MachineTable, no_place, node_at, table_breaches

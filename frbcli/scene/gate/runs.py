@@ -103,15 +103,15 @@ def axial_heat_faults(case: Case) -> Iterator[Fault]:
 
 
 def drive_faults(case: Case) -> Iterator[Fault]:
-    """A speed that is free is solved in the stages of the time loop, and the axial motion goes by given speeds."""
+    """A speed that is free is solved in the stages of the time loop; an axial load over time goes by given speeds."""
     if case.drive is None:
         return
     if coupling_of(case).in_turn:
         problem = "takes the rotor's speed as given, and [drive] leaves it free."
         yield Fault("film.coupling", case.film.coupling, None, problem, "Write auto, or [speed] instead of [drive].")
-    if case.axial is not None:
-        problem = "goes by a speed that is known beforehand, and [drive] leaves it free."
-        yield Fault("axial", "", None, problem, "Leave it out, or write [speed] instead of [drive].")
+    if case.axial is not None and isinstance(case.axial.load, OverTime):
+        problem = "changes over time, and the collar of a rotor whose speed is free has one load for each speed."
+        yield Fault("axial.load", "", None, problem, 'Give one load, or { at = "1000 Hz", load = "40 N" }.')
     if case.drive.reaction and case.bases:
         problem = "acts on a rotor whose ground is at rest, and [base] moves it."
         yield Fault("drive.reaction", "true", None, problem, "Leave one of the two out.")
