@@ -173,8 +173,8 @@ def test_oil_brakes_a_coasting_rotor_by_the_law_of_petroff(tmp_path: Path) -> No
 
 # A Jeffcott rotor on springs whose shaft is damped inside and outside of it; its speed is free
 INSIDE = {
-    "rotor": {"kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.5 kg", "shaft_stiffness": "2e6 N/m", "gravity": 0.0,
-              "unbalance": "60 g*mm", "internal_damping": "40 N*s/m", "external_damping": "60 N*s/m",
+    "rotor": {"kind": "jeffcott", "mass": "6 kg", "journal_mass": "0.5 kg", "shaft_stiffness": "2e6 N/m",
+              "gravity": 0.0, "unbalance": "60 g*mm", "internal_damping": "40 N*s/m", "external_damping": "60 N*s/m",
               "polar_inertia": "0.002 kg*m^2"},
     "bearing": {"kind": "coefficients", "stiffness": "4e6 N/m", "damping": "200 N*s/m"},
     "drive": {"torque": "2 N*m", "load": "1e-3 N*m*s", "start": "60 Hz", "duration": "0.4 s", "reaction": True},
@@ -223,8 +223,8 @@ def test_internal_damping_acts_on_the_rotation(tmp_path: Path) -> None:
 def test_a_thrust_bearing_brakes_a_coasting_rotor(tmp_path: Path) -> None:
     """J omega' = -T(omega) with the torque of the sheet, down to the speed at which no film carries the load."""
     inertia = 5e-6
-    thrust = {"inner_radius": "6 mm", "outer_radius": "12 mm", "pads": 4, "pad_angle": "70 deg", "taper_angle": "50 deg",
-              "taper": "30 um", "side": "right"}  # fmt: skip
+    thrust = {"inner_radius": "6 mm", "outer_radius": "12 mm", "pads": 4, "pad_angle": "70 deg",
+              "taper_angle": "50 deg", "taper": "30 um", "side": "right"}  # fmt: skip
     case = case_from_dict(
         {
             "rotor": MACHINE["rotor"] | {"polar_inertia": f"{inertia} kg*m^2"},
