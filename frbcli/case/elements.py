@@ -194,6 +194,11 @@ class BallBearingKeys(BearingWithoutFilm):
     preload: AnyPreload = Field(
         default=0.0, description="axial, on each row: constant, by a spring, or `{offset}` of held rings"
     )
+    locating: Literal["left", "right"] | None = Field(
+        default=None,
+        description="side towards which its fixed outer ring holds the shaft: carries the load of [axial] beside its "
+        "preload",
+    )
     damping: Damping = Field(
         default=0.0, description="radial, between the rings; usual: 0.25e-5 to 2.5e-5 s times the stiffness"
     )

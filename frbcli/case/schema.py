@@ -226,6 +226,11 @@ class Case(Model):
         return (own or 0.0) + sections + sum(disk.polar_inertia for disk in self.disks)
 
     @property
+    def loads_a_collar(self) -> bool:
+        """Whether thrust bearings bear the axial load."""
+        return self.axial is not None and bool(self.thrust_bearings)
+
+    @property
     def given_speed(self) -> SpeedRamp | None:
         """The speeds of a run, those that its drive is expected to reach at most; None of a case without any."""
         if self.drive is None or not self.polar_inertia:

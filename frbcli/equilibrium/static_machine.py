@@ -123,7 +123,7 @@ class StaticMachines:
 
     def _check_axis(self, omega: float) -> None:
         """Raises NotConverged where an axial load is carried by no film."""
-        if self._case.axial is not None:
+        if self._case.loads_a_collar:
             from frbcli.elements.collar import collar_at_rest, collar_of  # films on pads take long to import
 
             if (collar := collar_of(self._case)) is not None:

@@ -53,7 +53,7 @@ class Stability(Tabular):
         """One row per point: speed, static equilibrium and coefficients of each film, critical eigenvalue."""
         films = max((point.films for point in self.points), key=len, default=())
         names = [film.name for film in films]
-        axial = named(AXIAL, "collar", attrgetter("axial")) if self.case.axial is not None else ()
+        axial = named(AXIAL, "collar", attrgetter("axial")) if self.case.loads_a_collar else ()
         return table_of((*point_columns(names, film_columns(films)), *axial), self.points)
 
 
@@ -247,7 +247,7 @@ def _point(
         with advised(case):
             machine = machines.at(2 * math.pi * speed, near, with_error)
             point = point_at_rest(machine, speed, frequency and frequency(machine.omega))
-            if case.axial is not None:
+            if case.loads_a_collar:
                 from frbcli.linear.sheets.thrust import axial_state  # films on pads take long to import
 
                 point = replace(point, axial=axial_state(case, machine.omega))

@@ -116,7 +116,7 @@ def loop_drive(case: Case, system: System) -> DrivenRotor | tuple[()]:
 
 def _thrust(case: Case) -> Array:
     """(2, k) speeds in rad/s with the torques in N m that a thrust bearing under the axial load has at rest there."""
-    if case.axial is None:
+    if not case.loads_a_collar:
         return np.zeros((2, 1))
     from frbcli.elements.collar import collar_of, rests_over_speed  # films on pads take a second to import
 

@@ -112,7 +112,7 @@ class March:
         system = self._system
         self._heat = RunHeat(self._segments[0].case, plan, system)
         self._control = control_of(case, plan, system.asperities)
-        self._axis = None if case.axial is None else _axis_of(case, self._profile, self._control.output_step)
+        self._axis = _axis_of(case, self._profile, self._control.output_step) if case.loads_a_collar else None
         self._tableau = METHODS[plan.method].tableau
         with advised(case):
             self._state = first_state(case.start, self._inputs.at_start(self._heat.start), profile)

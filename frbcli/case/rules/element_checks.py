@@ -45,6 +45,7 @@ def element_breaches(data: Mapping[str, Any]) -> Iterator[Breach]:
             yield from _coefficients(path, bearing)
         if bearing.get("kind") == "ball":
             yield from _balls(path, bearing)
+            yield from _locating((*path, "locating"), bearing, data)
         for body in ("damper", "support"):
             yield from _body((*path, body), bearing.get(body), data)
     if has_films(data):
@@ -116,6 +117,26 @@ def _preload(path: Path, bearing: Mapping[str, Any], angle: bool) -> Iterator[Br
     if none and angle:
         problem = "is missing: without it the rings of an angular contact bearing part under a radial load."
         yield Breach((*path, "preload"), problem, 'Write e.g. preload = "50 N", or { offset = "5 um" }.')
+
+
+def _locating(path: Path, bearing: Mapping[str, Any], data: Mapping[str, Any]) -> Iterator[Breach]:
+    """A bearing that carries the axial load does so in one direction, in addition to its spring's preload."""
+    if "locating" not in bearing:
+        return
+    if "axial" not in data:
+        yield Breach(path, "has no effect without an axial load.", 'Remove it, or add [axial] with e.g. load = "40 N".')
+    if not number(bearing, "preload", "N"):
+        problem = "needs a preload by a spring, to which the axial load is added."
+        yield Breach(path, problem, 'Write e.g. preload = "50 N", or remove it.')
+    if bearing.get("arrangement", "single") in ("face-to-face", "back-to-back"):
+        problem = "is of a pair whose rows carry an axial load in opposite directions."
+        yield Breach(path, problem, "Write the two rows as two bearings of one row, of which one is locating.")
+    if "rotor" in data and table(data, "rotor").get("kind") not in OF_SECTIONS:
+        problem = "is of a symmetric rotor, whose two bearings are equal, and one of them carries the axial load."
+        yield Breach(path, problem, 'Write rotor.kind = "turbocharger" with [[shaft]] sections and both bearings.')
+    if values_of(table(data, "axial").get("load"), "N") and isinstance(table(data, "axial").get("load"), list):
+        problem = "changes over time, and a ball bearing has one axial load for each speed."
+        yield Breach(("axial", "load"), problem, 'Give one load, or { at = "1000 Hz", load = "40 N" }.')
 
 
 def _matrix(given: object) -> tuple[float, ...] | None:
@@ -250,9 +271,15 @@ def _pads(path: Path, bearing: Mapping[str, Any]) -> Iterator[Breach]:
 def _loaded(data: Mapping[str, Any]) -> Iterator[Breach]:
     """Every broken rule of a collar under an axial load."""
     bearings, key = tables(data, "thrust_bearing"), ("axial", "load")
-    if not bearings:
-        remedy = "Add [[thrust_bearing]], or remove the table; see docs/thrust.md."
+    located = [path for path, bearing in tables(data, "bearing") if "locating" in bearing]
+    if not bearings and not located:
+        remedy = 'Add [[thrust_bearing]] (docs/thrust.md), or write locating = "right" at a ball bearing.'
         yield Breach(("axial",), "has no thrust bearing that carries its load.", remedy)
+        return
+    for path in located[0 if bearings else 1 :]:
+        problem = "is given with another bearing that carries the axial load."
+        yield Breach((*path, "locating"), problem, "Keep one of them.")
+    if not bearings:
         return
     if len(bearings) > 1:
         problem = f"is given with {len(bearings)} thrust bearings, and one collar carries it."

@@ -95,7 +95,7 @@ def command(case: Case, everything: bool, terminal: Terminal) -> None:
         | {"findings": _findings_document(case, loads), "remarks": doubts}
         | {"films": documents(FILM_OPERATION, films), "expected": expected}
         | ({} if heat is None else {"thermal": heat})
-        | ({} if kinematic or case.axial is None else {"axial": _axial(case)})
+        | ({"axial": _axial(case)} if case.loads_a_collar and not kinematic else {})
     )
 
 

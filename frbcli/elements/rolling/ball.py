@@ -10,12 +10,14 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys
+from frbcli.case.elements import AnyRollingMaterial, AxialOffset, BallBearingKeys, LoadAtSpeed
 from frbcli.case.schema import Case
+from frbcli.case.surroundings.over_time import largest
 from frbcli.elements.element import Line, MachineElement, Parts, Site
 from frbcli.elements.rolling.bearing import BallBearing
 from frbcli.elements.rolling.force import ball_bearing_force, ball_numbers
 from frbcli.elements.rolling.rest import at_displacement, balls_of
+from frbcli.errors import Fault
 from frbcli.materials import ROLLING, Elastic
 from frbcli.rotor.assembly import Link
 from frbcli.rotor.loads import LinearPart
@@ -75,9 +77,12 @@ class BallForce(ForceLaw):
 
 @dataclass(frozen=True)
 class BallBearingElement(MachineElement):
-    """A ball bearing of a case."""
+    """A ball bearing of a case. thrust: the axial load that presses its rings together, in N, and over the square of
+    the speed of the shaft, in N s^2; top: the highest speed of the case, rad/s."""
 
     given: BallBearingKeys
+    thrust: tuple[float, float] = (0.0, 0.0)
+    top: float = 0.0
 
     symbol: ClassVar[str] = "spring"
 
@@ -85,7 +90,8 @@ class BallBearingElement(MachineElement):
     def of(cls, case: Case) -> Iterator[Self]:
         for key, bearing in zip(case.bearing_keys, case.placed_bearings, strict=True):
             if isinstance(bearing, BallBearingKeys):
-                yield cls(key, bearing)
+                top = 0.0 if case.given_speed is None else max(map(abs, case.given_speed.course[1]))
+                yield cls(key, bearing, _thrust(case, bearing), 2.0 * math.pi * top)
 
     @property
     def rings(self) -> BallBearing:
@@ -105,7 +111,7 @@ class BallBearingElement(MachineElement):
             contact_angle=angle, inner=given.inner_curvature, outer=given.outer_curvature,
             ball=_material(given.ball_material), ring=_material(given.ring_material),
             rows=1 if given.arrangement == "single" else 2, preload=force, offset=offset,
-            turning=given.cage == "turning",
+            turning=given.cage == "turning", thrust=self.thrust,
         )  # fmt: skip
 
     def link(self, site: Site) -> Link:
@@ -132,6 +138,19 @@ class BallBearingElement(MachineElement):
     def plan_line(self, site: Site) -> Line:
         return self.line
 
+    def faults(self) -> list[Fault]:
+        """An axial load that takes the preload away."""
+        constant, square = self.thrust
+        left = self.rings.rows * (self.rings.preload or 0.0) + constant
+        least = min(left, left + square * self.top**2)
+        if self.given.locating is None or least > 0.0:
+            return []
+        other = "left" if self.given.locating == "right" else "right"
+        parted = f"pulls the rings of the bearing {self.given.name} apart"
+        problem = f"{parted}: {display(least, 'N')} of its preload is left."
+        remedy = f'Write {self.key}.locating = "{other}", or raise its preload.'
+        return [Fault("axial.load", "", None, problem, remedy)]
+
     @property
     def line(self) -> Line:
         """Its line of the plan, also of one without a machine."""
@@ -140,7 +159,19 @@ class BallBearingElement(MachineElement):
         value = f"{given.name}: {rows}{given.balls} balls of {display(given.ball_diameter, 'm')}".removeprefix(": ")
         angle = f"{math.degrees(rings.contact_angle):.3g} deg without load"
         preload = f"preload {display(rings.preload, 'N')} by a spring" if rings.preload else "rings held along the axis"
+        if given.locating is not None:
+            preload += f", and the axial load to the {given.locating}"
         return "bearings", value, f"Hertz contacts, centrifugal force of the balls, {angle}, {preload}; {LEFT_OUT}"
+
+
+def _thrust(case: Case, bearing: BallBearingKeys) -> tuple[float, float]:
+    """See BallBearingElement: of a load towards the side to which the bearing holds the shaft."""
+    if case.axial is None or bearing.locating is None:
+        return 0.0, 0.0
+    load, sign = case.axial.load, 1.0 if bearing.locating == "right" else -1.0
+    if isinstance(load, LoadAtSpeed):
+        return 0.0, sign * load.load / (2.0 * math.pi * load.at) ** 2
+    return sign * largest(load), 0.0
 
 
 def _material(given: AnyRollingMaterial) -> Elastic:

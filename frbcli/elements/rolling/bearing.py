@@ -99,7 +99,8 @@ class BallBearing:
     balls: of one row; pitch_diameter: of the circle of their centres; contact_angle: without load, rad; inner, outer:
     radii of the grooves over the diameter of a ball; ball, ring: their materials; rows: 1 or 2; preload: along the axis
     on each row, N, or None where the rings are held at `offset`, the axial displacement in m from their first contact;
-    turning: whether the balls pass, or act as if they were spread evenly.
+    turning: whether the balls pass, or act as if they were spread evenly; thrust: on all rows in addition to the
+    preload, in N, and over the square of the speed of the shaft, in N s^2.
     """
 
     balls: int
@@ -114,6 +115,7 @@ class BallBearing:
     preload: float | None = None
     offset: float = 0.0
     turning: bool = True
+    thrust: tuple[float, float] = (0.0, 0.0)
 
     @property
     def gamma(self) -> float:
@@ -197,8 +199,9 @@ class BallBearing:
             k_outer=outer.stiffness,
             centrifugal=self.centrifugal,
             held=float(self.preload is None),
-            preload=self.offset if self.preload is None else self.rows * self.preload,
+            preload=self.offset if self.preload is None else self.rows * self.preload + self.thrust[0],
             cage=self.cage_ratio if self.turning else 0.0,
+            thrust=self.thrust[1],
         )
 
     @property

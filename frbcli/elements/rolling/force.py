@@ -37,7 +37,7 @@ class BallNumbers(NamedTuple):
     centres where it touches; k_inner, k_outer: of the contacts, N/m^1.5; centrifugal: force of a ball over the square
     of the speed of the shaft, N s^2; held: 1 if the rings are held along the axis, else 0; preload: on all rows in N,
     or, of rings that are held, their axial displacement; cage: its speed over the shaft's, 0 for the mean over its
-    angle. """
+    angle; thrust: what an axial load adds to the preload, over the square of the speed of the shaft, N s^2. """
 
     points: int
     share: float
@@ -51,13 +51,14 @@ class BallNumbers(NamedTuple):
     held: float
     preload: float
     cage: float
+    thrust: float
 
 
 def ball_numbers(numbers: Array) -> BallNumbers:
-    """The bearing whose numbers (12,) are in an array."""
+    """The bearing whose numbers (13,) are in an array."""
     return BallNumbers(
         int(numbers[0]), numbers[1], numbers[2], numbers[3], numbers[4], numbers[5], numbers[6], numbers[7], numbers[8],
-        numbers[9], numbers[10], numbers[11],
+        numbers[9], numbers[10], numbers[11], numbers[12],
     )  # fmt: skip
 
 
@@ -219,13 +220,14 @@ def ball_bearing_force(
         f_x, f_y, _, xx, xy, yy, _, _, _ = rings(of, d_x, d_y, of.preload, omega, cage, memory)
         return -f_x, -f_y, xx, xy, xy, yy
     d_z, low, high, last, reach = memory[0], -math.inf, math.inf, math.inf, REACH
+    preload = of.preload + of.thrust * omega * omega
     for _ in range(STEPS):
         f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = rings(of, d_x, d_y, d_z, omega, cage, memory)
-        missed = f_z - of.preload
+        missed = f_z - preload
         step = reach if missed < 0.0 else -reach
         if zz > 0.0 and abs(missed) < zz * reach:
             step = -missed / zz
-        if abs(missed) <= NEAR * of.preload:
+        if abs(missed) <= NEAR * preload:
             break
         if missed < 0.0:
             low = d_z

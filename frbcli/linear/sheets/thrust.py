@@ -288,7 +288,7 @@ def thrust_sheet(
     for bearing in case.thrust_bearings:
         films = thrust_films(case, bearing)
         collar = collar_of(case) or collar_under(case, bearing, 0.0)
-        acts = case.axial is not None and gaps is None and not loads
+        acts = case.loads_a_collar and gaps is None and not loads
         asked = _gaps(films) if gaps is None and not (loads or acts) else sorted(gaps or ())
         count = len(case.thrust_bearings) * len(speeds) * (len(asked) + len(loads) + acts)
         for speed in speeds:

@@ -138,7 +138,7 @@ def header(
     units |= dict.fromkeys((named("oil_fraction", name) for name in remembering), "")
     units |= dict.fromkeys(ring_names(system), "Hz")
     units |= pin_units(system) | port_units(system)
-    units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.axial is not None else {}
+    units |= {column.name: column.unit for column in AXIAL_SIGNALS} if case.loads_a_collar else {}
     units |= drive_units(system)
     units |= RunInputs.of(case, system).units() | heat_units(case, system)
     units |= signal_units(system, recorded(case))

@@ -81,7 +81,7 @@ def kept_film_faults(case: Case) -> Iterator[Fault]:
 
 def axial_faults(case: Case) -> Iterator[Fault]:
     """A collar does not lie on its pads at the speeds of a case."""
-    if case.axial is None:
+    if not case.loads_a_collar:
         return
     from frbcli.elements.collar import uncarried_faults  # films on pads take a second to import
 
@@ -90,7 +90,7 @@ def axial_faults(case: Case) -> Iterator[Fault]:
 
 def axial_heat_faults(case: Case) -> Iterator[Fault]:
     """The films of a collar are as warm as at rest at the speed of the moment, with temperatures that stay."""
-    if case.axial is None or case.heat is None:
+    if not case.loads_a_collar or case.heat is None:
         return
     walls = {wall: getattr(case.heat, wall) for wall in WALLS}
     given = {"supply_temperature": case.heat.supply_temperature}

@@ -187,3 +187,32 @@ def test_signals_of_balls_do_not_depend_on_how_a_run_is_cut() -> None:
     cut = law.inside(np.concatenate([evaluate_along(law, part)[1] for part in np.array_split(motion, 7)]))
     for name, (_, values) in whole.items():
         np.testing.assert_allclose(cut[name][1], values, rtol=0, atol=1e-12 * np.abs(values).max())
+
+
+def test_a_locating_bearing_carries_the_axial_load_beside_its_preload() -> None:
+    """The other one keeps the force of its spring; a load with the square of the speed is that of the speed."""
+    case = frbcli.load_case("turbocharger-ball")
+    loaded = {"bearing.0.locating": "right", "axial": {"load": {"at": "2000 Hz", "load": "80 N"}}}
+    given = frbcli.stability(case.with_settings(loaded), speeds_Hz=[1000.0]).points[0]
+    pressed = frbcli.stability(case.with_settings({"bearing.0.preload": "80 N"}), speeds_Hz=[1000.0]).points[0]
+    np.testing.assert_allclose(given.eigenvalues, pressed.eigenvalues, rtol=1e-9)
+    plain = frbcli.stability(case, speeds_Hz=[1000.0]).points[0]
+    assert not np.allclose(given.eigenvalues, plain.eigenvalues, rtol=1e-3)
+
+
+@pytest.mark.parametrize(
+    ("settings", "key"),
+    [
+        ({"bearing.0.locating": "right"}, "bearing.0.locating"),
+        ({"axial": {"load": "40 N"}}, "axial"),
+        ({"axial": {"load": "40 N"}, "bearing.0.locating": "right", "bearing.1.locating": "left"},
+         "bearing.1.locating"),
+        ({"axial": {"load": "40 N"}, "bearing.0.locating": "right", "bearing.0.preload": {"offset": "1 um"}},
+         "bearing.0.locating"),
+        ({"axial": {"load": "-70 N"}, "bearing.0.locating": "right"}, "axial.load"),
+    ],
+)  # fmt: skip
+def test_an_axial_load_that_no_ball_bearing_carries_is_a_fault(settings: dict[str, Any], key: str) -> None:
+    with pytest.raises(InputError) as raised:
+        frbcli.stability(frbcli.load_case("turbocharger-ball").with_settings(settings), speeds_Hz=[1000.0])
+    assert key in [fault.key for fault in raised.value.faults]
