@@ -23,7 +23,7 @@ from functools import cached_property
 import numpy as np
 
 from frbcli.arrays import Array
-from frbcli.elements.rolling.force import KNOWN, BallNumbers
+from frbcli.elements.rolling.force import KNOWN, RINGS, BallNumbers
 from frbcli.materials import Elastic
 
 NEARLY_ROUND = 1e-4  # difference of the curvatures below which F is 3/4 ln kappa but for its third power
@@ -207,4 +207,4 @@ class BallBearing:
     @property
     def memory(self) -> Array:
         """(m,) for the kernels: nothing is known yet."""
-        return np.zeros(1 + KNOWN * self.points)
+        return np.zeros(RINGS + KNOWN * self.points)

@@ -19,13 +19,15 @@ from typing import NamedTuple
 
 from frbcli.arrays import Array
 
-# Imbalance over the forces from which on one more step leaves the round-off alone, for its error is squared
-NEAR = 1e-7
+# Imbalance over the forces from which on one more step leaves the round-off alone, for its error is squared: of a ball,
+# and of the rings along the axis
+NEAR, NEAR_ALONG = 1e-7, 1e-6
 STEPS = 60  # at most, with those that are halved or bisected: mostly three, for balls ten
 ROPE = 3  # steps to a place near which a ball rests
 SMALLEST = 1e-9  # share of a step below which it is no longer halved
 REACH = 1e-5  # m, the longest first step along the axis; each further one may be twice as long
 KNOWN = 8  # numbers for each ball, see ball
+RINGS = 5  # numbers before them: the displacement z, x, y of the last call, and the derivatives of z by x and y
 BELOW = -0.5 * math.pi  # where the first ball stands at the cage angle 0: in the line of the weight
 
 
@@ -193,7 +195,7 @@ def rings(
     c, s, turn_c, turn_s = math.cos(BELOW + cage), math.sin(BELOW + cage), math.cos(turn), math.sin(turn)
     f_x = f_y = f_z = k_xx = k_xy = k_yy = k_xz = k_yz = k_zz = 0.0
     for j in range(of.points):
-        r, at = of.radial + d_x * c + d_y * s, 1 + KNOWN * j
+        r, at = of.radial + d_x * c + d_y * s, RINGS + KNOWN * j
         q_a, q_r, aa, ar, rr = ball(of, a, r, share, centrifugal, rest, memory, at)
         f_x, f_y, f_z = f_x + q_r * c, f_y + q_r * s, f_z + q_a
         k_xx, k_xy, k_yy = k_xx + rr * c * c, k_xy + rr * c * s, k_yy + rr * s * s
@@ -210,8 +212,8 @@ def ball_bearing_force(
     both with the axial displacement at which the preload is balanced.
 
     omega: of the shaft, rad/s; cage: its angle in rad, by which the first ball stands off the -y axis. memory:
-    (1 + KNOWN points,) what the last call left, zeros at first: the axial displacement in m, and what is known of each
-    ball. The result does not depend on it.
+    (RINGS + KNOWN points,) what the last call left, zeros at first: the displacement of the ring, and what is known of
+    each ball. The result does not depend on it.
 
     The axial force rises with the axial displacement: Newton's method, or half of the interval that holds the answer
     where its step leaves it or the imbalance has not been halved.
@@ -219,7 +221,8 @@ def ball_bearing_force(
     if of.held:
         f_x, f_y, _, xx, xy, yy, _, _, _ = rings(of, d_x, d_y, of.preload, omega, cage, memory)
         return -f_x, -f_y, xx, xy, xy, yy
-    d_z, low, high, last, reach = memory[0], -math.inf, math.inf, math.inf, REACH
+    d_z = memory[0] + memory[3] * (d_x - memory[1]) + memory[4] * (d_y - memory[2])
+    low, high, last, reach = -math.inf, math.inf, math.inf, REACH
     preload = of.preload + of.thrust * omega * omega
     for _ in range(STEPS):
         f_x, f_y, f_z, xx, xy, yy, xz, yz, zz = rings(of, d_x, d_y, d_z, omega, cage, memory)
@@ -227,7 +230,7 @@ def ball_bearing_force(
         step = reach if missed < 0.0 else -reach
         if zz > 0.0 and abs(missed) < zz * reach:
             step = -missed / zz
-        if abs(missed) <= NEAR * preload:
+        if abs(missed) <= NEAR_ALONG * preload:
             break
         if missed < 0.0:
             low = d_z
@@ -236,6 +239,6 @@ def ball_bearing_force(
         if math.isfinite(high - low) and (abs(missed) > 0.5 * last or not low < d_z + step < high):
             step = 0.5 * (low + high) - d_z
         d_z, last, reach = d_z + step, abs(missed), 2.0 * reach
-    memory[0] = d_z + step
     x, y = (xz / zz, yz / zz) if zz > 0.0 else (0.0, 0.0)
+    memory[0], memory[1], memory[2], memory[3], memory[4] = d_z + step, d_x, d_y, -x, -y
     return -f_x - xz * step, -f_y - yz * step, xx - x * xz, xy - x * yz, xy - x * yz, yy - y * yz

@@ -19,7 +19,7 @@ import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.elements.rolling.bearing import BallBearing
-from frbcli.elements.rolling.force import BELOW, KNOWN, BallNumbers, ball_bearing_force, rings
+from frbcli.elements.rolling.force import BELOW, KNOWN, RINGS, BallNumbers, ball_bearing_force, rings
 from frbcli.errors import NotConverged
 
 SETTLED, CARRIED = 1e-12, 1e-6  # of the load: what is left over at rest, and where steps no longer help
@@ -66,7 +66,7 @@ def at_displacement(bearing: BallBearing, place: Array, omega: float, cage: floa
 
 def balls_of(of: BallNumbers, memory: Array, cage: float) -> Balls:
     """The balls that the kernel has left in its memory (..., w)."""
-    known = memory[..., 1:].reshape(*memory.shape[:-1], of.points, KNOWN)
+    known = memory[..., RINGS:].reshape(*memory.shape[:-1], of.points, KNOWN)
     a, r, u, v = np.moveaxis(known[..., :4], -1, 0)
     inner, outer = np.hypot(a - u, r - v) - of.inner, np.hypot(u, v) - of.outer
     inner_load, outer_load = (
