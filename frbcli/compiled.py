@@ -34,6 +34,7 @@ from numba.extending import overload
 from numpy.typing import NDArray
 
 from frbcli.caches import KERNELS, is_trusted, store, stored, take_shipped_kernels, temporary_cache
+from frbcli.libraries import without_settings_here
 
 _PACKAGE = Path(__file__).parent
 _BRINGS_KERNELS = (_PACKAGE / KERNELS).exists()
@@ -52,7 +53,7 @@ Indices = NDArray[np.int64]
 Kernel = TypeVar("Kernel", bound=Callable[..., Any])
 
 # numba looks for settings in the current folder whenever it compiles: there are none
-setattr(config, "_config_fname", "")  # noqa: B010
+config.reload_config = partial(without_settings_here, config.reload_config)
 take_shipped_kernels(_PACKAGE)  # before the first kernel, for which numba chooses a kind of processor
 
 

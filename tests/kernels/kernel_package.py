@@ -33,13 +33,13 @@ ASK = "from frbcli.film.outer{number} import outer; print(outer(1.0), sum(outer.
 def package(folder: Path, *imported: str) -> Path:
     """A package of the program's name with its compiler of kernels, a kernel in a file, and others that call it from
     files of theirs, which import it so: outer, outer1 and so on."""
-    from frbcli import caches, compiled
+    from frbcli import caches, compiled, libraries
 
     room = folder / "frbcli" / "film"
     room.mkdir(parents=True)
     for place in (room.parent, room):
         (place / "__init__.py").touch()
-    for module in (compiled, caches):
+    for module in (compiled, caches, libraries):
         place = Path(str(module.__file__))
         (room.parent / place.name).write_text(place.read_text())
     for number, each in enumerate(imported):

@@ -7,7 +7,6 @@ from pathlib import Path
 import pytest
 from kernel_package import IMPORTS, answers, package
 from matplotlib import artist
-from numba.core import config
 from numba.core.caching import FunctionCache
 
 from frbcli import compiled
@@ -30,11 +29,6 @@ def test_numba_says_where_the_index_of_a_kernel_is() -> None:
     cache = FunctionCache(compiled._composed)
     assert compiled._index_of(cache) is not None
     assert compiled._index_of(object()) is None
-
-
-def test_numba_looks_for_settings_by_a_name_that_can_be_changed() -> None:
-    """Without _config_fname it would read .numba_config.yaml of the current folder where it compiles."""
-    assert config._config_fname == ""
 
 
 def test_matplotlib_writes_docstrings_by_names_that_can_be_changed() -> None:

@@ -10,7 +10,6 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from numba.core import config
 
 import frbcli
 import frbcli.compiled
@@ -91,11 +90,6 @@ def test_numba_takes_none_in_a_session_of_python(tmp_path: Path, first: str) -> 
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, check=True)
     assert done.stdout.split()[-1] == str(Path(frbcli.__file__).parent / "film" / "__pycache__")
     assert not (tmp_path / "cache").exists()
-
-
-def test_numba_has_its_settings_where_they_are_hidden() -> None:
-    """The private name by which numba looks for them again, whenever it compiles."""
-    assert config._config_fname == ""
 
 
 MATPLOTLIB: dict[str, Callable[[Path], object]] = {
