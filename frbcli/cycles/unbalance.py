@@ -81,7 +81,7 @@ class Synchronous(Follower):
         1."""
         harmonics = (len(y) - 2) // machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-        values = np.linalg.eigvals(monodromy(machine, self.course.seen_states(machine), y, count)).astype(complex)
+        values = np.linalg.eigvals(monodromy(machine, self.course.states(machine), y, count)).astype(complex)
         return Multipliers(np.concatenate([[1.0 + 0.0j], values[largest_first(values)]]), 0.0)
 
 
