@@ -60,8 +60,7 @@ class Machine:
     Couette torques per speed in concentric films, which are held: (R,) N m s; scales: (F,) viscosity of each film over
     that which it was made with; temperatures: (F,) K of the films, empty without heat; orders: how often in a
     revolution what drives the rotor swings, 1 of the unbalance, and then of the forces that change with its angle;
-    asperities: of rough surfaces; cones: of cartridges, see Cone; stiffened: share of spring and dashpot that holds the
-    journals in the films, too, 0 of the machine itself.
+    asperities: of rough surfaces; cones: of cartridges, see Cone.
     """
 
     rotor: LinearRotor
@@ -82,7 +81,6 @@ class Machine:
     orders: tuple[int, ...]
     asperities: Asperities | None = None
     cones: tuple[Cone, ...] = ()
-    stiffened: float = 0.0
 
     @property
     def film_count(self) -> int:
@@ -229,18 +227,7 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
         _add_summits(machine, machine.asperities, u, v, speeds, loads)
     for cone in machine.cones:  # behind the torques, which are of the films alone
         _add_moments(machine, cone, u, v, loads)
-    if machine.stiffened != 0.0:
-        _add_springs(machine, u, v, loads)
     return loads
-
-
-def _add_springs(machine: Machine, u: Array, v: Array, loads: Loads) -> None:
-    """The springs and dashpots that hold the journals of a machine that is stiffened."""
-    own = np.arange(2 * machine.film_count)
-    spring, dashpot = (machine.stiffened * np.repeat(each, 2) for each in (machine.spring, machine.dashpot))
-    loads.values[:, own] -= spring * u[:, own] + dashpot * v[:, own]
-    loads.by_u[:, own, own] -= spring
-    loads.by_v[:, own, own] -= dashpot
 
 
 def _add_moments(machine: Machine, cone: Cone, u: Array, v: Array, loads: Loads) -> None:
