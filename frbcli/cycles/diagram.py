@@ -40,7 +40,7 @@ from frbcli.cycles.method.equilibria import (
 )
 from frbcli.cycles.method.follower import FLIP, FOLD, HOPF, TORUS, Cycle, FoldFollower, Follower
 from frbcli.cycles.method.machine import Machine
-from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error, hopf_error
+from frbcli.cycles.method.mesh_error import CycleError, OtherMesh, cycle_error, hopf_error
 from frbcli.cycles.result import (
     SUBCRITICAL,
     SUPERCRITICAL,
@@ -306,11 +306,15 @@ def point_of(walk: Walk, cycle: Cycle) -> CyclePoint:
     point = _cycle(walk, cycle)
     if not walk.meshes:
         return point
-    error, pace = cycle_error(walk.follower, walk.meshes, cycle), cycle.machine.pace
+    return with_error(point, cycle_error(walk.follower, walk.meshes, cycle))
+
+
+def with_error(point: CyclePoint, error: CycleError) -> CyclePoint:
+    """A cycle with its errors by the films."""
     return replace(
         point,
-        value_uncertainty=error.last * walk.course.scale,
-        frequency_uncertainty_Hz=hertz(error.frequency * pace),
+        value_uncertainty=error.value * point.value,
+        frequency_uncertainty_Hz=error.frequency * point.frequency_Hz,
         eccentricity_max_uncertainty=error.eccentricity,
     )
 

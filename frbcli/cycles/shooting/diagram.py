@@ -14,7 +14,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.branch import AT_REST, LEFT
-from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
+from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles, with_error
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.follower import FLIP, HOPF, TORUS
 from frbcli.cycles.result import (
@@ -32,7 +32,7 @@ from frbcli.cycles.result import (
     hertz,
 )
 from frbcli.cycles.shooting.branch import follow_shots, synchronous_shots
-from frbcli.cycles.shooting.other_cells import OtherCells, ShotError, other_cells, shot_errors, threshold_errors
+from frbcli.cycles.shooting.other_cells import OtherCells, other_cells, shot_errors, threshold_errors
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, PeriodMap, Wet, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
 from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
@@ -332,17 +332,8 @@ def _points(
         return ()
     points = [_cycle(shooting, shot) for shot in shots]
     if other is not None:
-        points = list(map(_with_error, points, shot_errors(shooting, other, shots)))
+        points = list(map(with_error, points, shot_errors(shooting, other, shots)))
     return _born(shooting, begin), *points
-
-
-def _with_error(point: CyclePoint, error: ShotError) -> CyclePoint:
-    return replace(
-        point,
-        value_uncertainty=error.speed * point.speed_Hz,
-        frequency_uncertainty_Hz=error.frequency * point.frequency_Hz,
-        eccentricity_max_uncertainty=error.eccentricity,
-    )
 
 
 def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:
