@@ -1,1 +1,1 @@
-"""Limit cycles by shooting on the time loop: of films on cells, and with springs, stops and ball bearings."""
+"""Limit cycles by shooting on the time loop: of finite-volume films, and with springs, stops and ball bearings."""

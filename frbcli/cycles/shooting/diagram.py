@@ -272,7 +272,7 @@ def _notes(
 def _method(shooting: Shooting, other: OtherCells | None) -> str:
     if shooting.flow.smooth:
         return (
-            "Forces besides those of films are not linear: cycles are found by shooting on the time loop, with an "
+            "Forces other than film forces are not linear: cycles are found by shooting on the time loop, with an "
             "error of 1e-5 by its steps; multipliers are known to 2e-5. Errors by the films are not known."
         )
     around, along = shooting.flow.films.cells.shape[2:]

@@ -1,7 +1,7 @@
 """What a time of constant speed makes of a machine: the map of the time loop that runs use.
 
-The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, and of films on cells the filling of
-the openings of each one with a flow-limited supply, and of each cell of the mass-conserving films its fraction and,
+The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, and of finite-volume films the filling
+of the openings of each one with a flow-limited supply, and of each cell of the mass-conserving films its fraction and,
 where the oil carries gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn
 with the oil; what they hold is brought back over the angle that they have turned by, with cubics through four cells.
 The steps are of equal length and their number is fixed, so that the map is smooth enough for differences: error control
