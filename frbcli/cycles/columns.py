@@ -32,29 +32,31 @@ def by_film(films: Sequence[str], array: Any) -> dict[str, Any]:
     return dict(zip(films, array, strict=True))
 
 
+def _of_films(films: Sequence[str], name: str, unit: str, meaning: str, attribute: str = "") -> Column:
+    """Values (F, ...) of a result by film; None where it has none. attribute: of the result, if not `name`."""
+    values = attrgetter(attribute or name)
+
+    def by_name(result: Any) -> dict[str, Any] | None:
+        array = values(result)
+        return None if array is None else by_film(films, array)
+
+    return Column(name, unit, f"{meaning}, by film", by_name, flat=False)
+
+
 def _largest(films: Sequence[str]) -> Column:
-    return Column("eccentricity_max", "", "largest eccentricity, by film",
-                  lambda point: by_film(films, point.eccentricity_max), flat=False)  # fmt: skip
+    return _of_films(films, "eccentricity_max", "", "largest eccentricity")
 
 
 def _largest_uncertainty(films: Sequence[str]) -> Column:
-    def by_name(point: Any) -> dict[str, Any] | None:
-        uncertainty = point.eccentricity_max_uncertainty
-        return None if uncertainty is None else by_film(films, uncertainty)
-
-    return Column("eccentricity_max_uncertainty", "", "its uncertainty, by film", by_name,
-                  flat=False)  # fmt: skip
+    return _of_films(films, "eccentricity_max_uncertainty", "", "its uncertainty")
 
 
 def _temperatures(films: Sequence[str], heat: bool) -> tuple[Column, ...]:
-    column = Column("temperatures", "K", "with heat, by film",
-                    lambda point: by_film(films, point.temperatures_K), flat=False)  # fmt: skip
-    return (column,) if heat else ()
+    return (_of_films(films, "temperatures", "K", "with heat", "temperatures_K"),) if heat else ()
 
 
 def _at_ends(films: Sequence[str], name: str, tilts: bool) -> tuple[Column, ...]:
-    column = Column(name, "", END_MEANING + ", by film", lambda point: by_film(films, getattr(point, name)), flat=False)
-    return (column,) if tilts else ()
+    return (_of_films(films, name, "", END_MEANING),) if tilts else ()
 
 
 def equilibrium_columns(films: Sequence[str], heat: bool = False, tilts: bool = False) -> tuple[Column, ...]:
@@ -65,7 +67,7 @@ def equilibrium_columns(films: Sequence[str], heat: bool = False, tilts: bool = 
         Column("displacement", "", "of the first journal over the clearance",
                lambda point: point.displacement[0], flat=False),
         STABLE,
-        Column("films", "", "displacements, by film", lambda point: by_film(films, point.displacement), flat=False),
+        _of_films(films, "films", "", "displacements", "displacement"),
         RINGS,
         *_temperatures(films, heat),
         *_at_ends(films, "end_eccentricity", tilts),
@@ -98,8 +100,7 @@ def line_columns(films: Sequence[str]) -> tuple[Column, ...]:
     return (
         Column("name", "", "such as `Omega / 2`"),
         FREQUENCY,
-        Column("amplitude", "", "larger semi-axis over the clearance, by film",
-               lambda line: by_film(films, line.amplitude), flat=False),
+        _of_films(films, "amplitude", "", "larger semi-axis over the clearance"),
     )  # fmt: skip
 
 

@@ -10,15 +10,15 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.branch import LEFT, Branch, first_place, follow_branch
-from frbcli.cycles.method.balance import loads_along, packed, through, unpacked
+from frbcli.cycles.method.balance import loads_along, unpacked
 from frbcli.cycles.method.continuation import (
-    Equations,
     Place,
     Strides,
     Unreachable,
@@ -27,7 +27,7 @@ from frbcli.cycles.method.continuation import (
     reached,
     unit_vector,
 )
-from frbcli.cycles.method.courses import Changing, EquationsOf, MachineCourse
+from frbcli.cycles.method.courses import Changing, MachineCourse
 from frbcli.cycles.method.equilibria import (
     Equilibrium,
     HopfPoint,
@@ -39,8 +39,8 @@ from frbcli.cycles.method.equilibria import (
     lyapunov_coefficient,
 )
 from frbcli.cycles.method.follower import FLIP, FOLD, HOPF, TORUS, Cycle, FoldFollower, Follower
-from frbcli.cycles.method.machine import Machine, transfer
-from frbcli.cycles.method.mesh_error import OtherMesh, cycle_error, hopf_error
+from frbcli.cycles.method.machine import Machine
+from frbcli.cycles.method.mesh_error import CycleError, OtherMesh, cycle_error, hopf_error
 from frbcli.cycles.result import (
     SUBCRITICAL,
     SUPERCRITICAL,
@@ -71,30 +71,22 @@ class _WithoutMultipliers(FoldFollower):
         return None
 
 
-class _Stiffening(Changing):
-    """The share of springs and dashpots parallel to the films of a machine, at a speed of its rotor in rad/s."""
-
-    def __init__(self, machine: Machine, omega: float) -> None:
-        super().__init__(lambda share: replace(machine, stiffened=share), omega)
-
-    def equations(self, of: EquationsOf, _near: Array | None = None) -> Equations:
-        """See MachineCourse: equations that are linear in the share."""
-
-        def at(y: Array) -> tuple[Array, Array]:
-            residual, slope = self.staying(of, float(y[-1]))(y)
-            motion, nu, omega = self.harmonics(y)
-            passing = transfer(self.top, nu * np.arange(float(len(motion))), omega)
-            held = np.arange(self.top.size) < 2 * self.top.film_count
-            added = packed(through(passing.values, held * passing.kappa * motion))
-            slope[: len(added), -1] = added
-            return residual, slope
-
-        return at
+def _stiffened(machine: Machine, share: float) -> Machine:
+    """A machine with a share of its springs and dashpots parallel to the films."""
+    rotor, (damping, stiffness) = machine.rotor, machine.held_up
+    return replace(
+        machine,
+        rotor=replace(
+            rotor,
+            damping=rotor.damping + share * (damping - rotor.damping),
+            stiffness=rotor.stiffness + share * (stiffness - rotor.stiffness),
+        ),
+    )
 
 
 def seed_cycle(resting: Equilibrium) -> Array | None:
     """A cycle, see balance.py, at the speed of an unstable static equilibrium; None if none was found."""
-    course = _Stiffening(resting.machine, resting.omega)
+    course = Changing(partial(_stiffened, resting.machine), resting.omega)
     try:
         hopf = _stabilised(course, resting)
     except Unreachable:
@@ -105,7 +97,7 @@ def seed_cycle(resting: Equilibrium) -> Array | None:
     return cycles[-1].y if cycles and abs(cycles[-1].place.y[-1]) < 1e-12 else None
 
 
-def _stabilised(course: _Stiffening, resting: Equilibrium) -> HopfPoint | None:
+def _stabilised(course: Changing, resting: Equilibrium) -> HopfPoint | None:
     """The Hopf point in a above which nothing grows. Raises Unreachable."""
     asked, along = course.equations(equations), unit_vector(len(resting.u) + 1)
     start = reached(asked, np.append(resting.u, 0.0), along)
@@ -314,11 +306,15 @@ def point_of(walk: Walk, cycle: Cycle) -> CyclePoint:
     point = _cycle(walk, cycle)
     if not walk.meshes:
         return point
-    error, pace = cycle_error(walk.follower, walk.meshes, cycle), cycle.machine.pace
+    return with_error(point, cycle_error(walk.follower, walk.meshes, cycle))
+
+
+def with_error(point: CyclePoint, error: CycleError) -> CyclePoint:
+    """A cycle with its errors by the films."""
     return replace(
         point,
-        value_uncertainty=error.last * walk.course.scale,
-        frequency_uncertainty_Hz=hertz(error.frequency * pace),
+        value_uncertainty=error.value * point.value,
+        frequency_uncertainty_Hz=error.frequency * point.frequency_Hz,
         eccentricity_max_uncertainty=error.eccentricity,
     )
 

@@ -70,7 +70,7 @@ class Synchronous(Follower):
         self, course: MachineCourse, lowest: float, highest: float = 1.0, periods: int = 1, share: float = 1.0
     ) -> None:
         super().__init__(course, lowest, highest)
-        self._motion = partial(synchronous_equations, periods=periods, share=share)
+        self._motion = partial(driven_equations, periods=periods, share=share)
 
     def motion(self, place: Place) -> EquationsOf:
         """See Follower. The motion itself is the reference: the unbalance holds its phase."""
@@ -81,25 +81,29 @@ class Synchronous(Follower):
         1."""
         harmonics = (len(y) - 2) // machine.size // 2
         count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
-        values = np.linalg.eigvals(monodromy(machine, self.course.seen_states(machine), y, count)).astype(complex)
+        values = np.linalg.eigvals(monodromy(machine, self.course.states(machine), y, count)).astype(complex)
         return Multipliers(np.concatenate([[1.0 + 0.0j], values[largest_first(values)]]), 0.0)
 
 
-def synchronous_equations(machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0) -> Equations:
+def driven_equations(
+    machine: Machine, reference: Complex, periods: int = 1, share: float = 1.0, theta: float | None = None
+) -> Equations:
     """Equations of motions of some periods of the rotor with a share of the unbalance: residual (n,), n = c (2 H + 1) +
-    1, the last of periods nu = Omega."""
+    1, the last of periods nu = Omega. theta: of cycles that are not locked in, by which the rotor is ahead of them;
+    their last residual is the phase against the reference."""
     balance = Balance(machine, reference)
 
     def driven(speed: float) -> Array:
-        return share * driven_motion(machine, balance.harmonics, periods, speed)
+        return share * driven_motion(machine, balance.harmonics, periods, speed, theta or 0.0)
 
     def at(y: Array) -> tuple[Array, Array]:
         residual, slope = balance(y)
         residual[:-1] -= driven(float(y[-1]))
         ahead, behind = (driven(float(y[-1]) + side * DIFFERENCE) for side in (1.0, -1.0))
         slope[:-1, -1] -= (ahead - behind) / (2.0 * DIFFERENCE)
-        residual[-1], slope[-1] = periods * y[-2] - y[-1], 0.0
-        slope[-1, -2:] = periods, -1.0
+        if theta is None:
+            residual[-1], slope[-1] = periods * y[-2] - y[-1], 0.0
+            slope[-1, -2:] = periods, -1.0
         return residual, slope
 
     return at
@@ -226,22 +230,10 @@ def shifted(machine: Machine, motion: Complex, nu: float, omega: float, share: f
 def _shifted(machine: Machine, reference: Complex, y: Array, share: float, theta: float) -> Array:
     """The cycle with a share of the unbalance shifted by theta, next to y; its phase is the phase of the reference.
     Raises Unreachable."""
-    place = corrected(_equations(machine, reference, share, theta), y, unit_vector(len(y)))
+    place = corrected(driven_equations(machine, reference, PERIODS, share, theta), y, unit_vector(len(y)))
     if place is None:
         raise Unreachable
     return place.y
-
-
-def _equations(machine: Machine, reference: Complex, share: float, theta: float) -> Equations:
-    """Equations of a cycle with a share of the unbalance in its second harmonic, the rotor ahead by theta."""
-    balance = Balance(machine, reference)
-
-    def at(y: Array) -> tuple[Array, Array]:
-        residual, slope = balance(y)
-        residual[:-1] -= share * driven_motion(machine, balance.harmonics, PERIODS, float(y[-1]), theta)
-        return residual, slope
-
-    return at
 
 
 def padded(motion: Complex, harmonics: int) -> Complex:

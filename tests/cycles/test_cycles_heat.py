@@ -16,7 +16,7 @@ from frbcli.cycles.method.balance import packed
 from frbcli.cycles.method.continuation import Place
 from frbcli.cycles.method.equilibria import at_rest
 from frbcli.cycles.method.follower import Follower
-from frbcli.cycles.unbalance import Synchronous, synchronous_equations
+from frbcli.cycles.unbalance import Synchronous, driven_equations
 from frbcli.equilibrium.warm_machine import WarmMachines
 from frbcli.errors import InputError
 from frbcli.film.cells.balance.side_flow import outflow
@@ -171,7 +171,7 @@ def test_derivatives_of_the_response_to_unbalance_have_the_temperatures() -> Non
     y = np.concatenate([packed(motion), [0.9, 0.9]])
     equations = follower.equations(Place(y, np.ones(len(y))))
     _, slope = equations(y)
-    _, staying = synchronous_equations(course.machine(y), motion)(y)
+    _, staying = driven_equations(course.machine(y), motion)(y)
     for i in (0, c - 1, c, 3 * c - 1, len(y) - 2, len(y) - 1):
         step = 1e-6 * np.eye(len(y))[i]
         changed = (equations(y + step)[0] - equations(y - step)[0]) / 2e-6

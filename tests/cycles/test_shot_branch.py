@@ -139,7 +139,7 @@ def test_the_error_of_a_fold_is_a_share_of_the_difference_to_other_films() -> No
     (bottom,) = [i for i, shot in enumerate(shots) if shot.kind == "fold"]
     _, fold, _ = shot_errors(own, OtherCells(other, (0, 0), share), shots[bottom - 1 : bottom + 2])
     (here,), (there,) = (diagram(gamma, 2.4, 2.9).of("fold") for gamma in (4.538, other_gamma))
-    assert fold.speed == pytest.approx(share * abs(math.log(here.speed_Hz / there.speed_Hz)), rel=0.05)
+    assert fold.value == pytest.approx(share * abs(math.log(here.speed_Hz / there.speed_Hz)), rel=0.05)
     off = share * abs(here.eccentricity_max[0] - there.eccentricity_max[0])
     assert fold.eccentricity[0] == pytest.approx(off, rel=0.1)
 

@@ -26,8 +26,8 @@ class KnownFlow:
     system: SimpleNamespace = field(
         default_factory=lambda: SimpleNamespace(rotor=SimpleNamespace(size=2), ring_count=0, spins=(), names=("film",))
     )
-    control: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(contact_eccentricity=0.99))
-
+    limit: float = 0.99
+    smooth: bool = False
     places: tuple[float, ...] = ()
     held: Array = field(default_factory=lambda: np.ones(1))
     slow: int = 4

@@ -16,7 +16,7 @@ from frbcli.cycles.method.balance import unpacked
 from frbcli.cycles.method.continuation import Equations
 from frbcli.cycles.method.floquet import Multipliers
 from frbcli.cycles.method.machine import Machine
-from frbcli.cycles.method.states import StateSpace, reduced_space, state_space
+from frbcli.cycles.method.states import StateSpace, state_space
 from frbcli.cycles.result import SPEED, hertz
 
 EquationsOf = Callable[[Machine], Equations]  # of one machine, y ending with the speed of its rotor over the pace
@@ -82,12 +82,8 @@ class MachineCourse:
         return self.equations(of, near)
 
     def states(self, _machine: Machine) -> StateSpace:
-        """All states of a machine of the course."""
+        """The states of a machine of the course."""
         return self._states
-
-    def seen_states(self, _machine: Machine) -> StateSpace:
-        """The states whose multipliers are the multipliers of its cycles."""
-        return self._seen_states
 
     def multipliers(self, fast: Multipliers, _y: Array, _slope: Callable[[Machine], Array]) -> Multipliers:
         """The multipliers of a cycle y, with the ones of states that follow its mean, such as temperatures. slope:
@@ -97,10 +93,6 @@ class MachineCourse:
     @cached_property
     def _states(self) -> StateSpace:
         return state_space(self.top)
-
-    @cached_property
-    def _seen_states(self) -> StateSpace:
-        return reduced_space(self.top)
 
 
 class Changing(MachineCourse):
@@ -150,10 +142,6 @@ class Changing(MachineCourse):
 
     def states(self, machine: Machine) -> StateSpace:
         """See MachineCourse."""
-        return state_space(machine)
-
-    def seen_states(self, machine: Machine) -> StateSpace:
-        """See MachineCourse: all of them, for fewer ones would be sought anew for each machine."""
         return state_space(machine)
 
     def staying(self, of: EquationsOf, share: float) -> Equations:

@@ -68,8 +68,8 @@ def multipliers(
 ) -> Multipliers:
     """Multipliers of a cycle y, see balance.py; intervals are halved until the trivial multiplier is right.
 
-    space: all states or those that films see (states.py); near: multipliers of a cycle close by, or of the same with
-    fewer harmonics, whose intervals are tried first; enough: error with which no finer ones are tried. """
+    near: multipliers of a cycle close by, or of the same with fewer harmonics, whose intervals are tried first; enough:
+    error with which no finer ones are tried. """
     harmonics = (len(y) - 2) // machine.size // 2
     count = max(FEWEST_INTERVALS, INTERVALS_PER_HARMONIC * harmonics)
     floor = 0.0

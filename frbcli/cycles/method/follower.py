@@ -143,7 +143,7 @@ class Follower:
 
     def fast_multipliers(self, machine: Machine, y: Array, near: Multipliers | None, enough: float) -> Multipliers:
         """Multipliers of a cycle y while its machine stays. near, enough: see floquet.py."""
-        return multipliers(machine, self.course.seen_states(machine), y, near, enough)
+        return multipliers(machine, self.course.states(machine), y, near, enough)
 
     def motion(self, place: Place) -> EquationsOf:
         """The equations of the cycles of a machine about a place."""

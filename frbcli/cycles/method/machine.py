@@ -9,16 +9,12 @@ For a harmonic u_k exp(i k nu t) and the loads g_k of the films,
 
 is exact, however many degrees of freedom the rotor has. kappa is a spring and a dashpot parallel to each film, added on
 both sides: without it a free rotor could not be solved for k = 0, nor near its free natural frequencies.
-
-The rotor behind its films is held in parts that do not see each other. A shaft that is the same in all directions turns
-into two rotors of half its size, for p = (x + i y) / sqrt(2) and m = (x - i y) / sqrt(2) of its motions x in one plane
-and y in the other: the motions that circle one way and the other.
 """
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -35,93 +31,6 @@ from frbcli.rotor.assembly import LinearRotor, without_spins
 from frbcli.rotor.loads import Harmonic
 from frbcli.scene.films import ROTOR
 from frbcli.scene.machine.system import System
-
-SMALLEST = 16  # degrees of freedom from which on two parts are solved faster than one
-ALIKE = 1e-9  # by which planes that count as the same may differ, relative
-INDEPENDENT = 1e-13  # share of the largest singular value above which a direction counts
-
-
-@dataclass(frozen=True)
-class Part:
-    """matrices: (4, n, n) mass, damping, gyroscopic and stiffness of the part, with the dashpots and springs parallel
-    to the films; basis (n, b): of all directions in which films see and load it, shapes (2 F, n) = seen (2 F, b)
-    basis^T and pulls (n, 2 F) = basis given (b, 2 F), see transfer; others: (n, l) what else loads it;
-    symmetric: whether all matrices are; planes: the degrees of freedom (n,) of x and of y that it is made of, None of
-    the whole rotor."""
-
-    matrices: Complex
-    basis: Complex
-    seen: Complex
-    given: Complex
-    others: Complex
-    symmetric: bool
-    planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None
-
-    def dynamic(self, s: Complex, omega: Array | float) -> Complex:
-        """(m, n, n) between motions exp(s t), s (m,), and loads, at speeds omega in rad/s."""
-        shares = np.array([s**2, s, s * omega, np.ones(len(s))])
-        return np.asarray((shares.T @ self.matrices.reshape(4, -1)).reshape(-1, *self.matrices.shape[1:]))
-
-    def answers(self, z: Complex) -> tuple[Complex, Complex]:
-        """z^-1 basis (H + 1, n, b) and basis^T z^-1 (H + 1, b, n) of matrices z (H + 1, n, n)."""
-        wanted = np.broadcast_to(self.basis, (len(z), *self.basis.shape))
-        right = np.linalg.solve(z, wanted)
-        left = right if self.symmetric else np.linalg.solve(np.swapaxes(z, 1, 2), wanted)
-        return np.asarray(right), np.asarray(np.swapaxes(left, 1, 2))
-
-
-def parts_of(rotor: LinearRotor, springs: Array, dashpots: Array, shapes: Array, loads: Complex) -> tuple[Part, ...]:
-    """The whole rotor, or both of its parts. springs, dashpots: (n, n) parallel to the films; loads: (n, 2 F + l), the
-    film forces first."""
-    matrices = (rotor.mass, rotor.damping + dashpots, rotor.gyroscopic, rotor.stiffness + springs)
-    planes = _planes(shapes, matrices) if rotor.size >= SMALLEST else None
-    if planes is None:
-        return (_part(np.array(matrices, dtype=complex), shapes, loads),)
-    x, y = planes
-    parts = []
-    for turn in (1j, -1j):
-        own = np.array([matrix[np.ix_(x, x)] - turn * matrix[np.ix_(x, y)] for matrix in matrices])
-        seen, given = shapes[:, x] - turn * shapes[:, y], loads[x] + turn * loads[y]
-        parts.append(_part(own, seen / np.sqrt(2.0), given / np.sqrt(2.0), planes))
-    return tuple(parts)
-
-
-def _part(
-    matrices: Complex,
-    shapes: Array | Complex,
-    loads: Complex,
-    planes: tuple[NDArray[np.int64], NDArray[np.int64]] | None = None,
-) -> Part:
-    symmetric = all(np.abs(each - each.T).max() <= ALIKE * np.abs(each).max(initial=0.0) for each in matrices)
-    cut = len(shapes)
-    directions = np.hstack([shapes.T.astype(complex), loads[:, :cut]])
-    sizes = np.linalg.norm(directions, axis=0)
-    left, singular, _ = np.linalg.svd(directions / np.where(sizes > 0.0, sizes, 1.0), full_matrices=False)
-    basis = left[:, singular > INDEPENDENT * singular[0]]
-    shares = np.conj(basis).T @ directions
-    return Part(matrices, basis, shares[:, :cut].T, shares[:, cut:], loads[:, cut:], symmetric, planes)
-
-
-def _planes(shapes: Array, matrices: tuple[Array, ...]) -> tuple[NDArray[np.int64], NDArray[np.int64]] | None:
-    """The degrees of freedom of both planes, each with its partner; None if they are not found, or not the same."""
-    n = shapes.shape[1]
-    size = float(np.abs(shapes).max())
-    flat = np.abs(shapes[1::2]).max(axis=0) < ALIKE * size
-    x, others = np.flatnonzero(flat), np.flatnonzero(~flat)
-    if len(x) != len(others):
-        return None
-    off = np.abs(shapes[0::2, x][:, :, None] - shapes[1::2, others][:, None, :]).max(axis=0)
-    y = others[np.argmin(off, axis=1)]
-    if len(set(y.tolist())) != len(y) or off.min(axis=1).max(initial=0.0) > ALIKE * size:
-        return None
-    turned = np.zeros((n, n))
-    turned[y, x], turned[x, y] = 1.0, -1.0
-    alike = all(
-        np.abs(matrix @ turned - turned @ matrix).max() <= ALIKE * np.abs(matrix).max(initial=0.0)
-        for matrix in matrices
-    )
-    return (x, y) if alike else None
-
 
 NEAR = 0.1  # eccentricity at which the dashpots parallel to the films are taken from these
 
@@ -148,12 +57,10 @@ class Machine:
     frequency are divided; spring, dashpot: (F,) N and N s per displacement over the clearance; turning: (F, 2, 1 + R)
     shares of the speeds of rotor and rings in omega_J + omega_S and omega_J - omega_S; bodies: see System; drags: (F,)
     N m s; moment: 1 if the moments of the film forces turn the rings, else 0; inertia: (R,) s, of the rings over the
-    Couette torques per speed in concentric films, which are held: (R,) N m s; parts: the
-    rotor as transfer takes it; scales: (F,) viscosity of each film over that which it was made
-    with; temperatures: (F,) K of the films, empty without heat; orders: how often in a revolution what drives the rotor
-    swings, 1 of the unbalance, and then of the forces that change with its angle; asperities: of rough surfaces;
-    cones: of cartridges, see Cone; stiffened: share of spring and dashpot that holds the journals in the films, too, 0
-    of the machine itself.
+    Couette torques per speed in concentric films, which are held: (R,) N m s; scales: (F,) viscosity of each film over
+    that which it was made with; temperatures: (F,) K of the films, empty without heat; orders: how often in a
+    revolution what drives the rotor swings, 1 of the unbalance, and then of the forces that change with its angle;
+    asperities: of rough surfaces; cones: of cartridges, see Cone.
     """
 
     rotor: LinearRotor
@@ -169,13 +76,11 @@ class Machine:
     moment: float
     inertia: Array
     held: Array
-    parts: tuple[Part, ...]
     scales: Array
     temperatures: Array
     orders: tuple[int, ...]
     asperities: Asperities | None = None
     cones: tuple[Cone, ...] = ()
-    stiffened: float = 0.0
 
     @property
     def film_count(self) -> int:
@@ -195,7 +100,15 @@ class Machine:
     @cached_property
     def rest(self) -> Array:
         """(c,): u at rest without films but on kappa."""
-        return _moved_by(self, 0, 0, 0.0).real
+        return _moved_by(self, self.rotor.static_load, 0, 0.0).real
+
+    @cached_property
+    def held_up(self) -> tuple[Array, Array]:
+        """(n, n) damping and stiffness of the rotor on kappa."""
+        dashpots, springs = (
+            self.pulls @ (np.repeat(each, 2)[:, None] * self.places) for each in (self.dashpot, self.spring)
+        )
+        return self.rotor.damping + dashpots, self.rotor.stiffness + springs
 
     @property
     def places(self) -> Array:
@@ -245,7 +158,7 @@ def make_machine(system: System, top: float) -> Machine:
     inertia = system.rotor.mass[list(system.spins), list(system.spins)]
     at, still, speed = np.array([[NEAR, 0.0]]), np.zeros((1, 2)), np.array([top])
     damping = [-0.5 * np.sum(film_samples(film, at, still, speed)[0, [BY_V, BY_V + 3]]) for film in films]
-    machine = Machine(
+    return Machine(
         rotor=without_spins(system.rotor, np.zeros(system.ring_count)),  # whose speed turns no ring that tilts
         films=films,
         names=system.names,
@@ -259,14 +172,12 @@ def make_machine(system: System, top: float) -> Machine:
         moment=1.0 if system.torque == "all" else 0.0,
         inertia=inertia / held,
         held=held,
-        parts=(),
         scales=np.ones(len(films)),
         temperatures=np.zeros(0),
         orders=(1, *(abs(round(load.order)) for load in turning_loads(system.rotor))),
         asperities=system.asperities,
         cones=_cones(system),
     )
-    return replace(machine, parts=_parts(machine))
 
 
 def _cones(system: System) -> tuple[Cone, ...]:
@@ -284,15 +195,6 @@ def _cones(system: System) -> tuple[Cone, ...]:
 def turning_loads(rotor: LinearRotor) -> tuple[Harmonic, ...]:
     """The loads of a rotor that change with its angle alone."""
     return tuple(each for each in rotor.loads if isinstance(each, Harmonic) and each.frequency == 0.0)
-
-
-def _parts(machine: Machine) -> tuple[Part, ...]:
-    rotor, shapes, pulls = machine.rotor, machine.places, machine.pulls
-    springs = pulls @ (np.repeat(machine.spring, 2)[:, None] * shapes)
-    dashpots = pulls @ (np.repeat(machine.dashpot, 2)[:, None] * shapes)
-    turning = [0.5 * load.excitation(1.0)[1] for load in turning_loads(rotor)]
-    loads = np.column_stack([pulls, rotor.static_load, 0.5 * rotor.unbalance, *turning])
-    return parts_of(rotor, springs, dashpots, shapes, loads)
 
 
 def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
@@ -325,18 +227,7 @@ def film_loads(machine: Machine, u: Array, v: Array, omega: float) -> Loads:
         _add_summits(machine, machine.asperities, u, v, speeds, loads)
     for cone in machine.cones:  # behind the torques, which are of the films alone
         _add_moments(machine, cone, u, v, loads)
-    if machine.stiffened != 0.0:
-        _add_springs(machine, u, v, loads)
     return loads
-
-
-def _add_springs(machine: Machine, u: Array, v: Array, loads: Loads) -> None:
-    """The springs and dashpots that hold the journals of a machine that is stiffened."""
-    own = np.arange(2 * machine.film_count)
-    spring, dashpot = (machine.stiffened * np.repeat(each, 2) for each in (machine.spring, machine.dashpot))
-    loads.values[:, own] -= spring * u[:, own] + dashpot * v[:, own]
-    loads.by_u[:, own, own] -= spring
-    loads.by_v[:, own, own] -= dashpot
 
 
 def _add_moments(machine: Machine, cone: Cone, u: Array, v: Array, loads: Loads) -> None:
@@ -410,21 +301,16 @@ def _add_torques(machine: Machine, d: Array, speeds: Array, loads: Loads) -> Non
 
 def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
     """T of a machine at frequencies (m,) and the speed omega, rad/s; T_k is that at k nu."""
-    own = slice(0, 2 * machine.film_count)
-    rates = (1j * frequencies).astype(complex)
-    s, c = rates[:, None, None], machine.size
+    own, rotor = slice(0, 2 * machine.film_count), machine.rotor
+    s, c = (1j * frequencies[:, None, None]).astype(complex), machine.size
     values = np.zeros((len(s), c, c), dtype=complex)
     by_frequency, by_speed = np.zeros_like(values), np.zeros_like(values)
-    for part in machine.parts:
-        n, b = part.basis.shape
-        right, left = part.answers(part.dynamic(rates, omega))
-        side_by_side = np.ascontiguousarray(right.transpose(1, 0, 2)).reshape(n, -1)
-        products = (part.matrices[:3].reshape(3 * n, n) @ side_by_side).reshape(3, n, len(s), b)
-        mass, flow, turned = left @ products.transpose(0, 2, 1, 3)
-        by_rate = 2.0 * s * mass + flow + omega * turned
-        values[:, own, own] += part.seen @ (part.basis.T @ right) @ part.given
-        by_frequency[:, own, own] -= part.seen @ (1j * by_rate) @ part.given
-        by_speed[:, own, own] -= part.seen @ (s * turned) @ part.given
+    solved = np.linalg.inv(_dynamic(machine, s, omega))
+    right, left = solved @ machine.pulls, machine.places @ solved
+    by_rate = 2.0 * s * rotor.mass + machine.held_up[0] + omega * rotor.gyroscopic
+    values[:, own, own] = machine.places @ right
+    by_frequency[:, own, own] = -1j * (left @ by_rate @ right)
+    by_speed[:, own, own] = -s * (left @ rotor.gyroscopic @ right)
     rings = np.arange(own.stop, c)
     lag = 1.0 + 1j * np.outer(frequencies, machine.inertia)
     values[:, rings, rings] = 1.0 / lag
@@ -435,23 +321,29 @@ def transfer(machine: Machine, frequencies: Array, omega: float) -> Transfer:
     return Transfer(values, by_frequency, by_speed, kappa, rate)
 
 
+def _dynamic(machine: Machine, s: Complex | complex, omega: float) -> Complex:
+    """(..., n, n) Z of motions exp(s t), s (..., 1, 1) in 1/s, at the speed omega in rad/s."""
+    rotor, (damping, stiffness) = machine.rotor, machine.held_up
+    return np.asarray(s**2 * rotor.mass + s * (damping + omega * rotor.gyroscopic) + stiffness)
+
+
 def driven_motions(machine: Machine, omega: float) -> tuple[tuple[int, Complex], ...]:
     """The order k of each load that drives the rotor, and (c,): u of exp(i k Omega t) that it makes without films but
     on kappa, at the speed omega in rad/s."""
-    sizes = [omega**2, *np.ones(len(machine.orders) - 1)]
+    turning = (load.excitation(1.0)[1] for load in turning_loads(machine.rotor))
+    loads = (omega**2 * machine.rotor.unbalance, *turning)
     return tuple(
-        (order, size * _moved_by(machine, 1 + number, order, omega))
-        for number, (order, size) in enumerate(zip(machine.orders, sizes, strict=True))
+        (order, _moved_by(machine, 0.5 * load, order, omega))
+        for order, load in zip(machine.orders, loads, strict=True)
     )
 
 
-def _moved_by(machine: Machine, load: int, order: int, omega: float) -> Complex:
-    """(c,): u without films but on kappa at the speed omega in rad/s under a load that turns with `order` times it: the
-    static load, 0, the unbalance over Omega^2, 1, or a force that changes with the angle of the rotor."""
+def _moved_by(machine: Machine, load: Array | Complex, order: int, omega: float) -> Complex:
+    """(c,): u without films but on kappa at the speed omega in rad/s under a load (n,) that turns with `order` times
+    it."""
     moved = np.zeros(machine.size, dtype=complex)
-    for part in machine.parts:
-        dynamic = part.dynamic(np.array([1j * omega * order]), omega)[0]
-        moved[: 2 * machine.film_count] += part.seen @ (part.basis.T @ np.linalg.solve(dynamic, part.others[:, load]))
+    dynamic = _dynamic(machine, 1j * omega * order, omega)
+    moved[: 2 * machine.film_count] = machine.places @ np.linalg.solve(dynamic, load)
     return moved
 
 

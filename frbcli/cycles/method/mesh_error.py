@@ -94,11 +94,11 @@ class OtherMesh:
 
 @dataclass(frozen=True)
 class CycleError:
-    """Expected errors of a cycle by the mesh of the films. last: of the last unknown of its branch, of folds alone;
-    frequency: over the pace; eccentricity: (F,) of the largest ones; all of them NaN if such a cycle was not found on
-    another mesh."""
+    """Expected errors of a cycle by the mesh or the cells of its films. value: of the number that its branch goes over,
+    of folds alone, and frequency: both relative; eccentricity: (F,) of the largest ones; all of them NaN if such a
+    cycle was not found on another mesh."""
 
-    last: float
+    value: float
     frequency: float
     eccentricity: Array
 
@@ -113,8 +113,9 @@ def cycle_error(own: Follower, meshes: Sequence[OtherMesh], cycle: Cycle) -> Cyc
             return CycleError(np.nan, np.nan, np.full(cycle.machine.film_count, np.nan))
         there = np.array([*place.y[[-1, -2]], *eccentricities(cycle.machine, place.y)])
         errors.append(meshes[len(errors) - 1].share * np.abs(there - here))
-    last, frequency, *eccentricity = np.max(errors, axis=0)
-    return CycleError(last if cycle.kind == FOLD else np.nan, frequency, np.array(eccentricity))
+    value, frequency = np.max(errors, axis=0)[:2] / here[:2]
+    eccentricity = np.max(errors, axis=0)[2:]
+    return CycleError(float(value) if cycle.kind == FOLD else np.nan, float(frequency), eccentricity)
 
 
 def hopf_error(own: MachineCourse, meshes: Sequence[OtherMesh], hopf: HopfPoint) -> tuple[float, float]:

@@ -1,1 +1,1 @@
-"""Limit cycles of mass-conserving films, by shooting on the time loop."""
+"""Limit cycles by shooting on the time loop: of finite-volume films, and with springs, stops and ball bearings."""

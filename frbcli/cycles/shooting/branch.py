@@ -25,7 +25,7 @@ SMALL = 0.02  # amplitude over the clearance below which a branch has come back 
 # A branch that turns back has a fold if its speed differs by so many times what it differs by between places of the
 # cells, of which at least so much is taken, relative.
 CLEAR, BLUR = 2.0, 2e-4
-REFINED = 6  # evaluations that locate a special point
+REFINED, REFINED_SMOOTH = 6, 14  # evaluations that locate a special point, with cells and without
 
 
 def follow_shots(
@@ -38,7 +38,7 @@ def follow_shots(
     """The cycles of a branch from one on, special ones among them, and why it ends. speeds: lowest and highest, and
     asked: those at which cycles are computed exactly, in rad/s."""
     shots, length, along = [start], FIRST, start.tangent
-    limit = shooting.flow.control.contact_eccentricity
+    limit = shooting.flow.limit
     lowest, highest = (math.log(speed / shooting.unit) for speed in speeds)
     while len(shots) < MOST_POINTS:
         shot = shots[-1]
@@ -63,7 +63,8 @@ def follow_shots(
         if shooting.free and ahead.amplitude < SMALL:
             return with_folds(shooting, shots), AT_REST
         if ahead.eccentricity_max.max() > limit:
-            return with_folds(shooting, shots), f"The journal meets its shell, at an eccentricity of {limit}."
+            note = f"The journal comes nearer to its shell than an eccentricity of {limit}."
+            return with_folds(shooting, shots), note
         before, along = along, shooting.direction(shot, ahead)
         straight = float(before @ along)
         if straight > STRAIGHT:
@@ -160,7 +161,7 @@ def _located(shooting: Shooting, shot: Shot, after: Shot, criterion: Callable[[S
     length = float(along @ np.concatenate([after.x - shot.x, after.p - shot.p]))
     low, high, at_low, at_high = 0.0, length, criterion(shot), criterion(after)
     best = shot if abs(at_low) < abs(at_high) else after
-    for _ in range(REFINED):
+    for _ in range(REFINED_SMOOTH if shooting.flow.smooth else REFINED):
         share = min(max(at_low / (at_low - at_high), 0.1), 0.9)
         middle = low + share * (high - low)
         there = shooting.stepped(shot, middle, along)

@@ -1,4 +1,4 @@
-"""Limit cycles of a case whose films are on cells, over its speed: static equilibria with the motions of the oil that
+"""Limit cycles of a case by the time loop, over its speed: static equilibria with the motions of the oil that
 films keep, Hopf points, and from each the branch of cycles by shooting. With unbalance: what the stable cycles of
 nearly half the speed of a branch lock in with, if a run comes to it."""
 
@@ -14,7 +14,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.compilation import working_time
 from frbcli.cycles.branch import AT_REST, LEFT
-from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles
+from frbcli.cycles.diagram import SAME, CycleCount, Observer, special_cycles, with_error
 from frbcli.cycles.method.continuation import Unreachable
 from frbcli.cycles.method.follower import FLIP, HOPF, TORUS
 from frbcli.cycles.result import (
@@ -32,7 +32,7 @@ from frbcli.cycles.result import (
     hertz,
 )
 from frbcli.cycles.shooting.branch import follow_shots, synchronous_shots
-from frbcli.cycles.shooting.other_cells import OtherCells, ShotError, other_cells, shot_errors, threshold_errors
+from frbcli.cycles.shooting.other_cells import OtherCells, other_cells, shot_errors, threshold_errors
 from frbcli.cycles.shooting.period_map import SAMPLES, STEPS_PER_REVOLUTION, PeriodMap, Wet, period_map
 from frbcli.cycles.shooting.rest import RestThreshold, resting, thresholds
 from frbcli.cycles.shooting.shots import Rest, Shooting, Shot, largest
@@ -161,8 +161,8 @@ def limit_cycles_by_shooting(
     observe: Observer | None = None,
     with_unbalance: bool = False,
 ) -> LimitCycles:
-    """As limit_cycles, for films that are mass-conserving or whose force has kinks; speeds in rad/s, asked: those at
-    which cycles are computed exactly.
+    """As limit_cycles, for films that are mass-conserving or whose force has kinks, and with other forces that are not
+    linear; speeds in rad/s, asked: those at which cycles are computed exactly.
 
     Raises NotConverged where no static equilibrium is found. """
     begun = working_time().cpu_s
@@ -198,7 +198,7 @@ def limit_cycles_by_shooting(
         case=case,
         over=SPEED,
         unit="Hz",
-        films=flow.system.names,
+        films=flow.names,
         equilibria=tuple(_rest(shooting, rest) for rest in rests),
         branches=tuple(branches),
         special=(*special, *special_cycles(branches, response)),
@@ -249,7 +249,7 @@ def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
     if lacking > 0:
         remarks.append(f"{lacking} of {len(shots)} cycles are the mean over fewer than {places} places of the cells.")
     held = max((shot.multipliers.defect for shot in shots), default=0.0)
-    if held > HELD:
+    if held > HELD and not flow.smooth:
         remarks.append(f"Cells hold the whirl, trivial multipliers are off by {held:.2g}: take more (accuracy.mesh).")
     return " ".join(remarks).strip()
 
@@ -257,12 +257,7 @@ def _with_cells(flow: PeriodMap, note: str, shots: Sequence[Shot]) -> str:
 def _notes(
     shooting: Shooting, other: OtherCells | None, rests: Sequence[Rest], hopf: Sequence[RestThreshold]
 ) -> list[str]:
-    around, along = shooting.flow.films.cells.shape[2:]
-    kept = "are mass-conserving, on" if shooting.flow.held.any() else "are on"
-    notes = [
-        f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
-        f"with the error of the cells; multipliers are known to 5e-3. {_errors_of(other)}"
-    ]
+    notes = [_method(shooting, other)]
     between = f"{hertz(rests[0].omega):.4g} and {hertz(rests[-1].omega):.4g} Hz"
     if hopf:
         return notes
@@ -272,6 +267,20 @@ def _notes(
         why = "small motions grow at all of these speeds, and branches begin in Hopf points. Begin at a lower speed."
         return [*notes, f"No whirl begins between {between}: {why}"]
     return [*notes, f"No whirl begins between {between}, where small motions grow: branches begin in Hopf points only."]
+
+
+def _method(shooting: Shooting, other: OtherCells | None) -> str:
+    if shooting.flow.smooth:
+        return (
+            "Forces other than film forces are not linear: cycles are found by shooting on the time loop, with an "
+            "error of 1e-5 by its steps; multipliers are known to 2e-5. Errors by the films are not known."
+        )
+    around, along = shooting.flow.films.cells.shape[2:]
+    kept = "are mass-conserving, on" if shooting.flow.held.any() else "are on"
+    return (
+        f"The films {kept} {around} x {along} cells: cycles are found by shooting on the time loop, "
+        f"with the error of the cells; multipliers are known to 5e-3. {_errors_of(other)}"
+    )
 
 
 def _errors_of(other: OtherCells | None) -> str:
@@ -323,17 +332,8 @@ def _points(
         return ()
     points = [_cycle(shooting, shot) for shot in shots]
     if other is not None:
-        points = list(map(_with_error, points, shot_errors(shooting, other, shots)))
+        points = list(map(with_error, points, shot_errors(shooting, other, shots)))
     return _born(shooting, begin), *points
-
-
-def _with_error(point: CyclePoint, error: ShotError) -> CyclePoint:
-    return replace(
-        point,
-        value_uncertainty=error.speed * point.speed_Hz,
-        frequency_uncertainty_Hz=error.frequency * point.frequency_Hz,
-        eccentricity_max_uncertainty=error.eccentricity,
-    )
 
 
 def _born(shooting: Shooting, begin: RestThreshold) -> CyclePoint:

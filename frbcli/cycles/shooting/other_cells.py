@@ -19,6 +19,7 @@ from frbcli.arrays import Array
 from frbcli.case.schema import Case
 from frbcli.cycles.method.continuation import Unreachable, unit_vector
 from frbcli.cycles.method.follower import FOLD
+from frbcli.cycles.method.mesh_error import CycleError
 from frbcli.cycles.shooting.fixed_point import NOISE, SlowSpace
 from frbcli.cycles.shooting.period_map import PeriodMap, period_map
 from frbcli.cycles.shooting.shots import Shooting, Shot, both, largest
@@ -32,16 +33,6 @@ RESOLVED = 0.5  # length of a slow motion of length 1 on other cells from which 
 NEIGHBOURS = 0.5  # of the error of a neighbour: differences may change their sign between both
 UPWIND = 1.0  # order in which gas that oil carries becomes exact with smaller cells
 SPREAD = 0.5  # of what places of the cells differ by: the least error
-
-
-@dataclass(frozen=True)
-class ShotError:
-    """Expected errors of a cycle by the cells of its films, relative in speed (of folds alone) and frequency;
-    eccentricity: (F,) of the largest ones; NaN where such a cycle was not found on other cells."""
-
-    speed: float
-    frequency: float
-    eccentricity: Array
 
 
 @dataclass(frozen=True)
@@ -71,7 +62,7 @@ def threshold_errors(own: Shooting, other: OtherCells, first: Shot) -> tuple[flo
     return float(speed), float(frequency)
 
 
-def shot_errors(own: Shooting, other: OtherCells, shots: Sequence[Shot]) -> tuple[ShotError, ...]:
+def shot_errors(own: Shooting, other: OtherCells, shots: Sequence[Shot]) -> tuple[CycleError, ...]:
     """The errors of the cycles of a branch in their order; at folds at least NEIGHBOURS times the neighbours'
     errors."""
     shot_error = [
@@ -83,16 +74,16 @@ def shot_errors(own: Shooting, other: OtherCells, shots: Sequence[Shot]) -> tupl
     neighbours = np.fmax(np.roll(errors, 1, axis=0), np.roll(errors, -1, axis=0))[1:-1]
     errors[1:-1] = np.maximum(errors[1:-1], np.nan_to_num(NEIGHBOURS * neighbours))
     for i, (frequency, *eccentricity) in zip(cycles, errors, strict=True):
-        shot_error[i] = ShotError(np.nan, frequency, np.array(eccentricity))
+        shot_error[i] = CycleError(np.nan, frequency, np.array(eccentricity))
     return tuple(shot_error)
 
 
-def _cycle_error(own: Shooting, other: OtherCells, shot: Shot) -> ShotError:
+def _cycle_error(own: Shooting, other: OtherCells, shot: Shot) -> CycleError:
     there = _again(own, other, shot, unit_vector(len(shot.x) + 2))
     return _error(own, shot, there - _own(own, shot), other.share)
 
 
-def _fold_error(own: Shooting, other: OtherCells, around: Sequence[Shot]) -> ShotError:
+def _fold_error(own: Shooting, other: OtherCells, around: Sequence[Shot]) -> CycleError:
     """around: the cycle before a fold, the fold and the one behind it."""
     before, fold, behind = around
     along = own.direction(before, behind)
@@ -140,12 +131,12 @@ def _turned(at: Array, z: Array, apart: Array) -> Array:
     return np.asarray(np.where(between.all(), np.abs(apart_at).max(axis=0), np.nan))
 
 
-def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> ShotError:
+def _error(own: Shooting, shot: Shot, apart: Array, share: float) -> CycleError:
     """apart: z on other cells less z."""
     spread = np.ptp([_quantities(own.flow, *each) for each in _places(shot)], axis=0)
     least = np.maximum(SPREAD * spread, LEAST * np.array([1.0, 1.0, *_own(own, shot)[2:]]))
     speed, frequency, *eccentricity = np.maximum(share * np.abs(apart), least)
-    return ShotError(speed if shot.kind == FOLD else np.nan, frequency, np.array(eccentricity))
+    return CycleError(speed if shot.kind == FOLD else np.nan, frequency, np.array(eccentricity))
 
 
 def _own(own: Shooting, shot: Shot) -> Array:

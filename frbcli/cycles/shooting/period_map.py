@@ -1,12 +1,12 @@
-"""What a time of constant speed makes of a machine with finite-volume films: the map of the time loop that runs use.
+"""What a time of constant speed makes of a machine: the map of the time loop that runs use.
 
-The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, the filling of the openings of each
-film with a flow-limited supply, and of each cell of the mass-conserving films its fraction and, where the oil carries
-gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn with the oil; what
-they hold is brought back over the angle that they have turned by, with cubics through four cells. The steps are of
-equal length and their number is fixed, so that the map is smooth enough for differences: error control would change it
-from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is released and
-absorbed. """
+The state is x = (q, v, s, theta, c): displacements and velocities of the rotor, and of finite-volume films the filling
+of the openings of each one with a flow-limited supply, and of each cell of the mass-conserving films its fraction and,
+where the oil carries gas, its free gas over what it has in all, seen from the housing. Plain films have cells that turn
+with the oil; what they hold is brought back over the angle that they have turned by, with cubics through four cells.
+The steps are of equal length and their number is fixed, so that the map is smooth enough for differences: error control
+would change it from one evaluation to the next. Gas is renewed with the oil that it goes with, however slowly it is
+released and absorbed. """
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from frbcli.cycles.method.continuation import Unreachable
 from frbcli.errors import NotConverged
 from frbcli.film.cells.balance.balances import FILLING, FLOWS
 from frbcli.film.cells.balance.boundaries import ALL
-from frbcli.film.cells.data import GAS, GAS_RATE, OIL, PASSED, RATE, UNKNOWN, W_BEFORE, WET, WET_WITH_GAS, W
+from frbcli.film.cells.data import FILM, GAS, GAS_RATE, OIL, PASSED, RATE, UNKNOWN, W_BEFORE, WET, WET_WITH_GAS, W
 from frbcli.rotor.loads import speed_profile
 from frbcli.runs.inputs import RunInputs
 from frbcli.runs.start import control_of, rotor_data, state_at
@@ -48,8 +48,10 @@ from frbcli.solve.tableau import METHODS, Tableau
 from frbcli.solve.time_loop import advance
 
 STEPS_PER_REVOLUTION = 100
-TOLERANCE = 2e-6  # of the equations in a stage: what they leave blurs differences of the map
+SMOOTHEST = "esdirk4"  # method where no cells limit the accuracy: 100 steps leave 1e-5 of a cycle
+TOLERANCE, SHARPEST = 2e-6, 1e-8  # of the equations in a stage, with cells or without: the rest blurs differences
 FIRST_STEP = 1e-6  # of the time: over it the accelerations and rates of the oil settle that belong to the state
+NEAREST = 0.99  # eccentricity up to which equal steps are short enough for films without cells
 PLACES = (0.25, 0.5, 0.75)  # of the cells at the start of a cycle after the first, in lengths of a cell
 SAMPLES = 256  # moments at which displacements are evaluated
 MOST_STEPS = 10**6
@@ -83,17 +85,21 @@ class Passage:
 
 @dataclass(frozen=True)
 class PeriodMap:
-    """The time loop of a system, which has J journals: one in each film, or both ends of one that tilts. films: as the
-    loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); turned: (F, 1 + rings) shares in
-    the speed of each film's cells; begun: (1 + rings,) angles in rad of rotor and rings at the start, which say how the
-    cells lie there; held: (n, m, k) which content is part of the state, and its units (n, 1, 1), see Wet; limited:
-    (fields,) the films whose filling is; driven: share of the unbalance, and of forces that turn with the rotor."""
+    """The time loop of a system, which has J journals: one in each film, or both ends of one that tilts; of a system
+    without films the ports of its nonlinear forces, over their lengths. names: of films, or of these ports; films: as
+    the loop takes them; journals, standing, clearances: see RotorData, standing (J, 2); seen: (m, n) displacements of
+    journals and ports that the loop predicts; turned: (F, 1 + rings) shares in the speed of each film's cells; begun:
+    (1 + rings,) angles in rad of rotor and rings at the start, which say how the cells lie there; held: (n, m, k) which
+    content is part of the state, and its units (n, 1, 1), see Wet; limited: (fields,) the films whose filling is, and
+    lowest: (fields,) the least one; driven: share of the unbalance, and of forces that turn with the rotor."""
 
     system: System
+    names: tuple[str, ...]
     films: Any
     control: Control
     tableau: Tableau
     journals: Array
+    seen: Array
     standing: Array
     clearances: Array
     turned: Array
@@ -101,7 +107,20 @@ class PeriodMap:
     held: Truths
     units: Array
     limited: Truths
+    lowest: Array
     driven: float = 0.0
+
+    @property
+    def smooth(self) -> bool:
+        """Whether no cells blur what the map makes of small differences."""
+        return not self.system.films.on_cells
+
+    @property
+    def limit(self) -> float:
+        """Eccentricity up to which cycles are followed; none of a machine without films."""
+        if not self.system.films.count:
+            return math.inf
+        return NEAREST if self.smooth else self.control.contact_eccentricity
 
     @property
     def slow(self) -> int:
@@ -133,13 +152,13 @@ class PeriodMap:
 
     def middles(self, d: Array) -> Array:
         """(..., F, 2) displacements in the middle of the films, from displacements of the journals (..., J, 2)."""
-        return np.asarray(d.reshape(*d.shape[:-2], self.system.films.count, -1, 2).mean(axis=-2))
+        return np.asarray(d.reshape(*d.shape[:-2], len(self.names), -1, 2).mean(axis=-2))
 
     def at_ends(self, eccentricities: Array) -> Array:
         """(F,) the larger eccentricity of both ends, of the journals' (J,); empty of films that do not tilt."""
         if self.system.films.stations == 1:
             return np.zeros(0)
-        return np.asarray(eccentricities.reshape(self.system.films.count, -1).max(axis=1))
+        return np.asarray(eccentricities.reshape(len(self.names), -1).max(axis=1))
 
     def packed(self, wet: Wet, omega: float) -> Array:
         """The state of a machine, of the order of 1; omega: speed in rad/s, the unit of velocities."""
@@ -250,9 +269,9 @@ class PeriodMap:
         numbers = np.zeros(NUMBERS)
         numbers[STEP] = numbers[STEP_DONE] = first
         numbers[RUN_END] = time
-        past = np.zeros((HISTORY, 1 + 2 * len(self.journals)))
+        past = np.zeros((HISTORY, 1 + len(self.seen)))
         past[:, 0] = first * np.arange(1 - HISTORY, 1)
-        past[:, 1:] = (self.journals @ wet.v).ravel()
+        past[:, 1:] = self.seen @ wet.v
         flows, errors = np.zeros((2, fields, FLOWS)), np.zeros((2, ERROR_SPANS))
         flows[PASSED, :, FILLING] = wet.filling
         q = wet.q.copy()
@@ -264,40 +283,54 @@ class PeriodMap:
         bodies = np.concatenate([[self.begun[0] + omega * time], state.q[spins]])
         angles = (self.turned @ (bodies - self.begun))[self.system.films.film_of_cells]
         content, rate, w = (
-            np.stack([turned_back(*each) for each in zip(fields, itertools.cycle(angles), strict=False)])
+            np.array([turned_back(*each) for each in zip(fields, itertools.cycle(angles), strict=False)])
+            .reshape(fields.shape)
             for fields in (*content_of(state.wet, self._gaps(state.q, bodies)), state.wet[W])
-        )
+        )  # fmt: skip
         q = state.q.copy()
         q[spins] = 0.0
         return Wet(q, state.v.copy(), state.a.copy(), content, rate, w, self._filling(state))
 
     def _filling(self, state: State) -> Array:
         """(fields,) fillings; what a line cannot take up goes back to the supply."""
-        return np.clip(state.flows[PASSED, :, FILLING], self.films.films["lowest"], ALL)
+        return np.clip(state.flows[PASSED, :, FILLING], self.lowest, ALL)
 
 
 def period_map(case: Case, cells: tuple[int, int] | None = None) -> PeriodMap:
     """The map of a case whose films are all on cells. cells: (around, along), default: the cells of its plan."""
-    plan = replace(make_plan(case), tolerance=TOLERANCE)
+    plan = make_plan(case)
     plan = plan if cells is None else replace(plan, cells=cells)
     system = make_system(case, plan)
     own = system.films
+    plan = replace(plan, tolerance=TOLERANCE if own.on_cells else SHARPEST)
     films = own.changeable().loop if RunInputs.of(case, system).limited else own.loop
-    tableau, contents = METHODS[plan.method].tableau, own.gas_contents
-    held = (films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None]
+    contents, ports = own.gas_contents, system.rotor.ports
+    if own.on_cells:
+        held = (films.cells[:, UNKNOWN] != 0.0) & np.array(own.remembering)[own.film_of_cells, None, None]
+        tableau, turned, records = METHODS[plan.method].tableau, system.turning[:, GRID], films.films
+    else:
+        held, records = np.zeros((0, 0, 0), dtype=bool), np.zeros(0, FILM)
+        tableau, turned = METHODS[SMOOTHEST].tableau, np.zeros_like(system.turning[:, GRID])
+    journals, lengths = own.seen(system.rotor.journals), np.repeat(system.clearances, own.stations)
+    seen = np.concatenate([journals.reshape(-1, system.rotor.size), *(port.place for port in ports)])
+    if not own.count:
+        journals, lengths = seen.reshape(-1, 2, system.rotor.size), np.array([port.law.length for port in ports])
     return PeriodMap(
         system=system,
+        names=system.names or tuple(port.name.replace("_force", "") for port in ports),
         films=films,
         control=control_of(case, plan, system.asperities),
         tableau=tableau._replace(defect=np.zeros_like(tableau.defect)),
-        journals=own.seen(system.rotor.journals),
-        standing=own.seen(own.standing),
-        clearances=np.repeat(system.clearances, own.stations),
-        turned=system.turning[:, GRID],
+        journals=journals,
+        seen=seen,
+        standing=own.seen(own.standing) if own.count else np.zeros((len(ports), 2)),
+        clearances=lengths,
+        turned=turned,
         begun=np.zeros(1 + system.ring_count),
         held=np.concatenate([held, held[: len(contents)] & (contents > 0.0)[:, None, None]]),
         units=np.concatenate([np.ones(len(held)), np.where(contents > 0.0, contents, 1.0)])[:, None, None],
-        limited=films.films["given"] > 0.0,
+        limited=records["given"] > 0.0,
+        lowest=records["lowest"],
     )
 
 

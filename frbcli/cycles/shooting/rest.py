@@ -1,9 +1,10 @@
-"""Static equilibria of machines with finite-volume films, and their Hopf points.
+"""Static equilibria of machines on the time loop, and their Hopf points.
 
 How fast a small motion grows is known from differences of the time loop, across the kinks that fronts of the oil leave
 when they cross cells: it scatters, with oil by some 0.07 1/s between neighbouring speeds. A Hopf point is therefore
 where the parabola through the rates of several speeds is zero. Its uncertainty has two parts: how far the rates lie off
-the parabola, and how much they change with the size of the disturbance, whose error goes with its square.
+the parabola, and how much they change with the size of the disturbance, whose error goes with its square. Without
+cells rates do not scatter, and a Hopf point is where they are zero.
 """
 
 from __future__ import annotations
@@ -23,6 +24,7 @@ from frbcli.errors import NotConverged
 from frbcli.film.parabola import parabola_roots
 
 RESTS = 15  # static equilibria of a diagram
+SHARP = 1e-6  # the same where no cells blur the rates
 NEAR = 0.02  # relative error of the speed about which a Hopf point is sought
 FITTED, AROUND = 12, 0.04  # rates that a parabola goes through, within this of its zero, relative
 WIDER = 2.0  # times the disturbance of the differences, once more: how much its size changes the rates
@@ -80,9 +82,11 @@ def located(shooting: Shooting, low: Rest, high: Rest, number: int = 0) -> RestT
         return rest
 
     try:
-        near = hopf.located(at, low, high, number, NEAR)
+        near = hopf.located(at, low, high, number, SHARP if shooting.flow.smooth else NEAR)
     except Unreachable:
         near = min(low, high, key=lambda one: abs(one.growth_of(number)))
+    if shooting.flow.smooth:
+        return _threshold(near, math.nan)
     fit = _fitted(shooting, near, number)
     rest = shooting.rest(near.wet, fit.zero)
     if rest is None:

@@ -1,4 +1,4 @@
-"""Limit cycles and static equilibria of machines with finite-volume films, found by shooting.
+"""Limit cycles and static equilibria of machines on the time loop, found by shooting.
 
 A cycle is a fixed point of the map of the time loop over its period (period_map.py). Besides the state x, the period
 and the speed are unknowns, p = (ln(T unit), ln(Omega / unit)); the cycle is held in time by a phase condition, and on a
@@ -35,8 +35,8 @@ from frbcli.cycles.shooting.period_map import STEPS_PER_REVOLUTION, Passage, Per
 from frbcli.equilibrium import hopf
 from frbcli.rotor.loads import largest_first
 
-# The differences and the cells leave so much of a multiplier.
-BLURRED = 5e-3
+# The differences and the cells leave so much of a multiplier; differences without cells, and by what they disturb.
+BLURRED, SMOOTH_BLUR, SMOOTH_DIFFERENCE = 5e-3, 2e-5, 1e-5
 SLOWEST = 0.05  # frequency over the speed above which a slow motion at rest is a whirl
 REMEMBERED = 0.1  # multiplier of a motion that is looked for again in the next cycle
 AT_REST_DIFFERENCE = 2e-2  # by which states with oil are disturbed at rest: the kinks blur less, and the gap is wide
@@ -154,7 +154,21 @@ class Shooting:
     @property
     def at_rest_difference(self) -> float:
         """Difference by which states are disturbed at rest."""
+        if self.flow.smooth:
+            return SMOOTH_DIFFERENCE
         return AT_REST_DIFFERENCE if self.flow.held.any() else DIFFERENCE
+
+    def difference(self, displacements: Array) -> float:
+        """Difference by which the states of a cycle are disturbed; displacements: see Passage."""
+        if self.flow.smooth:
+            return SMOOTH_DIFFERENCE
+        gap = 1.0 - float(np.hypot(displacements[:, :, 0], displacements[:, :, 1]).max())
+        return DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
+
+    def multipliers(self, space: SlowSpace, held: Array) -> Multipliers:
+        """The multipliers of a cycle. held: (N + 2,) what holds it in time."""
+        blur = SMOOTH_BLUR if self.flow.smooth else BLURRED
+        return multipliers_of(space, held[:-2], blur) if self.free else driven_multipliers(space, blur)
 
     def rest(self, near: Wet, omega: float, wider: float = 1.0) -> Rest | None:
         """The static equilibrium at a speed, as a fixed point of the map over half a revolution: whirls of up to the
@@ -262,7 +276,8 @@ class Shooting:
         """The motion near a guess about which the slow motions are still to be found; None if it is not found."""
         try:
             asked = _Asked(self, start.wet, start.steps)
-            space = slow_space(asked.at, guess, start.p, self._first(guess))
+            by = SMOOTH_DIFFERENCE if self.flow.smooth else DIFFERENCE
+            space = slow_space(asked.at, guess, start.p, self._first(guess), by)
         except Unreachable:
             return None
         return self._solved(replace(start, space=space), guess, start.p, conditions)
@@ -276,17 +291,14 @@ class Shooting:
             x, p = fixed.x, fixed.p
             asked.settle(x)
             passage, wet = asked.passage, asked.near
-            gap = 1.0 - float(np.hypot(passage.displacements[:, :, 0], passage.displacements[:, :, 1]).max())
-            by = DIFFERENCE * min(1.0, max(gap, 0.0) / WIDE)
-            space = slow_space(asked.at, x, p, self._first(x, fixed.space), by)
+            space = slow_space(asked.at, x, p, self._first(x, fixed.space), self.difference(passage.displacements))
         except Unreachable:
             return None
         held = self.held(wet)
         tangent = direction_along(space, held, shot.tangent)
-        multipliers = multipliers_of(space, held[: len(x)]) if self.free else driven_multipliers(space)
         others = tuple(self._elsewhere(place, asked, p, space, conditions) for place in self.flow.places)
         return Shot(
-            x, p, wet, passage.displacements, space, tangent, multipliers, shot.steps,
+            x, p, wet, passage.displacements, space, tangent, self.multipliers(space, held), shot.steps,
             tuple(each for each in others if each is not None),
         )  # fmt: skip
 
@@ -375,13 +387,14 @@ def largest(displacements: Array) -> Array:
     return np.asarray(here + (after - before) ** 2 / (8.0 * bend))
 
 
-def driven_multipliers(space: SlowSpace) -> Multipliers:
-    """The multipliers of a motion with the unbalance; none is trivial; the first one is set to 1."""
-    return Multipliers(np.append(1.0 + 0.0j, ritz(space)[0]), BLURRED)
+def driven_multipliers(space: SlowSpace, blur: float = BLURRED) -> Multipliers:
+    """The multipliers of a motion with the unbalance; none is trivial; the first one is set to 1. blur: their error."""
+    return Multipliers(np.append(1.0 + 0.0j, ritz(space)[0]), blur)
 
 
-def multipliers_of(space: SlowSpace, phase: Array) -> Multipliers:
-    """The multipliers of a cycle, the trivial one first. phase: (N,) unit direction in which its state moves in time.
+def multipliers_of(space: SlowSpace, phase: Array, blur: float = BLURRED) -> Multipliers:
+    """The multipliers of a cycle, the trivial one first. phase: (N,) unit direction in which its state moves in time;
+    blur: their error at least.
 
     Next to a fold two multipliers are 1, with one disturbance for both, and an error enters each with its root: the
     other one is then what their sum, which has the error itself, is beyond the trivial one."""
@@ -390,9 +403,9 @@ def multipliers_of(space: SlowSpace, phase: Array) -> Multipliers:
     along = np.where(near, np.abs(phase @ states) / np.linalg.norm(states, axis=0), -1.0)
     trivial = int(np.argmax(along))
     first, others = values[trivial], np.delete(values, trivial)
-    defect = max(BLURRED, float(abs(first - 1.0)))
+    defect = max(blur, float(abs(first - 1.0)))
     if first.imag != 0.0:  # both have become a pair
-        second, defect = int(np.argmin(np.abs(others - first.conjugate()))), BLURRED
+        second, defect = int(np.argmin(np.abs(others - first.conjugate()))), blur
     else:
         second = int(np.argmin(np.abs(others - 1.0)))
     if first.imag != 0.0 or abs(others[second] - 1.0) < DOUBLE:

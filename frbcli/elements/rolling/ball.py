@@ -34,7 +34,11 @@ class BallForce(ForceLaw):
     rings: BallBearing
 
     quantity: ClassVar[str] = "ball_force"
-    turns: ClassVar[bool] = True
+
+    @property
+    def turns(self) -> bool:  # type: ignore[override]
+        """See ForceLaw: with a cage that turns."""
+        return self.rings.turning
 
     def inside(self, memories: Array) -> dict[str, tuple[str, Array]]:
         of, (at_inner, at_outer) = self.rings.numbers, self.rings.contacts

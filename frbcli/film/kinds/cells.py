@@ -75,6 +75,7 @@ class CellFilms(Films):
     # On a mesh twice as fine the error is still a third. Too little where errors accumulate: it is used only where the
     # run was not repeated on fewer cells.
     reach: ClassVar[float] = 3.0
+    on_cells: ClassVar[bool] = True
 
     @property
     def loop(self) -> Any:

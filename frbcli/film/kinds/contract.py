@@ -96,6 +96,7 @@ class Films(ABC):
     clearances: tuple[float, ...]
 
     coordinates: ClassVar[int] = 2  # of a journal that its film sees: 2, or 4 with its tilts
+    on_cells: ClassVar[bool] = False  # whether the time loop solves them on cells
     stations: ClassVar[int] = 1  # places along a film at which the time loop has its journal: the middle, or both ends
     samples: ClassVar[int] = SAMPLES  # states of a run that are kept for the error of its forces
     # Of the absolute local errors of an embedded solution one order lower, summed as they fade in the films: that is 2
@@ -276,8 +277,8 @@ class Films(ABC):
 
     def gaps(self, d: Array) -> Array:
         """H in the cells of all fields, (fields, m, k) or (fields, m, 1), of displacements d (films stations, 2) over
-        the clearance, in the frame of their openings."""
-        raise NotImplementedError
+        the clearance, in the frame of their openings; (0, 0, 0) of films without cells."""
+        return np.ones((0, 0, 0))
 
     @property
     def gas_contents(self) -> Array:
@@ -290,7 +291,7 @@ class Films(ABC):
 
         content, near: oil fractions of all fields, and behind them, where oil carries gas, their free gas over the
         oil."""
-        raise NotImplementedError
+        return w
 
 
 def couette_power(place: Array, clearance: float, force: Array, total: float, slip: float, drag: float) -> float:

@@ -71,6 +71,7 @@ class TiltedFilms(Films):
     centrifugal: tuple[float, ...] = ()
 
     coordinates: ClassVar[int] = COORDINATES
+    on_cells: ClassVar[bool] = True
     stations: ClassVar[int] = 2
     samples: ClassVar[int] = 192
     counted: ClassVar[float] = 0.25

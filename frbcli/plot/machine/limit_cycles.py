@@ -85,8 +85,10 @@ def _film(axes: Axes, diagram: LimitCycles, film: int) -> None:
             axes.plot(*at, linestyle="", marker=marker, color=BLACK, markersize=4.5, label=label, zorder=4)
             errors = [each.value_uncertainty for each in points], [_eccentricity_error(each, film) for each in points]
             _bars(axes, *at, *errors)
-    axes.set_ylim(0.0, 1.0)
-    axes.set_ylabel(f"largest eccentricity\n{diagram.films[film].replace('_', ' ')}".rstrip())
+    in_films = bool(diagram.case.films)  # else in springs or ball bearings, over a length of their own
+    axes.set_ylim(0.0, 1.0 if in_films else ROOM * axes.get_ylim()[1])
+    quantity = "eccentricity" if in_films else "displacement over its length"
+    axes.set_ylabel(f"largest {quantity}\n{diagram.films[film].replace('_', ' ')}".rstrip())
 
 
 def _drawn(diagram: LimitCycles) -> list[tuple[int, CycleBranch]]:

@@ -17,7 +17,7 @@ from frbcli.scene.films import (
     turns_with_oil,
 )
 from frbcli.scene.keys import cavitation_keys
-from frbcli.scene.machine.rotor import harmonics_of, speed_dependent
+from frbcli.scene.machine.rotor import element_parts, harmonics_of, port_faults, speed_dependent, without_film
 from frbcli.scene.planning.film_choice import all_clipped, form_of
 from frbcli.scene.shafts.table import shaft_of
 from frbcli.scene.speeds import default_speeds, keeps_oil
@@ -31,6 +31,12 @@ def given_coefficient_faults(case: Case) -> Iterator[Fault]:
     own."""
     if case.heat is not None or (case.films and by_shooting(case)):
         yield from speed_dependent(case, CONSTANT)
+
+
+def linear_faults(case: Case) -> Iterator[Fault]:
+    """A machine has a film, or another force that is not linear."""
+    if not element_parts(case).ports:
+        yield from without_film(case, "a linear machine has no limit cycles")
 
 
 def cartridge_faults(case: Case) -> Iterator[Fault]:
@@ -50,7 +56,7 @@ def cycle_heat_faults(case: Case) -> Iterator[Fault]:
     if case.heat is None:
         return
     if by_shooting(case):
-        problem = "settles over many periods, and finite-volume films find cycles from one period of a run."
+        problem = "settles over many periods, and cycles of this case are found from one period of a run."
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
     for key in ("clearance", "centrifugal_growth"):
         if getattr(case.heat, key) == "follows":
@@ -65,8 +71,15 @@ def other_cycle_heat_faults(case: Case) -> Iterator[Fault]:
         yield Fault("thermal.model", "lumped", None, problem, HEAT_REMEDY)
 
 
+def turning_port_faults(case: Case) -> Iterator[Fault]:
+    """Forces that are not linear have no angle of their own: no whirl returns to it after one period."""
+    problem = "turns with the rotor: the force depends on its angle, and no whirl returns after one period."
+    yield from port_faults(case, problem, 'Write cage = "mean", or take a run.', lambda law: law.turns)
+
+
 def smooth_faults(case: Case) -> Iterator[Fault]:
-    """Films whose force does not follow smoothly from the motion alone."""
+    """Films whose force does not follow smoothly from the motion alone, and other forces that are not linear."""
+    yield from port_faults(case, "is not linear.", "Go over the speed alone.")
     named = dict(cavitation_keys(case)) if form_of(case).solved else {}
     keeping = {key: name for key, name in named.items() if law_named(name).keeps_oil}
     if keeping:
@@ -81,6 +94,7 @@ def smooth_faults(case: Case) -> Iterator[Fault]:
 
 def speed_cycle_faults(case: Case) -> Iterator[Fault]:
     """Films whose map over a period is not the same at each start, since their openings turn."""
+    yield from turning_port_faults(case)
     if not by_shooting(case):
         yield from smooth_faults(case)
     elif form_of(case).turns_cells and any(
@@ -116,8 +130,9 @@ def drives(case: Case) -> list[str]:
 
 def by_shooting(case: Case) -> bool:
     """Whether limit cycles are found by shooting on the time loop: films are mass-conserving, or are on cells, where
-    their force has kinks."""
-    return keeps_oil(case) or (form_of(case).by_cells and not turning_openings(case))
+    their force has kinks, or forces besides theirs are not linear."""
+    kinked = form_of(case).by_cells and not turning_openings(case)
+    return keeps_oil(case) or kinked or bool(element_parts(case).ports)
 
 
 def turning_openings(case: Case) -> bool:

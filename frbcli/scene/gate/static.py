@@ -141,11 +141,6 @@ def pin_cycle_faults(case: Case) -> Iterator[Fault]:
         yield Fault(each.key, "", None, problem, 'Take a run; or remove it and write ring.spin = "blocked".')
 
 
-def port_cycle_faults(case: Case) -> Iterator[Fault]:
-    """Limit cycles know forces of films alone."""
-    yield from port_faults(case, "is not linear: limit cycles have nonlinear forces of films alone.", "Take a run.")
-
-
 def port_coupling_faults(case: Case) -> Iterator[Fault]:
     """Forces that are not linear are solved with the rotor, until nothing is left over."""
     coupling = coupling_of(case)

@@ -6,7 +6,7 @@ The elements have parts of the machine, springs and faults, and lines of the pla
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -25,6 +25,7 @@ from frbcli.errors import Fault
 from frbcli.rotor.assembly import GROUND, LinearRotor, Link, assembled, preset
 from frbcli.rotor.body import PLANE, Body, point_mass, spin, tilting_mass, tilting_ring
 from frbcli.rotor.loads import Harmonic, Tabulated
+from frbcli.rotor.port import ForceLaw
 from frbcli.scene.films import turning_rings
 from frbcli.scene.shafts.table import shaft_of
 
@@ -80,10 +81,14 @@ def stray_load_faults(case: Case) -> Iterator[Fault]:
                 yield Fault(element.key, value, None, f"{load.strays}.", "Remove it, or take a run-up.")
 
 
-def port_faults(case: Case, problem: str, remedy: str) -> Iterator[Fault]:
-    """The faults of forces that are not linear, where an analysis does not have them."""
+def port_faults(
+    case: Case, problem: str, remedy: str, of: Callable[[ForceLaw], bool] = lambda _: True
+) -> Iterator[Fault]:
+    """The faults of forces that are not linear, where an analysis does not have them. of: whether it has not a law."""
     site = site_of(case)
-    yield from (Fault(each.key, "", None, problem, remedy) for each in elements_of(case) if each.parts(site).ports)
+    for each in elements_of(case):
+        if any(of(law) for _, _, law in each.parts(site).ports):
+            yield Fault(each.key, "", None, problem, remedy)
 
 
 def table_faults(case: Case, begin: float, end: float) -> Iterator[Fault]:
